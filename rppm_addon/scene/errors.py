@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Errors that a user can do something about. Every message names the thing and the remedy."""
+
+
+class RppmError(Exception):
+    """Base of the errors that the engine reports to the user as one line."""
+
+
+class SceneError(RppmError):
+    """The scene cannot be rendered as it is."""
+
+
+class SettingsError(RppmError):
+    """A setting has a value that cannot be used."""
+
+
+class DeviceError(RppmError):
+    """The graphics device or its driver cannot do what is asked."""

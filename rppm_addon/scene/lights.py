@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light sources in radiometric quantities; the exporter converts Blender's units to them."""
+
+import enum
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+class LightKind(enum.Enum):
+    POINT = "point"
+    SPOT = "spot"
+    SUN = "sun"
+    AREA = "area"
+
+
+@dataclass
+class Light:
+    """A light object. It shines along its local -Z axis, as Blender's lights do."""
+
+    name: str
+    kind: LightKind
+    matrix: np.ndarray
+    """(4, 4) float64, object to world; includes the object's scale."""
+    strength: np.ndarray
+    """(3,) float64 linear Rec.709: POINT and SPOT radiant intensity on the axis W/sr;
+    SUN irradiance on a facing surface W/m^2; AREA radiance W/(m^2 sr)."""
+    radius: float = 0.0
+    """POINT and SPOT: radius of the emitting sphere, metres."""
+    spot_angle: float = np.pi
+    """SPOT: full angle of the cone, radians."""
+    spot_blend: float = 0.0
+    """SPOT: softness of the cone's edge, 0 to 1 (Cycles' spot smooth)."""
+    sun_angle: float = 0.0
+    """SUN: full angle under which the disk is seen, radians."""
+    shape: str = "SQUARE"
+    """AREA: SQUARE, RECTANGLE, DISK or ELLIPSE."""
+    size: tuple[float, float] = (1.0, 1.0)
+    """AREA: full width along local X and height along local Y before the matrix's scale."""
+    spread: float = np.pi
+    """AREA: full angle of emission, radians (Cycles' spread); pi is diffuse."""
+    visible_to_camera: bool = True
+    photon_share: float = 1.0
+    """Weight of this light when photons are shared out (paper section 4.3), on top of its power."""
+
+
+@dataclass
+class World:
+    """The surroundings: constant radiance or an equirectangular image of radiance."""
+
+    radiance: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    """(3,) float64 W/(m^2 sr); multiplies the image where there is one."""
+    image: int = -1
+    """Index into Scene.images of an equirectangular environment, or -1."""
+    rotation: np.ndarray = field(default_factory=lambda: np.eye(3))
+    """(3, 3) float64, world direction to the image's direction."""

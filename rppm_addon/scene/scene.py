@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene: everything a render needs."""
+
+from dataclasses import dataclass, field
+
+from .camera import Camera
+from .images import Image
+from .lights import Light, World
+from .materials import Material
+from .meshes import Instance, Mesh
+from .settings import RenderSettings
+
+
+@dataclass
+class Scene:
+    """What is to be rendered, in a right-handed world in metres."""
+
+    camera: Camera
+    meshes: list[Mesh] = field(default_factory=list)
+    instances: list[Instance] = field(default_factory=list)
+    materials: list[Material] = field(default_factory=list)
+    lights: list[Light] = field(default_factory=list)
+    world: World = field(default_factory=World)
+    images: list[Image] = field(default_factory=list)
+    settings: RenderSettings = field(default_factory=RenderSettings)
+    exposure: float = 1.0
+    """Factor on every radiance of the film (Cycles' film exposure)."""
+    warnings: list[str] = field(default_factory=list)
+    """What was exported only in part, a line each, naming object or material and node."""
+
+    @property
+    def triangle_count(self) -> int:
+        """Triangles with all instances expanded."""
+        return sum(self.meshes[instance.mesh].triangle_count for instance in self.instances)

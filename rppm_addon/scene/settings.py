@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Render settings; the Blender properties and the CLI's --set use the same names."""
+
+import dataclasses
+import enum
+import math
+from dataclasses import dataclass
+
+from .errors import SettingsError
+
+
+class DirectLight(enum.Enum):
+    """How light that comes straight from a source is estimated; never both."""
+
+    RAYS = "RAYS"
+    PHOTONS = "PHOTONS"
+
+
+@dataclass
+class RenderSettings:
+    """Settings of the photon mapper. Lengths in metres, times in seconds."""
+
+    iterations: int = 128
+    time_limit: float = 0.0
+    """Stop after so many seconds; 0 is no limit."""
+    photons: int = 65536
+    """Photons emitted in each iteration, shared among the lights."""
+    camera_path_length: int = 8
+    """d_eye: camera path segments, the primary ray being the first."""
+    photon_path_length: int = 8
+    """d_photon: photon path segments, the first leaving the light."""
+    alpha: float = 0.7
+    """Eq. 2: the share of photons kept as the radius shrinks, in (0, 1)."""
+    radius_scale: float = 10.0
+    """s_r of Eq. 3: first radius in pixels of a 1 megapixel frame, scaled with the frame."""
+    radius_minimum: float = 0.0
+    """r_min of the first iteration; 0 is automatic."""
+    radius_maximum: float = 0.0
+    """r_max of the first iteration; 0 is automatic."""
+    specular_roughness: float = 0.3
+    """Lobes with at most this roughness (the user's, not its square) are traced as specular;
+    rougher ones store photons."""
+    direct_light: DirectLight = DirectLight.RAYS
+    iterations_per_frame: int = 1
+    """N_ipf: iterations between two pictures shown."""
+    seed: int = 0
+    cubemap_resolution: int = 0
+    """Cells along a side of DIRT's cube faces, a power of two; 0 is automatic."""
+    film_transparent: bool = False
+
+    def validate(self) -> None:
+        """Raise SettingsError naming the first setting that cannot be used, and its range."""
+
+        def need(name: str, good: bool, what: str) -> None:
+            if not good:
+                raise SettingsError(f"{name} is {getattr(self, name)}; set it to {what}")
+
+        need("iterations", self.iterations >= 1, "1 or more")
+        need("time_limit", math.isfinite(self.time_limit) and self.time_limit >= 0.0, "0 (no limit) or seconds")
+        need("photons", 1 <= self.photons <= 1 << 22, "1 to 4194304")
+        need("camera_path_length", 1 <= self.camera_path_length <= 64, "1 to 64")
+        need("photon_path_length", 1 <= self.photon_path_length <= 64, "1 to 64")
+        need("alpha", 0.0 < self.alpha < 1.0, "a value between 0 and 1")
+        need("radius_scale", math.isfinite(self.radius_scale) and self.radius_scale > 0.0, "more than 0 pixels")
+        need("radius_minimum", math.isfinite(self.radius_minimum) and self.radius_minimum >= 0.0, "0 (automatic) or metres")
+        need("radius_maximum", math.isfinite(self.radius_maximum) and self.radius_maximum >= 0.0, "0 (automatic) or metres")
+        if 0.0 < self.radius_maximum < self.radius_minimum:
+            raise SettingsError(
+                f"radius_maximum is {self.radius_maximum}, less than radius_minimum {self.radius_minimum}; raise it"
+            )
+        need("specular_roughness", 0.0 <= self.specular_roughness <= 1.0, "0 to 1")
+        need("iterations_per_frame", self.iterations_per_frame >= 1, "1 or more")
+        need("seed", 0 <= self.seed < 1 << 31, "0 to 2147483647")
+        resolution = self.cubemap_resolution
+        need(
+            "cubemap_resolution",
+            resolution == 0 or (16 <= resolution <= 1024 and resolution & (resolution - 1) == 0),
+            "0 (automatic) or a power of two from 16 to 1024",
+        )
+
+    def with_values(self, **values: object) -> "RenderSettings":
+        """A copy with some settings replaced; values may be text, as from the command line.
+
+        Raises SettingsError for an unknown name or a value of the wrong kind.
+        """
+        fields = {field.name: field for field in dataclasses.fields(self)}
+        converted = {}
+        for name, value in values.items():
+            if name not in fields:
+                raise SettingsError(f"there is no setting {name}; the settings are {', '.join(fields)}")
+            kind = type(getattr(self, name))
+            try:
+                if kind is bool and isinstance(value, str):
+                    converted[name] = {"true": True, "1": True, "false": False, "0": False}[value.lower()]
+                elif issubclass(kind, enum.Enum):
+                    converted[name] = value if isinstance(value, kind) else kind[str(value).upper()]
+                else:
+                    converted[name] = kind(value)
+            except (KeyError, ValueError, TypeError) as error:
+                raise SettingsError(f"{name} cannot be {value!r}; it takes a {kind.__name__}") from error
+        return dataclasses.replace(self, **converted)
