@@ -5,7 +5,8 @@ bpy.ops.render.render() takes no callbacks and gives nothing back. Whoever calls
 observer first; the engine asks for it and tells it what happens, in this order:
 
     observer = current_observer()            # a RenderObserver that does nothing when none is set
-    observer.on_scene(scene)                 # the scene is exported; before a Renderer is made
+    if not observer.on_scene(scene):         # the scene is exported; no Renderer has been made
+        return                               # the observer wanted the scene only
     observer.on_start(scene)                 # immediately before Renderer.render(scene, ...)
     renderer.render(scene, on_progress=...,  # calls observer.on_progress(progress)
         should_stop=...,                     # true as well when observer.should_stop() is true
@@ -34,8 +35,12 @@ class RenderObserver:
     snapshots: tuple[float, ...] = ()
     """Ascending seconds since on_start at which on_snapshot wants a frame."""
 
-    def on_scene(self, scene: Scene) -> None:
-        """The scene is complete and no renderer has been made for it yet."""
+    def on_scene(self, scene: Scene) -> bool:
+        """The scene is complete and no renderer has been made for it yet.
+
+        Returns whether it is to be rendered; False ends the render here, without an error.
+        """
+        return True
 
     def on_start(self, scene: Scene) -> None:
         """The renderer exists and is about to be given the scene."""
