@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Storage buffers that grow with need and are reported by name."""
+
+import moderngl
+import numpy as np
+
+from ..scene.errors import DeviceError
+from .context import Context
+
+_SMALLEST = 64
+
+
+class GrowingBuffer:
+    """A named storage buffer that is kept between frames and made anew only to grow."""
+
+    def __init__(self, context: Context, name: str, remedy: str = "simplify the scene") -> None:
+        self.name = name
+        self._context = context
+        self._remedy = remedy
+        self.buffer: moderngl.Buffer = context.moderngl.buffer(reserve=_SMALLEST)
+
+    @property
+    def size(self) -> int:
+        return self.buffer.size
+
+    def require(self, size: int) -> bool:
+        """Make sure of so many bytes; True when the buffer was made anew and its contents are gone.
+
+        Raises DeviceError, with the numbers and the remedy, past the device's limit.
+        """
+        if size <= self.buffer.size:
+            return False
+        limit = self._context.storage_block_limit
+        if size > limit:
+            raise DeviceError(
+                f"{self.name} needs {size / 2**20:.0f} MiB but the device {self._context.information.name} "
+                f"allows {limit / 2**20:.0f} MiB in one buffer; {self._remedy}"
+            )
+        self.buffer.release()
+        try:
+            self.buffer = self._context.moderngl.buffer(reserve=size)
+        except moderngl.Error as error:
+            self.buffer = self._context.moderngl.buffer(reserve=_SMALLEST)
+            raise DeviceError(
+                f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self._remedy}"
+            ) from error
+        return True
+
+    def upload(self, array: np.ndarray) -> None:
+        """Hold a contiguous array's bytes from the buffer's start. Raises DeviceError as require does."""
+        data = np.ascontiguousarray(array)
+        self.require(data.nbytes)
+        if data.nbytes:
+            self.buffer.write(data.reshape(-1).view(np.uint8))
+
+    def read(self, dtype: np.dtype, count: int, offset: int = 0) -> np.ndarray:
+        """(count,) array of a dtype from a byte offset on."""
+        size = np.dtype(dtype).itemsize * count
+        return np.frombuffer(self.buffer.read(size, offset=offset), dtype) if size else np.empty(0, dtype)
+
+    def clear(self) -> None:
+        """Zero the whole buffer."""
+        self.buffer.clear()
+
+    def release(self) -> None:
+        self.buffer.release()

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The offscreen OpenGL context and what its device can do."""
+
+import ctypes
+import logging
+import os
+import sys
+from dataclasses import dataclass, field
+
+from ..scene.errors import DeviceError
+
+log = logging.getLogger(__name__)
+
+REQUIRED_VERSION = 430
+_LIMITS = (
+    "GL_MAX_SHADER_STORAGE_BLOCK_SIZE",
+    "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS",
+    "GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS",
+    "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS",
+    "GL_MAX_COMPUTE_WORK_GROUP_COUNT",
+    "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS",
+    "GL_MAX_TEXTURE_SIZE",
+    "GL_MAX_VIEWPORT_DIMS",
+)
+_NUM_PROGRAM_BINARY_FORMATS = 0x87FE
+
+
+@dataclass
+class DeviceInformation:
+    """What was found: names, OpenGL version, limits by their GL names, and what is missing."""
+
+    name: str
+    driver: str
+    version: str
+    limits: dict[str, object] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
+
+
+class Context:
+    """An offscreen context of OpenGL 4.3 core: EGL on Linux, WGL on Windows."""
+
+    def __init__(self, gl, information: DeviceInformation) -> None:
+        self.moderngl = gl
+        self.information = information
+        self.limits = information.limits
+
+    @classmethod
+    def create(cls, device: str | None = None) -> "Context":
+        """Open a context.
+
+        ``device`` is an EGL device number as text; None takes the environment variable
+        RPPM_DEVICE, then the driver's default. Raises DeviceError saying what to install.
+        """
+        import moderngl
+
+        if sys.platform == "darwin":
+            raise DeviceError("macOS stops at OpenGL 4.1; RPPM needs 4.3: use Linux or Windows")
+        options = {}
+        device = device if device is not None else os.environ.get("RPPM_DEVICE", "")
+        if sys.platform.startswith("linux"):
+            options["backend"] = "egl"
+            if device:
+                if not device.isdigit():
+                    raise DeviceError(f"device {device!r} is not a number; give the EGL device number, 0 being the first")
+                options["device_index"] = int(device)
+        try:
+            gl = moderngl.create_context(standalone=True, require=REQUIRED_VERSION, **options)
+        except Exception as error:  # moderngl raises bare Exception
+            raise DeviceError(
+                f"no OpenGL 4.3 context could be opened ({error}); install a driver with EGL "
+                "(Debian: libegl1 libegl-mesa0 libgl1-mesa-dri libgl1) or choose another device"
+            ) from error
+        info = gl.info
+        information = DeviceInformation(
+            name=info["GL_RENDERER"],
+            driver=f"{info['GL_VENDOR']} {info['GL_VERSION']}",
+            version=f"{gl.version_code // 100}.{gl.version_code % 100 // 10}",
+            limits={name: info[name] for name in _LIMITS if name in info},
+        )
+        context = cls(gl, information)
+        if not context.has_program_binaries:
+            information.missing.append("program binaries (programs are compiled at every start)")
+        if not {"GL_NV_shader_atomic_float", "GL_EXT_shader_atomic_float"} & gl.extensions:
+            information.missing.append("float atomics (splatting uses a slower compare-and-swap)")
+        if context.is_software:
+            information.missing.append("a GPU (Mesa renders on the processor)")
+        log.info("device %s, %s", information.name, information.driver)
+        return context
+
+    @property
+    def is_software(self) -> bool:
+        """Whether the driver draws on the processor, where GL timer queries mean nothing."""
+        return any(name in self.information.name.lower() for name in ("llvmpipe", "softpipe", "swrast"))
+
+    @property
+    def storage_block_limit(self) -> int:
+        """Bytes that one storage block may span."""
+        return int(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
+
+    def function(self, name: str, result, *arguments):
+        """A GL function that moderngl does not wrap, as a ctypes function; None if the driver lacks it."""
+        if sys.platform.startswith("linux"):
+            library = ctypes.CDLL("libEGL.so.1")
+            resolve, prototype = library.eglGetProcAddress, ctypes.CFUNCTYPE
+        else:
+            library = ctypes.WinDLL("opengl32.dll")
+            resolve, prototype = library.wglGetProcAddress, ctypes.WINFUNCTYPE
+        resolve.restype = ctypes.c_void_p
+        resolve.argtypes = [ctypes.c_char_p]
+        address = resolve(name.encode())
+        return prototype(result, *arguments)(address) if address else None
+
+    @property
+    def has_program_binaries(self) -> bool:
+        count = ctypes.c_int(0)
+        get_integer = self.function("glGetIntegerv", None, ctypes.c_uint, ctypes.POINTER(ctypes.c_int))
+        if get_integer is None:  # Windows resolves GL 1.1 functions from the library itself
+            ctypes.WinDLL("opengl32.dll").glGetIntegerv(_NUM_PROGRAM_BINARY_FORMATS, ctypes.byref(count))
+        else:
+            get_integer(_NUM_PROGRAM_BINARY_FORMATS, ctypes.byref(count))
+        return count.value > 0
+
+    def barrier(self) -> None:
+        """Order everything written before against everything read after."""
+        self.moderngl.memory_barrier()
+
+    def finish(self) -> None:
+        """Wait until the device has done all it was given."""
+        self.moderngl.finish()
+
+    def release(self) -> None:
+        self.moderngl.release()
+
+
+def device_information(device: str | None = None) -> DeviceInformation:
+    """Open a context, describe its device, and close it. Raises DeviceError."""
+    context = Context.create(device)
+    try:
+        return context.information
+    finally:
+        context.release()

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Programs from our shader files, run with named buffers and one block of parameters."""
+
+import logging
+import time
+from collections.abc import Mapping
+
+import moderngl
+
+from .binary_cache import BinaryCache
+from .context import Context
+from .sources import ShaderError, Source, expand
+
+log = logging.getLogger(__name__)
+
+_EMPTY_COMPUTE = "#version 430 core\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
+_EMPTY_VERTEX = "#version 430 core\nvoid main() { gl_Position = vec4(0.0); }\n"
+_EMPTY_FRAGMENT = "#version 430 core\nvoid main() {}\n"
+_GROUPS_PER_ROW = 65535
+
+
+class _Program:
+    """What compute and draw programs share: bindings by block name, and the parameter block."""
+
+    def __init__(self, context: Context, sources: list[Source]) -> None:
+        self.context = context
+        self.name = " + ".join(source.files[0] for source in sources)
+        self.blocks: dict[str, int] = {}
+        self.record = None
+        for source in sources:
+            for block, binding in source.blocks.items():
+                if self.blocks.setdefault(block, binding) != binding:
+                    raise ShaderError(f"{self.name}: block {block} has two bindings")
+            self.record = self.record or source.parameters
+        if len(set(self.blocks.values())) != len(self.blocks):
+            raise ShaderError(f"{self.name}: two blocks share a binding: {self.blocks}")
+        self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
+
+    def _bind(self, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None) -> None:
+        if buffers.keys() != self.blocks.keys():
+            missing = sorted(self.blocks.keys() - buffers.keys())
+            unknown = sorted(buffers.keys() - self.blocks.keys())
+            raise ValueError(f"{self.name}: buffers missing {missing}, unknown {unknown}")
+        for block, binding in self.blocks.items():
+            buffers[block].bind_to_storage_buffer(binding)
+        if self._parameters is not None:
+            self._parameters.write(self.record.pack(dict(parameters or {})))
+            self._parameters.bind_to_uniform_block(0)
+
+    def release(self) -> None:
+        if self._parameters is not None:
+            self._parameters.release()
+
+
+class ComputeProgram(_Program):
+    """A compute shader."""
+
+    def __init__(self, context: Context, cache: BinaryCache, source: Source) -> None:
+        super().__init__(context, [source])
+        self.local_size = source.local_size
+        self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
+        if not cache.load(self._program.glo, source.text):
+            self._program.release()
+            try:
+                self._program = context.moderngl.compute_shader(source.text)
+            except moderngl.Error as error:
+                raise ShaderError(source.name_lines(str(error))) from error
+            cache.store(self._program.glo, source.text)
+
+    def run(self, threads: int, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None = None) -> None:
+        """Run so many threads (rounded up to whole groups) and order their writes."""
+        if threads <= 0:
+            return
+        self._bind(buffers, parameters)
+        groups = -(-threads // self.local_size)
+        rows = -(-groups // _GROUPS_PER_ROW)
+        self._program.run(min(groups, _GROUPS_PER_ROW), rows)
+        self.context.barrier()
+
+    def run_indirect(
+        self,
+        arguments: moderngl.Buffer,
+        offset: int,
+        buffers: Mapping[str, moderngl.Buffer],
+        parameters: Mapping | None = None,
+    ) -> None:
+        """Run as many groups as three uints at byte ``offset`` of ``arguments`` say."""
+        self._bind(buffers, parameters)
+        self._program.run_indirect(arguments, offset)
+        self.context.barrier()
+
+    def release(self) -> None:
+        super().release()
+        self._program.release()
+
+
+class DrawProgram(_Program):
+    """A vertex, optional geometry, and fragment shader; vertices are pulled from storage blocks."""
+
+    def __init__(
+        self, context: Context, cache: BinaryCache, vertex: Source, fragment: Source, geometry: Source | None
+    ) -> None:
+        sources = [vertex, fragment] + ([geometry] if geometry else [])
+        super().__init__(context, sources)
+        text = "".join(source.text for source in sources)
+        gl = context.moderngl
+        self._program = gl.program(vertex_shader=_EMPTY_VERTEX, fragment_shader=_EMPTY_FRAGMENT)
+        # A geometry shader changes what moderngl lets a program draw, so those are always compiled.
+        if geometry or not cache.load(self._program.glo, text):
+            self._program.release()
+            try:
+                self._program = gl.program(
+                    vertex_shader=vertex.text,
+                    fragment_shader=fragment.text,
+                    geometry_shader=geometry.text if geometry else None,
+                )
+            except moderngl.Error as error:
+                message = str(error)
+                culprit = next((s for s in sources if s.files[0].endswith(_stage_suffix(message))), vertex)
+                raise ShaderError(culprit.name_lines(message)) from error
+            if not geometry:
+                cache.store(self._program.glo, text)
+        self._vertex_array = gl.vertex_array(self._program, [])
+
+    def draw(
+        self,
+        framebuffer: moderngl.Framebuffer,
+        vertices: int | moderngl.Buffer,
+        buffers: Mapping[str, moderngl.Buffer],
+        parameters: Mapping | None = None,
+        mode: int = moderngl.TRIANGLES,
+        viewport: tuple[int, int, int, int] | None = None,
+        state: int = moderngl.NOTHING,
+        blend: tuple[int, int] | None = None,
+        depth_function: str = "<",
+    ) -> None:
+        """Draw into a framebuffer and order the writes.
+
+        ``vertices`` is their count, or a buffer of one indirect draw command (four uints).
+        ``blend`` are source and destination factors; state then must hold moderngl.BLEND.
+        """
+        self._bind(buffers, parameters)
+        gl = self.context.moderngl
+        framebuffer.use()
+        framebuffer.viewport = viewport or (0, 0, framebuffer.width, framebuffer.height)
+        gl.enable_only(state)
+        if blend is not None:
+            gl.blend_func = blend
+            gl.blend_equation = moderngl.FUNC_ADD
+        gl.depth_func = depth_function
+        if isinstance(vertices, moderngl.Buffer):
+            self._vertex_array.render_indirect(vertices, mode, count=1)
+        else:
+            self._vertex_array.render(mode, vertices=vertices)
+        self.context.barrier()
+
+    def release(self) -> None:
+        super().release()
+        self._vertex_array.release()
+        self._program.release()
+
+
+def _stage_suffix(message: str) -> str:
+    """The file suffix of the stage that a moderngl compile error speaks of."""
+    for stage, suffix in (("vertex_shader", ".vert"), ("fragment_shader", ".frag"), ("geometry_shader", ".geom")):
+        if stage in message:
+            return suffix
+    return ".vert"
+
+
+class ProgramLibrary:
+    """Compiled programs, each made once per set of defines."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self._cache = BinaryCache(context)
+        self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
+
+    def compute(self, path: str, defines: Mapping[str, object] | None = None) -> ComputeProgram:
+        """The compute program of a .comp file. Raises ShaderError with file and line."""
+        return self._get((path, tuple(sorted((defines or {}).items()))), lambda: self._compute(path, dict(defines or {})))
+
+    def draw(
+        self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None, geometry: str | None = None
+    ) -> DrawProgram:
+        """The program of a .vert, a .frag and maybe a .geom file. Raises ShaderError with file and line."""
+        key = (vertex, fragment, geometry, tuple(sorted((defines or {}).items())))
+        return self._get(key, lambda: self._draw(vertex, fragment, geometry, dict(defines or {})))
+
+    def _get(self, key: tuple, make):
+        if key not in self._programs:
+            start = time.perf_counter()
+            self._programs[key] = make()
+            log.debug("%s ready in %.3f s", key[0], time.perf_counter() - start)
+        return self._programs[key]
+
+    def _compute(self, path: str, defines: dict) -> ComputeProgram:
+        return ComputeProgram(self.context, self._cache, expand(path, defines))
+
+    def _draw(self, vertex: str, fragment: str, geometry: str | None, defines: dict) -> DrawProgram:
+        geometry_source = expand(geometry, defines) if geometry else None
+        return DrawProgram(
+            self.context, self._cache, expand(vertex, defines), expand(fragment, defines), geometry_source
+        )
+
+    def release(self) -> None:
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()

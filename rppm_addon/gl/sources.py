@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""GLSL sources: includes, records, defines, and line numbers that name our files."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from .records import Record
+
+SHADER_FOLDER = Path(__file__).resolve().parents[2] / "shaders"
+
+_INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>)\s*$')
+_VERSION = re.compile(r"^\s*#\s*version\b")
+_BLOCK = re.compile(r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*(\d+)\s*\)[\w\s]*?\bbuffer\s+(\w+)")
+_PARAMETERS = re.compile(r"layout\s*\(\s*std140\s*,\s*binding\s*=\s*0\s*\)\s*uniform\s+\w+\s*\{\s*(\w+)\s+\w+\s*;")
+_LOCAL_SIZE = re.compile(r"local_size_x\s*=\s*(\d+)")
+# "0:12(3): error" (Mesa), "0(12) : error" (NVIDIA), "ERROR: 0:12:" (AMD, Intel, glslang)
+_POSITION = re.compile(r"\b(\d+)(?::|\()(\d+)\b\)?")
+
+
+class ShaderError(Exception):
+    """A shader is wrong: a missing include or a compile error, by our file names and lines."""
+
+
+@dataclass
+class Source:
+    """An expanded shader: its text and the files that its #line numbers stand for."""
+
+    text: str
+    files: list[str]
+
+    @property
+    def blocks(self) -> dict[str, int]:
+        """Binding of each storage block by the block's name."""
+        return {name: int(binding) for binding, name in _BLOCK.findall(self.text)}
+
+    @property
+    def parameters(self) -> Record | None:
+        """The record of the parameter block (the uniform block at binding 0), if there is one."""
+        match = _PARAMETERS.search(self.text)
+        return Record.registry[match.group(1)] if match else None
+
+    @property
+    def local_size(self) -> int:
+        match = _LOCAL_SIZE.search(self.text)
+        if match is None:
+            raise ShaderError(f"{self.files[0]}: no local_size_x")
+        return int(match.group(1))
+
+    def name_lines(self, message: str) -> str:
+        """A driver's message with file numbers replaced by file names."""
+
+        def name(match: re.Match) -> str:
+            number = int(match.group(1))
+            return f"{self.files[number]}:{match.group(2)}" if number < len(self.files) else match.group(0)
+
+        return "\n".join(_POSITION.sub(name, line, count=1) for line in message.splitlines())
+
+
+def expand(path: str, defines: dict[str, object] | None = None) -> Source:
+    """Read a shader below the shader folder and resolve its includes.
+
+    ``#include "common/x.glsl"`` inserts a file once; ``#include <Ray>`` inserts the struct of the
+    record of that name once. Defines go after #version. Raises ShaderError.
+    """
+    files: list[str] = []
+    seen_records: set[str] = set()
+    lines: list[str] = []
+
+    def read(name: str, includer: str) -> None:
+        if name in files:
+            return
+        try:
+            text = (SHADER_FOLDER / name).read_text(encoding="utf-8")
+        except OSError as error:
+            raise ShaderError(f"{includer}: cannot include {name} ({error.strerror})") from error
+        number = len(files)
+        files.append(name)
+        if number:
+            lines.append(f"#line 1 {number}")
+        for line_number, line in enumerate(text.splitlines(), 1):
+            include = _INCLUDE.match(line)
+            if include and include.group(1):
+                read(include.group(1), f"{name}:{line_number}")
+                lines.append(f"#line {line_number + 1} {number}")
+            elif include:
+                record = include.group(2)
+                if record not in Record.registry:
+                    raise ShaderError(f"{name}:{line_number}: there is no record {record}")
+                lines.append("" if record in seen_records else Record.registry[record].glsl())
+                seen_records.add(record)
+            elif _VERSION.match(line):
+                lines.append(line)
+                lines.extend(f"#define {key} {value}" for key, value in (defines or {}).items())
+                lines.append(f"#line {line_number + 1} {number}")
+            else:
+                lines.append(line)
+
+    read(path, path)
+    return Source("\n".join(lines) + "\n", files)

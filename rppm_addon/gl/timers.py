@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seconds spent in each stage."""
+
+import time
+from contextlib import contextmanager
+
+from .context import Context
+
+
+class StageTimers:
+    """Sums device seconds by stage name.
+
+    On a GPU these are GL timer queries, read when they are asked for. On a software driver such
+    queries measure nothing (the work runs elsewhere), so the stage is finished and the clock read.
+    Stages do not nest.
+    """
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._seconds: dict[str, float] = {}
+        self._pending: list[tuple[str, object]] = []
+
+    @contextmanager
+    def stage(self, name: str):
+        """Time the device work given within the with block."""
+        if self._context.is_software:
+            start = time.perf_counter()
+            yield
+            self._context.finish()
+            self._seconds[name] = self._seconds.get(name, 0.0) + time.perf_counter() - start
+            return
+        query = self._context.moderngl.query(time=True)
+        with query:
+            yield
+        self._pending.append((name, query))
+        if len(self._pending) >= 512:
+            self._collect()
+
+    def _collect(self) -> None:
+        for name, query in self._pending:
+            self._seconds[name] = self._seconds.get(name, 0.0) + query.elapsed * 1e-9
+        self._pending.clear()
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Seconds so far by stage."""
+        self._collect()
+        return dict(self._seconds)
+
+    def reset(self) -> None:
+        self._collect()
+        self._seconds.clear()

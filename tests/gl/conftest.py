@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One OpenGL context for all GL tests."""
+
+import pytest
+
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+
+
+@pytest.fixture(scope="session")
+def context():
+    context = Context.create()
+    yield context
+    context.release()
+
+
+@pytest.fixture(scope="session")
+def library(context):
+    library = ProgramLibrary(context)
+    yield library
+    library.release()
