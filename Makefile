@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+.DEFAULT_GOAL := help
+.PHONY: help setup render sample test lint pairs clean
+RPPM = .venv/bin/rppm
+BLENDER_PYTHON = .venv/bin/python
+SCENES ?= ../shared/scenes
+RESOLUTION ?= 256x192
+SECONDS_EACH ?= 60
+
+help: ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
+
+setup: ## Install what is missing: system packages (Debian, as root) and .venv
+	@tools/set_up.sh
+
+render: setup ## Render the sample scene inside Blender with RPPM to out/ (PNG and EXR)
+	$(RPPM) render docs/samples/first_light.blend -o out/first_light.exr -o out/first_light.png --json out/first_light.json
+
+sample: setup ## Build docs/samples/first_light.blend anew
+	$(BLENDER_PYTHON) docs/samples/first_light.py docs/samples/first_light.blend
+
+test: setup ## Run the tests
+	timeout --kill-after=10 4500 .venv/bin/python -m pytest
+
+lint: setup ## Check Python, imports, licence lines and shaders
+	.venv/bin/ruff check .
+	.venv/bin/python tools/lint.py
+
+pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
+	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
+
+clean: ## Remove what was made: out/, caches (.venv stays)
+	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info
+	find rppm_addon tests tools docs -name __pycache__ -type d -prune -exec rm -rf {} +
