@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picture files: multilayer EXR written and read, PNG written.
+
+Arrays have row 0 at the bottom, as frames do; files have the top row first.
+"""
+
+import contextlib
+import os
+import struct
+import tempfile
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .scene.errors import RppmError
+
+
+class PictureError(RppmError):
+    """A picture file cannot be written or read."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where the pixels of a picture lie in the whole frame."""
+
+    width: int
+    """Pixels of the whole frame."""
+    height: int
+    x: int = 0
+    """Column of the picture's left edge in the frame."""
+    y: int = 0
+    """Row of the picture's bottom edge in the frame, row 0 at the bottom."""
+
+
+_AXES = {1: "Z", 3: "XYZ"}
+
+
+def write_exr(
+    path: str | Path,
+    combined: np.ndarray,
+    layers: Mapping[str, np.ndarray] | None = None,
+    metadata: Mapping[str, object] | None = None,
+    placement: Placement | None = None,
+) -> None:
+    """Write a float32 EXR: ``combined`` as R, G, B, A, and each layer as Name.Z or Name.X, .Y, .Z.
+
+    Args:
+        path: the file; its folder is made. The file is written beside and renamed, so that a
+            reader never sees half of it.
+        combined: (H, W, 4), scene-linear Rec.709, premultiplied alpha.
+        layers: (H, W) or (H, W, 3) arrays by layer name.
+        metadata: stored as text attributes ``rppm.NAME``.
+        placement: where a cropped picture lies in its frame; None is the whole frame.
+
+    Raises:
+        PictureError: the file cannot be written.
+    """
+    import OpenEXR  # late: the file format is not needed to import the engine
+
+    height, width = combined.shape[:2]
+    place = placement or Placement(width, height)
+    channels = dict(zip("RGBA", _planes(combined)))
+    for name, array in (layers or {}).items():
+        planes = _planes(array)
+        channels.update({f"{name}.{axis}": plane for axis, plane in zip(_AXES[len(planes)], planes)})
+    top = place.height - place.y - height
+    header = {
+        "compression": OpenEXR.ZIP_COMPRESSION,
+        "type": OpenEXR.scanlineimage,
+        "dataWindow": ((place.x, top), (place.x + width - 1, top + height - 1)),
+        "displayWindow": ((0, 0), (place.width - 1, place.height - 1)),
+        "colorInteropID": "lin_rec709_scene",
+        **{f"rppm.{name}": str(value) for name, value in (metadata or {}).items()},
+    }
+    with _renamed_when_whole(path) as temporary:
+        OpenEXR.File(header, channels).write(temporary)
+
+
+@dataclass
+class ExrPicture:
+    """What an EXR file holds; arrays are float32, row 0 at the bottom."""
+
+    channels: dict[str, np.ndarray]
+    """(H, W) by channel name."""
+    metadata: dict[str, str]
+    """The ``rppm.`` attributes without that prefix."""
+    placement: Placement
+
+    @property
+    def combined(self) -> np.ndarray:
+        """(H, W, 4): R, G, B, A."""
+        return np.stack([self.channels[name] for name in "RGBA"], axis=-1)
+
+    def layer(self, name: str) -> np.ndarray:
+        """(H, W) of a layer with Z alone, else (H, W, 3)."""
+        if f"{name}.X" not in self.channels:
+            return self.channels[f"{name}.Z"]
+        return np.stack([self.channels[f"{name}.{axis}"] for axis in "XYZ"], axis=-1)
+
+
+def read_exr(path: str | Path) -> ExrPicture:
+    """Read an EXR file of one part. Raises PictureError when it is none."""
+    import OpenEXR
+
+    try:
+        with OpenEXR.File(str(path), separate_channels=True) as file:
+            header = dict(file.header())
+            channels = {name: channel.pixels[::-1].astype(np.float32) for name, channel in file.channels().items()}
+    except (RuntimeError, OSError, ValueError, TypeError) as error:
+        raise PictureError(f"{path} cannot be read as EXR ({error})") from error
+    (left, top), (_, bottom) = header["dataWindow"]
+    (frame_left, frame_top), (frame_right, frame_bottom) = header["displayWindow"]
+    return ExrPicture(
+        channels,
+        {name[5:]: value for name, value in header.items() if name.startswith("rppm.")},
+        Placement(
+            int(frame_right - frame_left + 1),
+            int(frame_bottom - frame_top + 1),
+            int(left - frame_left),
+            int(frame_bottom - bottom),
+        ),
+    )
+
+
+def standard_view(combined: np.ndarray) -> np.ndarray:
+    """The picture as Blender's Standard view shows it on an sRGB display.
+
+    Args:
+        combined: (H, W, 3 or 4) scene-linear Rec.709; alpha is premultiplied.
+
+    Returns:
+        uint8 of the same shape: clipped at 1, sRGB transfer curve, alpha no longer premultiplied.
+    """
+    color = np.nan_to_num(np.asarray(combined, np.float32)[..., :3], nan=0.0, posinf=1.0, neginf=0.0)
+    alpha = combined[..., 3:].clip(0.0, 1.0)
+    if alpha.shape[-1]:
+        color = np.divide(color, alpha, out=color.copy(), where=(alpha > 0.0) & (alpha < 1.0))
+    color = color.clip(0.0, 1.0)
+    encoded = np.where(color <= 0.0031308, color * 12.92, 1.055 * color ** (1 / 2.4) - 0.055)
+    return np.rint(np.concatenate([encoded, alpha], axis=-1) * 255.0).astype(np.uint8)
+
+
+def write_png(path: str | Path, pixels: np.ndarray) -> None:
+    """Write (H, W, 3 or 4) uint8, sRGB, straight alpha, row 0 at the bottom. Raises PictureError."""
+    height, width, count = pixels.shape
+    rows = np.zeros((height, 1 + width * count), np.uint8)  # column 0 says: no filter
+    rows[:, 1:] = pixels[::-1].reshape(height, -1)
+    chunks = [
+        (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[count], 0, 0, 0)),
+        (b"sRGB", b"\0"),
+        (b"IDAT", zlib.compress(rows.tobytes(), 6)),
+        (b"IEND", b""),
+    ]
+    with _renamed_when_whole(path) as temporary, open(temporary, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for kind, data in chunks:
+            file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+
+
+def _planes(array: np.ndarray) -> list[np.ndarray]:
+    """Contiguous float32 channels with the top row first."""
+    flipped = np.atleast_3d(np.asarray(array, np.float32))[::-1]
+    return [np.ascontiguousarray(flipped[..., index]) for index in range(flipped.shape[-1])]
+
+
+@contextlib.contextmanager
+def _renamed_when_whole(path: str | Path) -> Iterator[str]:
+    """A temporary name in the folder of ``path`` that becomes ``path`` when all went well."""
+    path = Path(path)
+    temporary = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+        yield temporary
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(temporary, 0o666 & ~mask)
+        os.replace(temporary, path)
+    except (OSError, RuntimeError) as error:
+        raise PictureError(f"{path} cannot be written ({error}); choose another place with -o") from error
+    finally:
+        if temporary is not None and os.path.exists(temporary):
+            os.unlink(temporary)
