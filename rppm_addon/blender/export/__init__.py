@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's evaluated scene to a Scene."""
+
+from collections.abc import Callable
+
+import bpy
+
+from ...scene import Scene
+from ...scene.errors import SceneError
+from .camera import export_camera
+from .images import ImageTable
+from .objects import ObjectExporter
+from .report import ExportStopped, Report
+from .settings import export_settings
+from .world import export_world
+
+__all__ = ["ExportStopped", "SceneError", "export_scene"]
+
+
+def export_scene(
+    depsgraph: bpy.types.Depsgraph,
+    engine: bpy.types.RenderEngine | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> Scene:
+    """Everything a render of the depsgraph's scene and view layer needs, copied out of Blender.
+
+    engine: shows the progress and is asked for test_break; should_stop: asked as well.
+    Raises SceneError when there is nothing to render from, ExportStopped when told to stop.
+    """
+
+    def stop() -> bool:
+        return (engine is not None and engine.test_break()) or (should_stop is not None and should_stop())
+
+    def show(text: str) -> None:
+        if engine is not None:
+            engine.update_stats("", text)
+
+    report = Report(stop, show)
+    report.progress("Exporting the scene")
+    source = depsgraph.scene_eval
+    images = ImageTable()
+    scene = Scene(camera=export_camera(source, depsgraph, report))
+    scene.settings = export_settings(source)
+    scene.settings.validate()
+    if hasattr(source, "cycles"):
+        scene.exposure = source.cycles.film_exposure
+    ObjectExporter(scene, report, images).export(depsgraph)
+    scene.world = export_world(source.world, report, images)
+    scene.images = images.images
+    scene.warnings = report.warnings
+    return scene

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Following links of a node tree through reroutes, muted nodes and groups."""
+
+from dataclasses import dataclass
+
+import bpy
+
+Path = tuple[bpy.types.Node, ...]
+"""The group nodes that were entered on the way to a node, outermost first."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """The output that feeds an input, and the groups it lies in."""
+
+    node: bpy.types.Node
+    output: bpy.types.NodeSocket
+    path: Path
+
+
+@dataclass(frozen=True)
+class Unlinked:
+    """Nothing feeds an input: the socket whose own value counts."""
+
+    socket: bpy.types.NodeSocket
+
+
+def find_source(socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
+    """What feeds an input socket of a node that lies in the groups of ``path``."""
+    start = socket
+    while True:
+        link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
+        if link is None:
+            # A reroute and a muted node have no value that the user sees: the reader's own counts.
+            return Unlinked(start if socket.node.type == "REROUTE" else socket)
+        node, output = link.from_node, link.from_socket
+        if node.type == "REROUTE":
+            socket = node.inputs[0]
+        elif node.mute:
+            inner = next((inner for inner in node.internal_links if inner.to_socket == output), None)
+            if inner is None:
+                return Unlinked(start)
+            socket = inner.from_socket
+        elif node.type == "GROUP_INPUT" and path:
+            outer = next((outer for outer in path[-1].inputs if outer.identifier == output.identifier), None)
+            if outer is None:
+                return Unlinked(start)
+            socket, path = outer, path[:-1]
+            start = socket
+        elif node.type == "GROUP":
+            inside = _group_output(node, output)
+            if inside is None:
+                return Unlinked(start)
+            socket, path = inside, (*path, node)
+            start = socket
+        else:
+            return Source(node, output, path)
+
+
+def _group_output(group: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:
+    if group.node_tree is None:
+        return None
+    for node in group.node_tree.nodes:
+        if node.type == "GROUP_OUTPUT" and node.is_active_output:
+            return next((socket for socket in node.inputs if socket.identifier == output.identifier), None)
+    return None
+
+
+def named_input(node: bpy.types.Node, *names: str) -> bpy.types.NodeSocket | None:
+    """The first input of the node that has one of the names and is in use.
+
+    Names of sockets changed between Blender versions; indices change more often.
+    """
+    for name in names:
+        for socket in node.inputs:
+            if socket.name == name and socket.enabled:
+                return socket
+    return None

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Matrices of objects, made usable."""
+
+import numpy as np
+
+FLATTEST = 1e-6
+"""Least ratio of the smallest scale of a placement to its largest."""
+
+
+def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Make placements invertible where that leaves a picture that makes sense.
+
+    matrices: (n, 4, 4) float64, object to world. Returns the matrices, where a placement flattened
+    along one axis has a scale of FLATTEST there, and (n,) bool, false where a matrix is not finite
+    or leaves less than a surface (two axes without scale).
+    """
+    finite = np.isfinite(matrices).all(axis=(1, 2))
+    result = np.where(finite[:, None, None], matrices, np.eye(4))
+    result[:, 3] = (0.0, 0.0, 0.0, 1.0)
+    linear = result[:, :3, :3]
+    size = np.abs(linear).max(axis=(1, 2))
+    usable = finite & (size > 0.0)
+    normalised = linear / np.where(size > 0.0, size, 1.0)[:, None, None]
+    # A cheap test first: nearly all placements are far from singular.
+    doubtful = np.flatnonzero(usable & (np.abs(np.linalg.det(normalised)) < 1e-4))
+    for index in doubtful:
+        left, scales, right = np.linalg.svd(normalised[index])
+        least = scales[0] * FLATTEST
+        if scales[1] < least:
+            usable[index] = False
+        elif scales[2] < least:
+            scales[2] = least
+            result[index, :3, :3] = (left * scales) @ right * size[index]
+    return result, usable
+
+
+def rigid(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
+    """The matrix (4, 4) without scale, shear and mirroring, keeping -Z and then Y.
+
+    Returns the rigid motion, and whether the matrix was mirrored. Raises ValueError when the
+    matrix is not finite or singular.
+    """
+    linear = matrix[:3, :3]
+    if not np.isfinite(matrix).all() or abs(np.linalg.det(linear)) <= 1e-12 * np.abs(linear).max() ** 3:
+        raise ValueError("the matrix is singular")
+    backward = linear[:, 2] / np.linalg.norm(linear[:, 2])
+    up = linear[:, 1] - backward * (linear[:, 1] @ backward)
+    up /= np.linalg.norm(up)
+    result = np.eye(4)
+    result[:3, 0], result[:3, 1], result[:3, 2] = np.cross(up, backward), up, backward
+    result[:3, 3] = matrix[:3, 3]
+    return result, bool(np.linalg.det(linear) < 0.0)

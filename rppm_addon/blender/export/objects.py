@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The objects of a depsgraph, instances included: meshes, placements and lights."""
+
+import bpy
+import numpy as np
+
+from ...scene import Instance, Mesh, Scene
+from .images import ImageTable
+from .lights import export_light
+from .materials import MaterialTable
+from .matrices import usable_matrices
+from .meshes import export_mesh
+from .report import Report
+
+CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
+"""Object types that are rendered as the mesh that Blender makes of them."""
+UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
+RAY_VISIBILITY = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
+
+
+class ObjectExporter:
+    """Fills a scene's meshes, instances, materials and lights from a depsgraph."""
+
+    def __init__(self, scene: Scene, report: Report, images: ImageTable) -> None:
+        self._scene = scene
+        self._report = report
+        self._images = images
+        self._materials = MaterialTable(report, images)
+        self._meshes: dict[int, int | None] = {}
+        self._placed: list[tuple[Instance, np.ndarray]] = []
+        self._unconverted: list[tuple[bpy.types.Object, np.ndarray]] = []
+        self._converted: set[tuple[int, bytes]] = set()
+
+    def export(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Read all instances; raises ExportStopped when the user wants no more."""
+        for number, instance in enumerate(depsgraph.object_instances):
+            if number % 256 == 0:
+                self._report.progress(f"Exporting objects ({number})")
+            if not (instance.show_self or instance.show_particles):
+                continue
+            # Only valid inside the loop: Blender reuses the memory for the next instance.
+            matrix = np.array(instance.matrix_world, np.float64)
+            self._export_instance(instance.object, matrix)
+        self._convert(depsgraph)
+        self._keep_usable()
+        self._scene.materials = self._materials.materials
+
+    def _export_instance(self, source: bpy.types.Object, matrix: np.ndarray) -> None:
+        if source.type == "LIGHT":
+            if not np.isfinite(matrix).all():
+                self._report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
+                return
+            light = export_light(source, matrix, self._report, self._images)
+            if light is not None:
+                self._scene.lights.append(light)
+            return
+        if source.type in UNSUPPORTED_TYPES:
+            what = UNSUPPORTED_TYPES[source.type]
+            self._report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
+            return
+        if source.type not in CONVERTED_TYPES and source.type != "MESH":
+            return
+        if not self._is_seen(source):
+            return
+        if source.type != "MESH":
+            self._unconverted.append((source.original, matrix))
+            return
+        original = source.original
+        if original.type in CONVERTED_TYPES:
+            self._converted.add((original.as_pointer(), matrix.tobytes()))
+        self._place(source, source.data, matrix)
+
+    def _place(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, matrix: np.ndarray) -> None:
+        index = self._mesh_index(source, mesh)
+        if index is not None:
+            instance = Instance(index, matrix, self._material_slots(source), source.name, source.pass_index)
+            self._placed.append((instance, matrix))
+
+    def _convert(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Place the curves, texts, surfaces and metaballs whose mesh did not come as an instance.
+
+        Blender shows the mesh of such an object as an instance beside it, but not where particles
+        or faces multiply the object.
+        """
+        for original, matrix in self._unconverted:
+            if (original.as_pointer(), matrix.tobytes()) in self._converted:
+                continue
+            source = original.evaluated_get(depsgraph)
+            self._place(source, None, matrix)
+
+    def _is_seen(self, source: bpy.types.Object) -> bool:
+        flags = [getattr(source, name) for name in RAY_VISIBILITY]
+        if all(flags):
+            return True
+        if not any(flags):
+            return False
+        self._report.warn(f'Object "{source.name}": its ray visibility is not rendered yet; all rays see it')
+        return True
+
+    def _mesh_index(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None) -> int | None:
+        """Index of a mesh, exported now if it is new; None when it has no triangles.
+
+        mesh: None lets Blender make one of the object.
+        """
+        # Evaluated data is shared exactly when it is the same block of memory: session_uid is also
+        # shared by copies that different modifiers made different.
+        key = (source if mesh is None else mesh).as_pointer()
+        if key not in self._meshes:
+            self._report.progress(f"Exporting {source.name}")
+            exported = self._read_converted(source) if mesh is None else export_mesh(mesh, source.name, self._report)
+            self._meshes[key] = None if exported is None else len(self._scene.meshes)
+            if exported is not None:
+                self._scene.meshes.append(exported)
+        return self._meshes[key]
+
+    def _read_converted(self, source: bpy.types.Object) -> Mesh | None:
+        try:
+            mesh = source.to_mesh()
+        except RuntimeError:  # an object without geometry
+            return None
+        try:
+            return None if mesh is None else export_mesh(mesh, source.name, self._report)
+        finally:
+            source.to_mesh_clear()
+
+    def _material_slots(self, source: bpy.types.Object) -> list[int]:
+        slots = [slot.material for slot in source.material_slots]
+        made = list(source.data.materials)
+        # Geometry nodes may give the evaluated data slots that the object does not have.
+        slots += made[len(slots) :]
+        return [self._materials.index(material) for material in slots or [None]]
+
+    def _keep_usable(self) -> None:
+        if not self._placed:
+            return
+        matrices, usable = usable_matrices(np.stack([matrix for _, matrix in self._placed]))
+        lost: dict[str, int] = {}
+        for (instance, _), matrix, good in zip(self._placed, matrices, usable, strict=True):
+            if good:
+                instance.matrix = matrix
+                self._scene.instances.append(instance)
+            else:
+                lost[instance.object_name] = lost.get(instance.object_name, 0) + 1
+        for name, count in lost.items():
+            self._report.warn(
+                f'Object "{name}": {count} placements have no extent (scale 0) or are not finite and were left out; '
+                "give them a scale"
+            )
