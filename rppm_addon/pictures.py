@@ -160,6 +160,16 @@ def write_png(path: str | Path, pixels: np.ndarray) -> None:
             file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
 
 
+def make_folder(path: Path) -> None:
+    """Make the folder that ``path`` is to lie in, and see that it can be written to. Raises PictureError."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not os.access(path.parent, os.W_OK):
+            raise PermissionError(f"no permission to write in {path.parent}")
+    except OSError as error:
+        raise PictureError(f"{path} cannot be written ({error}); choose another place") from error
+
+
 def _planes(array: np.ndarray) -> list[np.ndarray]:
     """Contiguous float32 channels with the top row first."""
     flipped = np.atleast_3d(np.asarray(array, np.float32))[::-1]

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rppm program: render and export from the command line, and what the device can do."""
+
+import argparse
+import dataclasses
+import importlib.metadata
+import json
+import logging
+import os
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from .commands.data_paths import split_assignment
+from .commands.interruption import Interruption
+from .commands.progress_bar import BarLogHandler, ProgressBar
+from .commands.recorder import RenderRecorder, RenderRequest, apply_settings
+from .pictures import PictureError, make_folder
+from .scene import RenderSettings
+from .scene.errors import RppmError, SettingsError
+
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as shells have it."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the program; returns the exit status. Errors are one line on standard error."""
+    options = _parser().parse_args(arguments)
+    bar = ProgressBar(sys.stderr)
+    handler = BarLogHandler(bar, sys.stderr)
+    handler.setFormatter(logging.Formatter("rppm: %(message)s"))
+    logging.basicConfig(level=logging.DEBUG if options.debug else logging.WARNING, handlers=[handler], force=True)
+    if options.device is not None:
+        os.environ["RPPM_DEVICE"] = options.device  # the engine inside Blender reads it too
+    try:
+        return options.run(options, bar)
+    except RppmError as error:
+        message = str(error)
+        status = 1
+    except KeyboardInterrupt:
+        message, status = "interrupted", INTERRUPTED
+    except Exception as error:  # the last floor: a user gets a line, a developer --debug
+        message = f"unexpected {type(error).__name__}: {error}; run again with --debug and report it"
+        status = 1
+    bar.clear()
+    if options.debug:
+        traceback.print_exc()
+    sys.stderr.write(f"rppm: {' '.join(message.split())}\n")
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument("--debug", action="store_true", help="show tracebacks and everything that is logged")
+    common.add_argument("--device", metavar="N", help="EGL device number; RPPM_DEVICE does the same")
+    scene = argparse.ArgumentParser(add_help=False)
+    scene.add_argument("--resolution", type=_resolution, metavar="WxH", help="size of the whole frame in pixels")
+    scene.add_argument("--frame", type=int, metavar="N", help="frame number of a .blend file")
+    scene.add_argument(
+        "--set",
+        dest="values",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="rppm.NAME for a render setting (rppm.alpha=0.6); in a .blend file any data path below the scene or "
+        "bpy.data (render.film_transparent=true, 'objects[\"Lamp\"].data.energy=50'); may be repeated",
+    )
+
+    parser = argparse.ArgumentParser(prog="rppm", description="Progressive photon mapping by rasterization.")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    render = commands.add_parser(
+        "render",
+        parents=[scene, common],
+        help="render a .blend file or a saved scene",
+        description="Render a .blend file inside Blender (the bpy module), or a scene saved by rppm export without "
+        "Blender. --seconds and --snapshots count from the moment the renderer is given the scene.",
+    )
+    render.add_argument("file", type=Path, metavar="FILE", help="a .blend file or a .npz of rppm export")
+    render.add_argument(
+        "-o",
+        "--output",
+        type=_picture_path,
+        action="append",
+        required=True,
+        metavar="PICTURE",
+        help=".exr (Combined as R, G, B, A, scene-linear; Depth and Normal as layers) or .png (of a .blend file by the "
+        "scene's view transform, of a saved scene by Standard); may be repeated",
+    )
+    limit = render.add_mutually_exclusive_group()
+    limit.add_argument("--iterations", type=_positive_integer, metavar="N", help="number of iterations")
+    limit.add_argument("--seconds", type=_positive_number, metavar="S", help="render so long instead")
+    render.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of an iteration")
+    render.add_argument(
+        "--snapshots",
+        type=_snapshot_marks,
+        default=(),
+        metavar="S,S,...",
+        help="write an EXR at each of these seconds, named PICTURE_Ss.exr; without --iterations and --seconds the "
+        "render lasts until the last",
+    )
+    render.add_argument("--json", type=Path, metavar="FILE", help="write what happened as JSON")
+    render.set_defaults(run=_render)
+
+    export = commands.add_parser(
+        "export", parents=[scene, common], help="save the scene of a .blend file for machines without Blender"
+    )
+    export.add_argument("file", type=Path, metavar="FILE.blend")
+    export.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE.npz")
+    export.set_defaults(run=_export)
+
+    info = commands.add_parser("info", parents=[common], help="show the device, its driver and limits, what is missing")
+    info.set_defaults(run=_info)
+    return parser
+
+
+def _render(options: argparse.Namespace, bar: ProgressBar) -> int:
+    settings, data_values = _split_values(options.values)
+    if options.iterations is not None:
+        settings["iterations"] = options.iterations
+    if options.photons is not None:
+        settings["photons"] = options.photons
+    apply_settings(RenderSettings(), settings)  # a wrong value is better told now than after Blender's start
+    for path in options.output:
+        make_folder(path)
+    seconds = options.seconds
+    if seconds is None and options.iterations is None and options.snapshots:
+        seconds = options.snapshots[-1]
+    request = RenderRequest(options.output, settings, seconds, options.snapshots)
+    is_blend = _is_blend(options.file)
+    with Interruption() as interruption:
+        recorder = RenderRecorder(request, bar, lambda: interruption.asked, write_png_file=not is_blend)
+        report: dict[str, object] = {"scene": str(options.file)}
+        if is_blend:
+            from .commands import blend_file
+
+            blend_request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
+            blender_report = blend_file.render_blend_file(blend_request, recorder, show_output=options.debug)
+            report["blender"] = dataclasses.asdict(blender_report)
+        else:
+            from .commands.saved_scene import render_saved_scene
+
+            _refuse_blend_options(options, data_values)
+            render_saved_scene(options.file, recorder, options.resolution)
+    bar.clear()
+    if options.json is not None:
+        _write_json(options.json, report | recorder.report())
+    missed = request.snapshots[len(recorder.snapshots_written) :]
+    if missed:
+        marks = ", ".join(f"{mark:g}" for mark in missed)
+        sys.stderr.write(f"rppm: the render ended before the snapshots at {marks} s\n")
+    print(recorder.summary())
+    if interruption.asked:
+        sys.stderr.write("rppm: interrupted; the files hold what was done until then\n")
+        return INTERRUPTED
+    return 0
+
+
+def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
+    from .commands import blend_file
+    from .scene import save_scene
+
+    if not _is_blend(options.file):
+        raise SettingsError(f"{options.file} is no .blend file; only those can be exported")
+    settings, data_values = _split_values(options.values)
+    apply_settings(RenderSettings(), settings)
+    make_folder(options.output)
+    request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
+    scene = blend_file.export_blend_file(request, show_output=options.debug)
+    scene.settings = apply_settings(scene.settings, settings)
+    try:
+        save_scene(scene, options.output)
+    except OSError as error:
+        raise PictureError(f"{options.output} cannot be written ({error}); choose another place with -o") from error
+    bar.clear()
+    counts = f"{scene.triangle_count} triangles, {len(scene.lights)} lights, {len(scene.materials)} materials"
+    print(f"{counts}: {options.output}")
+    return 0
+
+
+def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
+    from .gl.context import device_information
+
+    try:
+        blender = importlib.metadata.version("bpy")
+    except importlib.metadata.PackageNotFoundError:
+        blender = "no bpy module: saved scenes only (make setup, or pip install bpy==5.0.1)"
+    print(f"Blender  {blender}")
+    device = device_information(options.device)
+    print(f"Device   {device.name}\nDriver   {device.driver}\nOpenGL   {device.version}")
+    for name, value in device.limits.items():
+        print(f"  {name} {value}")
+    print("Missing  " + ("nothing" if not device.missing else "\n         ".join(device.missing)))
+    return 0
+
+
+def _is_blend(path: Path) -> bool:
+    """Whether to hand the file to Blender; raises SettingsError when it is neither kind."""
+    suffix = path.suffix.lower()
+    if suffix not in (".blend", ".npz"):
+        raise SettingsError(f"{path} is neither a .blend file nor a saved scene (.npz)")
+    return suffix == ".blend"
+
+
+def _split_values(values: list[str]) -> tuple[dict[str, object], list[tuple[str, str]]]:
+    """Split --set into render settings by name, and data paths of a .blend file."""
+    settings: dict[str, object] = {}
+    data_values = []
+    for text in values:
+        path, value = split_assignment(text)
+        if path.startswith("rppm."):
+            settings[path.removeprefix("rppm.")] = value
+        else:
+            data_values.append((path, value))
+    return settings, data_values
+
+
+def _refuse_blend_options(options: argparse.Namespace, data_values: list[tuple[str, str]]) -> None:
+    if options.frame is not None:
+        raise SettingsError("--frame needs a .blend file; a saved scene holds one frame")
+    if data_values:
+        raise SettingsError(f"--set {data_values[0][0]} needs a .blend file; a saved scene takes rppm.NAME only")
+
+
+def _write_json(path: Path, report: dict[str, object]) -> None:
+    make_folder(path)
+    try:
+        path.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise PictureError(f"{path} cannot be written ({error}); choose another place with --json") from error
+
+
+def _checked(convert: Callable, accept: Callable, what: str) -> Callable:
+    """An argparse type that converts, checks and says what was wanted."""
+
+    def parse(text: str):
+        try:
+            value = convert(text)
+        except ValueError:
+            value = None
+        if value is None or not accept(value):
+            raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
+        return value
+
+    return parse
+
+
+def _two_integers(text: str) -> tuple[int, int]:
+    width, height = text.lower().split("x")
+    return int(width), int(height)
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(float(item) for item in text.split(","))
+
+
+_positive_integer = _checked(int, lambda value: value > 0, "a whole number above 0")
+_positive_number = _checked(float, lambda value: 0.0 < value < 1e9, "a number of seconds above 0")
+_resolution = _checked(
+    _two_integers, lambda size: all(1 <= side <= 65536 for side in size), "a resolution such as 640x480"
+)
+_snapshot_marks = _checked(
+    _numbers,
+    lambda marks: all(0.0 < mark < 1e9 for mark in marks) and list(marks) == sorted(set(marks)),
+    "an ascending list of seconds such as 2,5,10",
+)
+_picture_path = _checked(Path, lambda path: path.suffix in (".exr", ".png"), "the name of an .exr or .png file")

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Follows one render: the clock, the limits asked for, snapshots, progress, and the files."""
+
+import dataclasses
+import enum
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..pictures import Placement, standard_view, write_exr, write_png
+from ..scene import Camera, RenderSettings, Scene
+from ..session.observers import RenderObserver
+from .progress_bar import ProgressBar
+
+if TYPE_CHECKING:
+    from ..session.renderer import Frame, Progress, RenderResult
+
+_NO_ITERATION_LIMIT = 1 << 30
+_LEAST_TIME_LIMIT = 1e-3
+
+
+@dataclass
+class RenderRequest:
+    """What the command line asks of a render."""
+
+    outputs: list[Path]
+    """.exr and .png files to write."""
+    settings: dict[str, object] = field(default_factory=dict)
+    """Values by name of RenderSettings, over those of the scene."""
+    seconds: float | None = None
+    """Render so long, whatever the number of iterations."""
+    snapshots: Sequence[float] = ()
+    """Ascending seconds at which an EXR is written."""
+
+    def snapshot_path(self, seconds: float) -> Path:
+        """The file of a snapshot: the first output with the mark in its name."""
+        return self.outputs[0].with_name(f"{self.outputs[0].stem}_{seconds:g}s.exr")
+
+
+class RenderRecorder(RenderObserver):
+    """Applies a request to a render and keeps what is worth reporting.
+
+    The clock of --seconds and --snapshots starts with on_scene, so that making the renderer,
+    loading programs and building the structure count.
+    """
+
+    def __init__(
+        self,
+        request: RenderRequest,
+        bar: ProgressBar,
+        should_stop: Callable[[], bool],
+        write_png_file: bool,
+    ) -> None:
+        self.request = request
+        self.result: RenderResult | None = None
+        self.error: str | None = None
+        self.scene_time = 0.0
+        """time.perf_counter() at which the scene was there; 0 before."""
+        self.renderer_seconds = 0.0
+        """From the scene to the renderer, part of ``seconds``."""
+        self.seconds = 0.0
+        """From the scene to the result."""
+        self.snapshots_written: list[dict[str, object]] = []
+        self.scene: Scene | None = None
+        self._bar = bar
+        self._should_stop = should_stop
+        self._write_png_file = write_png_file
+        self._progress: Progress | None = None
+
+    def on_scene(self, scene: Scene) -> bool:
+        self.scene_time = time.perf_counter()
+        self.scene = scene
+        scene.settings = apply_settings(scene.settings, self.request.settings)
+        self._bar.show(0.0, "preparing the device")
+        return True
+
+    def on_start(self, scene: Scene) -> None:
+        self.renderer_seconds = time.perf_counter() - self.scene_time
+        self.snapshots = tuple(max(mark - self.renderer_seconds, 0.0) for mark in self.request.snapshots)
+        if self.request.seconds is not None:
+            limit = max(self.request.seconds - self.renderer_seconds, _LEAST_TIME_LIMIT)
+            scene.settings = dataclasses.replace(scene.settings, time_limit=limit, iterations=_NO_ITERATION_LIMIT)
+        self._bar.show(0.0, "loading programs, building the structure")
+
+    def on_progress(self, progress: "Progress") -> None:
+        self._progress = progress
+        words = f"iteration {progress.iteration}"
+        fraction = progress.fraction
+        elapsed = time.perf_counter() - self.scene_time
+        if self.request.seconds is not None:
+            fraction = elapsed / self.request.seconds
+        else:
+            words += f" of {progress.iterations}"
+        self._bar.show(fraction, f"{words}, {count_text(progress.photons)} photons, {elapsed:.1f} s")
+
+    def should_stop(self) -> bool:
+        return self._should_stop()
+
+    def on_snapshot(self, seconds: float, frame: "Frame", scene: Scene) -> None:
+        mark = self.request.snapshots[len(self.snapshots_written)]
+        path = self.request.snapshot_path(mark)
+        progress = self._progress
+        entry: dict[str, object] = {
+            "mark": mark,
+            "seconds": time.perf_counter() - self.scene_time,
+            "iterations": progress.iteration if progress else 0,
+            "photons": progress.photons if progress else 0,
+            "file": str(path),
+        }
+        _write_frame(path, frame, scene.camera, {key: entry[key] for key in ("seconds", "iterations", "photons")})
+        self.snapshots_written.append(entry)
+
+    def on_finish(self, result: "RenderResult", scene: Scene) -> None:
+        self.seconds = time.perf_counter() - self.scene_time
+        self.result = result
+
+    def on_error(self, text: str) -> None:
+        self.error = text
+
+    def write_files(self) -> None:
+        """Write the outputs of a finished render. Raises PictureError."""
+        result, scene = self.result, self.scene
+        statistics = result.statistics
+        metadata = {
+            "iterations": statistics.iterations,
+            "photons": statistics.photons,
+            "seconds": f"{self.seconds:.3f}",
+            "device": statistics.device,
+            "radius_metres": f"{statistics.radius_metres:.6g}",
+        }
+        for path in self.request.outputs:
+            if path.suffix == ".exr":
+                _write_frame(path, result.frame, scene.camera, metadata)
+            elif self._write_png_file:
+                write_png(path, standard_view(result.frame.combined))
+
+    def report(self) -> dict[str, object]:
+        """What happened, for --json: plain values only."""
+        scene, result = self.scene, self.result
+        return {
+            "files": [str(path) for path in self.request.outputs],
+            "resolution": list(scene.camera.resolution),
+            "interrupted": self._should_stop(),
+            "seconds": self.seconds,
+            "renderer_seconds": self.renderer_seconds,
+            "settings": {
+                name: value.name if isinstance(value, enum.Enum) else value
+                for name, value in dataclasses.asdict(scene.settings).items()
+            },
+            "statistics": result.statistics.as_dict(),
+            "snapshots": self.snapshots_written,
+            "snapshots_missed": list(self.request.snapshots[len(self.snapshots_written) :]),
+            "scene_warnings": list(scene.warnings),
+        }
+
+    def summary(self) -> str:
+        """The closing line."""
+        statistics = self.result.statistics
+        width, height = self.scene.camera.resolution
+        return (
+            f"{statistics.iterations} iterations, {count_text(statistics.photons)} photons in {self.seconds:.1f} s "
+            f"at {width}x{height} on {statistics.device}: {', '.join(str(path) for path in self.request.outputs)}"
+        )
+
+
+def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> RenderSettings:
+    """Settings with values, which may be text, over them. Raises SettingsError."""
+    settings = settings.with_values(**values)
+    settings.validate()
+    return settings
+
+
+def count_text(count: int) -> str:
+    """A count with three digits: 950, 65.5 k, 8.39 M, 1.20 G."""
+    for power, unit in ((1e9, " G"), (1e6, " M"), (1e3, " k")):
+        if count >= power:
+            value = count / power
+            return f"{value:.{max(0, 3 - len(str(int(value))))}f}{unit}"
+    return str(count)
+
+
+def _write_frame(path: Path, frame: "Frame", camera: Camera, metadata: Mapping[str, object]) -> None:
+    x, y, _, _ = camera.region
+    write_exr(
+        path,
+        frame.combined,
+        {"Depth": frame.depth, "Normal": frame.normal},
+        metadata,
+        Placement(camera.width, camera.height, x, y),
+    )

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rendering a saved scene, without Blender."""
+
+import dataclasses
+from pathlib import Path
+
+from ..scene import Camera, load_scene
+from .recorder import RenderRecorder
+
+
+def render_saved_scene(path: Path, recorder: RenderRecorder, resolution: tuple[int, int] | None) -> None:
+    """Render a .npz; the recorder writes the files. Raises RppmError."""
+    from ..session.renderer import Renderer  # late: brings OpenGL
+
+    scene = load_scene(path)
+    if resolution is not None:
+        scene.camera = camera_at_resolution(scene.camera, *resolution)
+    recorder.on_scene(scene)
+    with Renderer() as renderer:
+        recorder.on_start(scene)
+        result = renderer.render(
+            scene,
+            on_progress=lambda progress, _: recorder.on_progress(progress),
+            should_stop=recorder.should_stop,
+            snapshots=recorder.snapshots,
+            on_snapshot=lambda seconds, frame: recorder.on_snapshot(seconds, frame, scene),
+        )
+        recorder.on_finish(result, scene)
+    recorder.write_files()
+
+
+def camera_at_resolution(camera: Camera, width: int, height: int) -> Camera:
+    """The camera with other pixels of the same shape.
+
+    Where the frame's proportions change, its longer side keeps what it sees, as Blender's
+    automatic sensor fit does. A crop keeps its share of the frame.
+    """
+    left, right, bottom, top = camera.window
+    window_width, window_height = right - left, top - bottom
+    fitted = max(window_width, window_height)
+    pixel_aspect = (window_width / camera.width) / (window_height / camera.height)
+    proportion = width * pixel_aspect / height
+    half_width = 0.5 * fitted * min(1.0, proportion)
+    half_height = 0.5 * fitted / max(1.0, proportion)
+    x, y = 0.5 * (left + right), 0.5 * (bottom + top)
+    crop = camera.crop
+    if crop is not None:
+        x_min, x_max = round(crop[0] * width / camera.width), round(crop[2] * width / camera.width)
+        y_min, y_max = round(crop[1] * height / camera.height), round(crop[3] * height / camera.height)
+        x_min, y_min = min(x_min, width - 1), min(y_min, height - 1)
+        crop = (x_min, y_min, max(x_max, x_min + 1), max(y_max, y_min + 1))
+    return dataclasses.replace(
+        camera,
+        window=(x - half_width, x + half_width, y - half_height, y + half_height),
+        width=width,
+        height=height,
+        crop=crop,
+    )
