@@ -1,0 +1,47 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A thread a triangle: culls it against the six faces, lists a rectangle of cells for each face that
+// it may be seen through, and lists it among the core triangles if it comes near the centre.
+layout(local_size_x = 64) in;
+#define DEEP_CUBEMAP_BUILD
+#include "common/invocation.glsl"
+#include "deep_cubemap/triangles.glsl"
+#include "deep_cubemap/state.glsl"
+#include "deep_cubemap/core.glsl"
+#include "deep_cubemap/jobs.glsl"
+#include "deep_cubemap/faces.glsl"
+#include "deep_cubemap/face_bounds.glsl"
+
+// By the exponent's bits: compilers may assume that no float is NaN.
+bool is_finite(vec3 v) {
+    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec3(0x7f800000u)));
+}
+
+void list_core_triangle(uint triangle, vec3 a, vec3 b, vec3 c) {
+    vec3 outside = max(max(min(min(a, b), c), -max(max(a, b), c)), vec3(0.0)); // the box's nearest point
+    float reach = 1.01 * deep_cubemap.core_radius;
+    if (dot(outside, outside) >= reach * reach) return;
+    uint index = atomicAdd(deep_cubemap.core_count, 1u);
+    if (index < deep_cubemap.core_capacity) core_triangles[index] = triangle;
+}
+
+void main() {
+    uint triangle = invocation_index();
+    if (triangle >= deep_cubemap.triangle_count) return;
+    vec3 a = triangle_vertices[3u * triangle].xyz - deep_cubemap.centre;
+    vec3 b = triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.centre;
+    vec3 c = triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.centre;
+    if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return;
+    list_core_triangle(triangle, a, b, c);
+    for (int face = 0; face < 6; ++face) {
+        ivec2 first, last;
+        bool seen = face_cells(
+            to_face(a, face), to_face(b, face), to_face(c, face),
+            deep_cubemap.margin, deep_cubemap.resolution, first, last);
+        if (!seen) continue;
+        uint index = atomicAdd(deep_cubemap.job_count, 1u);
+        if (index < deep_cubemap.job_capacity) {
+            overlap_jobs[index] = uvec4(triangle, face, pack_cell(first), pack_cell(last));
+        }
+    }
+}

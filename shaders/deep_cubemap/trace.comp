@@ -1,0 +1,16 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The nearest hit of each ray.
+layout(local_size_x = 64) in;
+#include "common/invocation.glsl"
+#include <TraceRange>
+layout(std140, binding = 0) uniform Parameters { TraceRange parameters; };
+#include "deep_cubemap/traverse.glsl"
+
+layout(std430, binding = 1) restrict readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 2) restrict writeonly buffer Hits { Hit hits[]; };
+
+void main() {
+    uint index = parameters.first_ray + invocation_index();
+    if (index < parameters.end_ray) hits[index] = deep_cubemap_hit(rays[index]);
+}
