@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Records that stages hand to each other."""
+"""Records that stages hand to each other. Lengths in metres, flux in W, radiance in W/(m^2 sr)."""
 
 from ..gl.records import Record
 
@@ -11,3 +11,159 @@ RAY = Record("Ray", origin="vec3", source_triangle="uint", direction="vec3", max
 HIT = Record("Hit", triangle="uint", b1="float", b2="float", distance="float")
 """What any kind of visibility yields; triangle NO_TRIANGLE is a miss.
 The point is (1 - b1 - b2) v0 + b1 v1 + b2 v2."""
+
+TRIANGLE_ATTRIBUTES = Record(
+    "TriangleAttributes",
+    normal0="uint",
+    normal1="uint",
+    normal2="uint",
+    material="uint",
+    uv0="vec2",
+    uv1="vec2",
+    uv2="vec2",
+    object_index="uint",
+    unused="uint",
+)
+"""Shading normals (octahedral, two 16-bit parts), UV and material of a world triangle."""
+
+MICROFACET_LOBE = Record(
+    "MicrofacetLobe",
+    weight="vec3",
+    kind="uint",
+    f0="vec3",
+    alpha="float",
+    ior="float",
+)
+"""A GGX lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what
+passes (weight is then the tint of what is reflected). The kinds are in common/bsdf/microfacet.glsl."""
+
+CLOSURE = Record(
+    "Closure",
+    position="vec3",
+    triangle="uint",
+    diffuse="vec3",
+    flags="uint",
+    emission="vec3",
+    geometric_normal="uint",
+    transparent="vec3",
+    shading_normal="uint",
+    transmittance="vec3",
+    distance="float",
+    lobe0_weight="vec3",
+    lobe0_kind="uint",
+    lobe0_f0="vec3",
+    lobe0_alpha="float",
+    lobe1_weight="vec3",
+    lobe1_kind="uint",
+    lobe1_f0="vec3",
+    lobe1_alpha="float",
+    lobe2_weight="vec3",
+    lobe2_kind="uint",
+    lobe2_f0="vec3",
+    lobe2_alpha="float",
+    lobe_ior="vec3",
+    unused="float",
+)
+"""All that scattering, storing and estimating need to know about a hit. Normals face the arriving
+path. ``transmittance`` is that of the segment that arrives (absorption inside a volume)."""
+
+PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
+"""Flux that a photon path carries along its current ray; zero once the path has ended."""
+
+PHOTON = Record(
+    "Photon",
+    position="vec3",
+    flags="uint",
+    flux="vec3",
+    geometric_normal="uint",
+    direction="vec3",
+    triangle="uint",
+    scattered_flux="vec3",
+    unused="uint",
+)
+"""One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
+``direction`` points back to where the photon came from."""
+
+PHOTON_ACTIVE = 1
+PHOTON_STORED = 2
+PHOTON_ESCAPED = 4
+
+CAMERA_PATH = Record(
+    "CameraPath",
+    throughput="vec3",
+    pixel="uint",
+    total_length="float",
+    primary_distance="float",
+    primary_radius="float",
+    flags="uint",
+)
+"""A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4,
+``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit."""
+
+IMPORTON = Record(
+    "Importon",
+    position="vec3",
+    radius="float",
+    direction="vec3",
+    geometric_normal="uint",
+    diffuse="vec3",
+    shading_normal="uint",
+    lobe_weight="vec3",
+    lobe_kind="uint",
+    lobe_f0="vec3",
+    lobe_alpha="float",
+    lobe_ior="float",
+    triangle="uint",
+    next="uint",
+    unused="uint",
+)
+"""A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
+the path's throughput. ``direction`` points back to the viewer; ``next`` links lists of the splat
+cubemap."""
+
+LIGHT = Record(
+    "Light",
+    position="vec3",
+    kind="uint",
+    axis_u="vec3",
+    radius="float",
+    axis_v="vec3",
+    area="float",
+    normal="vec3",
+    selection_probability="float",
+    strength="vec3",
+    selection_end="float",
+    cosine_cone="float",
+    blend="float",
+    spread_tangent="float",
+    spread_scale="float",
+    first_photon="uint",
+    photon_count="uint",
+    flags="uint",
+    unused="uint",
+)
+"""A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
+unit axes, ``selection_end`` the cumulated probability of choosing this or an earlier light."""
+
+EMISSIVE_TRIANGLE = Record("EmissiveTriangle", radiance="vec3", triangle="uint", area="float", cumulated="float", pad0="float", pad1="float")
+
+CAMERA_VIEW = Record(
+    "CameraView",
+    position="vec3",
+    orthographic="uint",
+    right="vec3",
+    clip_start="float",
+    up="vec3",
+    clip_end="float",
+    forward="vec3",
+    pixel_solid_angle="float",
+    window="vec4",
+    width="uint",
+    height="uint",
+    first_row="uint",
+    unused="uint",
+)
+"""The band of the frame being rendered: ``window`` is left, right, bottom, top of the band with the
+iteration's jitter; ``pixel_solid_angle`` is a pixel's area on the plane at distance 1 (m^2 for
+orthographic cameras)."""

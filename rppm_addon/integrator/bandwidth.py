@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Radii of the density estimation: Eq. 2, 3 and 4 and their limits."""
+
+import math
+
+import numpy as np
+
+from ..scene.camera import Camera
+from ..scene.settings import RenderSettings
+
+_REFERENCE_PIXELS = 1 << 20
+
+
+def shrinkage(iteration: int, alpha: float) -> float:
+    """r_i / r_1 of Eq. 2 for the iteration i >= 1: the product of sqrt((k + alpha) / (k + 1)), k < i."""
+    k = np.arange(1, iteration)
+    return float(np.exp(0.5 * np.sum(np.log((k + alpha) / (k + 1)))))
+
+
+def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
+    """s_r of Eq. 3 for this frame: the setting is for 1 megapixel and follows the frame's side."""
+    return settings.radius_scale * math.sqrt(camera.width * camera.height / _REFERENCE_PIXELS)
+
+
+def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius: float) -> tuple[float, float]:
+    """r_min and r_max of the first iteration, metres.
+
+    ``footprints`` (n,) are the Eq. 3 radii of the camera's first hits. Unset limits follow them:
+    r_max, at which all photons are splatted, covers 95 % of the view, and r_min keeps a
+    twentieth of the median where a hit lies at the camera's nose.
+    """
+    seen = footprints[np.isfinite(footprints) & (footprints > 0)]
+    middle, high = np.percentile(seen, [50, 95]) if len(seen) else (0.005 * scene_radius,) * 2
+    maximum = settings.radius_maximum or min(float(high), 0.25 * scene_radius)
+    minimum = settings.radius_minimum or min(0.05 * float(middle), maximum)
+    return min(minimum, maximum), maximum

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light straight from the sources, by next-event rays from the importons."""
+
+import moderngl
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+from .emission import LIGHT_PARAMETERS
+from .records import RAY
+from .stages import Stages
+
+Record("DirectLightParameters", **LIGHT_PARAMETERS, segment="uint", first_pixel="uint")
+Record("CountParameters", count="uint")
+
+
+class DirectLight:
+    """One sampled light and one shadow ray for every importon."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+        self._sample = library.compute("direct_light/sample.comp")
+        self._add = library.compute("direct_light/add.comp")
+        self._rays = GrowingBuffer(context, "shadow rays")
+        self._contributions = GrowingBuffer(context, "direct light")
+        self._visibility = GrowingBuffer(context, "visibility")
+        self._rays.require(RAY.size * pixels)
+        self._contributions.require(16 * pixels)
+        self._visibility.require(4 * pixels)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        return {buffer.name: buffer.size for buffer in (self._rays, self._contributions, self._visibility)}
+
+    def run(
+        self,
+        stages: Stages,
+        importons: moderngl.Buffer,
+        radiances: moderngl.Buffer,
+        count: int,
+        first_pixel: int,
+        iteration: int,
+        segment: int,
+    ) -> None:
+        """Add the direct light of ``count`` importons to the band's radiances."""
+        parameters = stages.emission.parameters(stages.settings.seed, iteration, count)
+        self._sample.run(
+            count,
+            {
+                **stages.emission.buffers,
+                "Importons": importons,
+                "Rays": self._rays.buffer,
+                "Contributions": self._contributions.buffer,
+            },
+            {**parameters, "segment": segment, "first_pixel": first_pixel},
+        )
+        stages.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, count)
+        self._add.run(
+            count,
+            {
+                "Visibility": self._visibility.buffer,
+                "Contributions": self._contributions.buffer,
+                "Radiances": radiances,
+            },
+            {"count": count},
+        )
+
+    def release(self) -> None:
+        for buffer in (self._rays, self._contributions, self._visibility):
+            buffer.release()

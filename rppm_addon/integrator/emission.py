@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light sources on the GPU, their shares of the photons, and the photons that leave them."""
+
+import math
+
+import moderngl
+import numpy as np
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+from ..scene.errors import SceneError
+from ..scene.lights import Light, LightKind
+from ..scene.materials import Lobe, LobeKind, Material
+from ..scene.scene import Scene
+from .environment import Environment
+from .geometry import Geometry
+from .records import EMISSIVE_TRIANGLE, LIGHT
+
+POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
+_VISIBLE = 1
+
+LIGHT_PARAMETERS = {
+    "scene_centre": "vec3",
+    "scene_radius": "float",
+    "world_radiance": "vec3",
+    "light_count": "uint",
+    "world_rotation": "mat4",
+    "environment_width": "uint",
+    "environment_height": "uint",
+    "emissive_triangle_count": "uint",
+    "seed": "uint",
+    "iteration": "uint",
+    "count": "uint",
+}
+"""Parameters of every program that includes shaders/emission/lights.glsl."""
+
+Record("EmitParameters", **LIGHT_PARAMETERS)
+
+
+def spot_share(cosine_cone: float, blend: float) -> float:
+    """Power of a spot over its axial intensity: integral of its falloff over solid angle, sr."""
+    cosine = np.linspace(cosine_cone, 1.0, 4097)
+    x = np.clip((cosine - cosine_cone) / max((1 - cosine_cone) * blend, 1e-9), 0, 1)
+    return float(2 * math.pi * np.mean(x * x * (3 - 2 * x)) * (1 - cosine_cone))
+
+
+def spread_constants(spread: float) -> tuple[float, float]:
+    """Tangent of half the spread and the factor of Cycles' falloff; (0, 1) for a diffuse light."""
+    half = 0.5 * spread
+    if half >= 0.5 * math.pi - 1e-4:
+        return 0.0, 1.0
+    half = max(half, 1e-3)
+    return math.tan(half), 1.0 / (math.tan(half) - half)
+
+
+def _spread_share(tangent: float, scale: float) -> float:
+    """Flux of a spread light over radiance times area, sr."""
+    if tangent <= 0.0:
+        return math.pi
+    theta = np.linspace(0.0, math.atan(tangent), 4097)
+    values = np.maximum(0.0, (tangent - np.tan(theta)) * scale) * np.cos(theta) * np.sin(theta)
+    return float(2 * math.pi * np.mean(values) * math.atan(tangent))
+
+
+def emitted_radiance(material: Material, image_means: list[np.ndarray]) -> np.ndarray:
+    """(3,) radiance that a material emits, W/(m^2 sr); textures count by their mean."""
+
+    def of(lobe: Lobe) -> np.ndarray:
+        if lobe.kind is LobeKind.EMISSION:
+            texture = image_means[lobe.color_image] if lobe.color_image >= 0 else 1.0
+            return lobe.weight * np.asarray(lobe.color) * texture
+        if lobe.kind is LobeKind.PRINCIPLED:
+            return lobe.weight * lobe.alpha * np.asarray(lobe.emission)
+        return np.zeros(3)
+
+    return np.maximum(sum((of(lobe) for lobe in material.lobes), np.zeros(3)), 0.0)
+
+
+def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
+    """Split photons by weights, (n,) int64 summing to ``photons``; a positive weight gets at least one
+    while there are enough (largest remainders)."""
+    if len(weights) == 0 or weights.sum() <= 0:
+        return np.zeros(len(weights), np.int64)
+    exact = photons * weights / weights.sum()
+    counts = np.floor(exact).astype(np.int64)
+    counts[(counts == 0) & (weights > 0)] = 1
+    while counts.sum() > photons and counts.max() > 1:
+        counts[np.argmax(counts)] -= min(counts.max() - 1, counts.sum() - photons)
+    remaining = photons - counts.sum()
+    for index in np.argsort(counts - exact)[: max(0, remaining)]:
+        counts[index] += 1
+    counts[np.argmax(counts)] += photons - counts.sum()
+    return counts
+
+
+class Emission:
+    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._program = library.compute("emission/emit.comp")
+        self._lights = GrowingBuffer(context, "lights")
+        self._emissive = GrowingBuffer(context, "emissive triangles")
+        self.environment = Environment(context)
+        self._parameters: dict[str, object] = {}
+        self._triangles: moderngl.Buffer | None = None
+        self.photon_counts: dict[str, int] = {}
+
+    @property
+    def buffers(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of emission/lights.glsl."""
+        return {
+            "Lights": self._lights.buffer,
+            "EmissiveTriangles": self._emissive.buffer,
+            "Triangles": self._triangles,
+            "EnvironmentDistribution": self.environment.distribution.buffer,
+        }
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        return {
+            "lights": self._lights.size,
+            "emissive triangles": self._emissive.size,
+            "environment": self.environment.memory_bytes,
+        }
+
+    def parameters(self, seed: int, iteration: int, count: int) -> dict[str, object]:
+        """Values of LIGHT_PARAMETERS."""
+        return {**self._parameters, "seed": seed, "iteration": iteration, "count": count}
+
+    def build(self, scene: Scene, geometry: Geometry) -> None:
+        """Lay out all lights and share the photons of an iteration among them.
+
+        Raises SceneError when nothing in the scene emits light.
+        """
+        radius = max(geometry.radius * 1.001, 1e-6)
+        entries: list[np.ndarray] = []
+        powers: list[float] = []
+        weights: list[float] = []
+        names: list[str] = []
+
+        def add(entry: np.ndarray, power: np.ndarray, name: str, share: float = 1.0) -> None:
+            if np.isfinite(power).all() and np.max(power) > 0:
+                entries.append(entry)
+                powers.append(float(np.mean(power)))
+                weights.append(float(np.mean(power)) * max(share, 0.0))
+                names.append(name)
+
+        for light in scene.lights:
+            entry, power = _light_entry(light, radius)
+            add(entry, power, light.name, light.photon_share)
+        emissive = _emissive_triangles(scene, geometry)
+        if len(emissive):
+            weight = np.mean(emissive["radiance"], axis=1).astype(np.float64) * emissive["area"]
+            emissive["cumulated"] = np.cumsum(weight) / weight.sum()
+            emissive["cumulated"][-1] = 1.0
+            entry = LIGHT.zeros(1)[0]
+            entry["kind"] = MESH
+            add(entry, 2 * math.pi * (emissive["radiance"].T.astype(np.float64) @ emissive["area"]), "emissive meshes")
+        self.environment.build(scene)
+        entry = LIGHT.zeros(1)[0]
+        entry["kind"] = WORLD
+        add(entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance, "world")
+        if not entries:
+            raise SceneError(
+                "nothing in the scene emits light; add a light, give a material an emission, or give the world a colour"
+            )
+        if sum(weights) <= 0:
+            raise SceneError("all lights have photon share 0; raise the share of one")
+
+        counts = share_out(np.array(weights), scene.settings.photons)
+        self.photon_counts = dict(zip(names, map(int, counts), strict=True))
+        # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
+        selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
+        table = np.array(entries, LIGHT.dtype)
+        table["selection_probability"] = selection
+        table["selection_end"] = np.cumsum(selection)
+        table["selection_end"][-1] = 1.0
+        table["photon_count"] = counts
+        table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        self._lights.upload(table)
+        self._emissive.upload(emissive if len(emissive) else EMISSIVE_TRIANGLE.zeros(1))
+        self._triangles = geometry.triangles.buffer
+        rotation = np.eye(4)
+        rotation[:3, :3] = scene.world.rotation
+        self._parameters = {
+            "scene_centre": geometry.centre,
+            "scene_radius": radius,
+            "world_radiance": np.maximum(scene.world.radiance, 0.0),
+            "light_count": len(entries),
+            "world_rotation": rotation,
+            "environment_width": self.environment.width,
+            "environment_height": self.environment.height,
+            "emissive_triangle_count": len(emissive),
+        }
+
+    def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
+        """Emit ``count`` photons: their first rays and the flux they carry."""
+        self.environment.use()
+        self._program.run(
+            count, {**self.buffers, "Rays": rays, "PhotonPaths": photon_paths}, self.parameters(seed, iteration, count)
+        )
+
+    def release(self) -> None:
+        self._lights.release()
+        self._emissive.release()
+        self.environment.release()
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    size = np.linalg.norm(vector)
+    return vector / size if size > 0 else np.array([0.0, 0.0, 1.0])
+
+
+def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """A light's record and its power, (3,) W, within the scene."""
+    entry = LIGHT.zeros(1)[0]
+    axes = np.asarray(light.matrix, np.float64)[:3, :3]
+    entry["position"] = light.matrix[:3, 3]
+    normal = -_unit(axes[:, 2])
+    entry["normal"] = normal
+    entry["strength"] = strength = np.maximum(light.strength, 0.0)
+    entry["radius"] = max(light.radius, 0.0)
+    entry["flags"] = _VISIBLE if light.visible_to_camera else 0
+    if light.kind is LightKind.POINT:
+        entry["kind"] = POINT
+        return entry, 4 * math.pi * strength
+    if light.kind is LightKind.SPOT:
+        cosine = math.cos(0.5 * min(light.spot_angle, math.pi))
+        lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-9)
+        # A scaled spot has an elliptic cone: axes divided by their scale relative to the beam's.
+        entry["kind"] = SPOT
+        entry["axis_u"] = axes[:, 0] / lengths[0] * (lengths[2] / lengths[0])
+        entry["axis_v"] = axes[:, 1] / lengths[1] * (lengths[2] / lengths[1])
+        entry["cosine_cone"], entry["blend"] = cosine, np.clip(light.spot_blend, 0.0, 1.0)
+        # Photons go out in the round cone that holds the elliptic one.
+        widest = math.atan(math.tan(min(math.acos(cosine), 1.57)) * max(1.0, max(lengths[:2]) / lengths[2]))
+        entry["spread_scale"] = 1.0 - math.cos(widest) if cosine > 1e-3 else 1.0
+        return entry, strength * spot_share(cosine, light.spot_blend)
+    if light.kind is LightKind.SUN:
+        entry["kind"] = SUN
+        entry["cosine_cone"] = math.cos(0.5 * min(max(light.sun_angle, 0.0), math.pi))
+        return entry, strength * math.pi * scene_radius**2
+    width, height = light.size if light.shape in ("RECTANGLE", "ELLIPSE") else (light.size[0], light.size[0])
+    entry["axis_u"], entry["axis_v"] = 0.5 * width * axes[:, 0], 0.5 * height * axes[:, 1]
+    round_shape = light.shape in ("DISK", "ELLIPSE")
+    entry["kind"] = ELLIPSE if round_shape else RECTANGLE
+    spanned = np.linalg.norm(np.cross(entry["axis_u"], entry["axis_v"]))
+    area = (math.pi if round_shape else 4.0) * spanned
+    if spanned <= 0:
+        return entry, np.zeros(3)
+    normal = _unit(np.cross(entry["axis_u"], entry["axis_v"]).astype(np.float64))
+    entry["normal"] = -normal if np.dot(normal, axes[:, 2]) > 0 else normal
+    entry["area"] = area
+    tangent, scale = spread_constants(light.spread)
+    entry["spread_tangent"], entry["spread_scale"] = tangent, scale
+    entry["cosine_cone"] = math.cos(math.atan(tangent))
+    return entry, strength * area * _spread_share(tangent, scale)
+
+
+def _emissive_triangles(scene: Scene, geometry: Geometry) -> np.ndarray:
+    """EMISSIVE_TRIANGLE records of all world triangles whose material emits."""
+    means = [np.asarray(i.pixels, np.float64).reshape(-1, 4).mean(axis=0)[:3] / (255 if i.pixels.dtype == np.uint8 else 1) for i in scene.images]
+    radiance = np.array([emitted_radiance(m, means) for m in scene.materials]).reshape(-1, 3)
+    found = []
+    for instance, first in geometry.placements:
+        mesh = scene.meshes[instance.mesh]
+        slots = [radiance[m] if 0 <= m < len(radiance) else np.zeros(3) for m in instance.materials]
+        if not slots or not np.any(slots):
+            continue
+        emitted = np.array(slots)[np.minimum(mesh.triangle_slots, len(slots) - 1)]
+        which = np.nonzero(emitted.max(axis=1) > 0)[0]
+        corners = mesh.positions[mesh.corner_vertices[mesh.triangle_corners[which]]].astype(np.float64)
+        corners = corners @ instance.matrix[:3, :3].T
+        area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        good = np.isfinite(area) & (area > 0)
+        records = EMISSIVE_TRIANGLE.zeros(int(good.sum()))
+        records["radiance"], records["area"] = emitted[which[good]], area[good]
+        records["triangle"] = first + which[good]
+        found.append(records)
+    return np.concatenate(found) if found else EMISSIVE_TRIANGLE.zeros(0)

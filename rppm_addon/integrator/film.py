@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""UpdatePPMParams: running means of radiance and of the first surface, per pixel."""
+
+import moderngl
+import numpy as np
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+from .splatting import Splatting
+
+Record("FilmParameters", count="uint", width="uint", first_pixel="uint", iteration="uint")
+
+
+class Film:
+    """Means over the iterations, 16 bytes of radiance and alpha and 16 of normal and depth a pixel."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, width: int, height: int) -> None:
+        self._primary = library.compute("film/primary.comp")
+        self._accumulate = library.compute("film/accumulate.comp")
+        remedy = "lower the resolution"
+        self._radiance = GrowingBuffer(context, "film", remedy)
+        self._surface = GrowingBuffer(context, "film surface", remedy)
+        self._radiance.require(16 * width * height)
+        self._surface.require(16 * width * height)
+        self.width, self.height = width, height
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        return {buffer.name: buffer.size for buffer in (self._radiance, self._surface)}
+
+    def add_surface(self, camera: moderngl.Buffer, closures: moderngl.Buffer, count: int, first_pixel: int, iteration: int) -> None:
+        """Add the band's first surfaces."""
+        self._primary.run(
+            count,
+            {"Camera": camera, "Closures": closures, "Surfaces": self._surface.buffer},
+            {"count": count, "width": self.width, "first_pixel": first_pixel, "iteration": iteration},
+        )
+
+    def add(self, radiances: moderngl.Buffer, splatting: Splatting, count: int, first_pixel: int, iteration: int) -> None:
+        """Add the band's estimate of an iteration."""
+        splatting.direct_splats.use(0)
+        self._accumulate.run(
+            count,
+            {"Radiances": radiances, "Gathered": splatting.gathered.buffer, "Film": self._radiance.buffer},
+            {"count": count, "width": self.width, "first_pixel": first_pixel, "iteration": iteration},
+        )
+
+    def read_radiance(self) -> np.ndarray:
+        """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""
+        return self._radiance.read(np.float32, 4 * self.width * self.height).reshape(self.height, self.width, 4).copy()
+
+    def read_surface(self) -> tuple[np.ndarray, np.ndarray]:
+        """(height, width, 3) mean normals and (height, width) depth along the view axis in metres."""
+        surface = self._surface.read(np.float32, 4 * self.width * self.height).reshape(self.height, self.width, 4)
+        return surface[..., :3].copy(), surface[..., 3].copy()
+
+    def release(self) -> None:
+        self._radiance.release()
+        self._surface.release()

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DirectPhotonHits and TracePhotons: photons from the lights through the scene."""
+
+import moderngl
+import numpy as np
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+from .records import CLOSURE, HIT, PHOTON, PHOTON_ACTIVE, PHOTON_ESCAPED, PHOTON_PATH, RAY
+from .stages import Stages
+
+Record(
+    "ScatterPhotonsParameters",
+    count="uint",
+    photon_count="uint",
+    segment="uint",
+    last_segment="uint",
+    seed="uint",
+    iteration="uint",
+    specular_alpha="float",
+)
+
+
+class Photons:
+    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, photon_count: int, segments: int) -> None:
+        self._scatter = library.compute("photons/scatter.comp")
+        self.photon_count, self.segments = photon_count, segments
+        remedy = "lower the photons per iteration or the photon path length"
+        self.photons = GrowingBuffer(context, "photons", remedy)
+        self._paths = GrowingBuffer(context, "photon paths", remedy)
+        self._rays = GrowingBuffer(context, "photon rays", remedy)
+        self._hits = GrowingBuffer(context, "photon hits", remedy)
+        self._closures = GrowingBuffer(context, "photon closures", remedy)
+        self.photons.require(PHOTON.size * photon_count * segments)
+        for buffer, record in ((self._paths, PHOTON_PATH), (self._rays, RAY), (self._hits, HIT), (self._closures, CLOSURE)):
+            buffer.require(record.size * photon_count)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        buffers = (self.photons, self._paths, self._rays, self._hits, self._closures)
+        return {buffer.name: buffer.size for buffer in buffers}
+
+    def run(self, stages: Stages, iteration: int) -> None:
+        """Emit the iteration's photons and trace them to the last segment."""
+        settings, timers = stages.settings, stages.timers
+        with timers.stage("emission"):
+            stages.emission.run(self._rays.buffer, self._paths.buffer, self.photon_count, settings.seed, iteration)
+        for segment in range(self.segments):
+            with timers.stage("photon tracing"):
+                stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
+            with timers.stage("photon resolve"):
+                stages.resolve.run(
+                    stages.geometry, stages.materials, self._rays.buffer, self._hits.buffer, self._closures.buffer,
+                    self.photon_count, settings.seed, iteration, segment,
+                )
+            with timers.stage("photon scattering"):
+                self._scatter.run(
+                    self.photon_count,
+                    {
+                        "Closures": self._closures.buffer,
+                        "Rays": self._rays.buffer,
+                        "PhotonPaths": self._paths.buffer,
+                        "Photons": self.photons.buffer,
+                    },
+                    {
+                        "count": self.photon_count,
+                        "photon_count": self.photon_count,
+                        "segment": segment,
+                        "last_segment": segment == self.segments - 1,
+                        "seed": settings.seed,
+                        "iteration": iteration,
+                        "specular_alpha": settings.specular_roughness**2,
+                    },
+                )
+
+    def read_emitted(self, stages: Stages, iteration: int) -> np.ndarray:
+        """(photon_count, 3) flux in W with which an iteration's photons leave their lights."""
+        stages.emission.run(self._rays.buffer, self._paths.buffer, self.photon_count, stages.settings.seed, iteration)
+        return self._paths.read(PHOTON_PATH.dtype, self.photon_count)["flux"]
+
+    def read(self) -> np.ndarray:
+        """(segments, photon_count) PHOTON records of the last iteration."""
+        records = self.photons.read(PHOTON.dtype, self.segments * self.photon_count)
+        return records.reshape(self.segments, self.photon_count)
+
+    def release(self) -> None:
+        for buffer in (self.photons, self._paths, self._rays, self._hits, self._closures):
+            buffer.release()
+
+
+def flux_balance(emitted: np.ndarray, photons: np.ndarray) -> dict[str, float]:
+    """Where the flux of an iteration went, W summed over the channels.
+
+    ``emitted`` is (paths, 3), the flux each path left its light with; ``photons`` what
+    Photons.read gives. ``lost`` is flux on a ray of which no segment tells: it must be zero.
+    Russian roulette makes single events absorb more or less than their share, the sum being right.
+    """
+    active = (photons["flags"] & PHOTON_ACTIVE) != 0
+    escaped = (photons["flags"] & PHOTON_ESCAPED) != 0
+    carried = emitted.astype(np.float64)
+    absorbed = gone = lost = 0.0
+    for segment in range(len(photons)):
+        scattered = photons["scattered_flux"][segment].astype(np.float64)
+        hit = active[segment] & ~escaped[segment]
+        gone += carried[escaped[segment]].sum()
+        absorbed += (carried[hit] - scattered[hit]).sum()
+        lost += carried[~active[segment]].sum()
+        carried = np.where(hit[:, None], scattered, 0.0)
+    return {
+        "emitted": float(emitted.sum(dtype=np.float64)),
+        "absorbed": float(absorbed),
+        "escaped": float(gone),
+        "lost": float(lost + carried.sum()),
+    }

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rasterization-based progressive photon mapping: the paper's Algorithm 1."""
+
+import logging
+import time
+
+import numpy as np
+
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.timers import StageTimers
+from ..materials.tables import MaterialTables
+from ..scene.scene import Scene
+from ..scene.settings import DirectLight as DirectLightMode
+from .bandwidth import radius_in_pixels, radius_limits, shrinkage
+from .deep_cubemap import DeepCubemap, choose_resolution
+from .direct_light import DirectLight
+from .emission import Emission
+from .film import Film
+from .gbuffer import GBuffer, bands_of, camera_view, filter_offsets
+from .geometry import Geometry
+from .importons import Importons
+from .photons import Photons, flux_balance
+from .placement import cubemap_centre
+from .resolve import Resolve
+from .splatting import Splatting
+from .stages import Stages
+
+log = logging.getLogger(__name__)
+
+
+class ProgressivePhotonMapper:
+    """One scene being rendered: ``iterate`` improves the film."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self.context = context
+        self._library = library
+        self.timers = StageTimers(context)
+        self._geometry = Geometry(context, library)
+        self._materials = MaterialTables(context)
+        self._emission = Emission(context, library)
+        self._deep_cubemap = DeepCubemap(context, library)
+        self._resolve = Resolve(library)
+        self.iteration = 0
+        self.build_seconds = 0.0
+        self._views: list = []
+
+    def build(self, scene: Scene) -> None:
+        """Init(): take a scene, allocate its buffers and build the deep cubemap.
+
+        Raises SettingsError, SceneError or DeviceError, each with its remedy.
+        """
+        start = time.perf_counter()
+        settings = scene.settings
+        settings.validate()
+        self._release_views()
+        self.iteration = 0
+        self.scene = scene
+        self._materials.build(scene.materials, scene.images)
+        self._geometry.build(scene, self._materials.default_material)
+        self._emission.build(scene, self._geometry)
+        self.centre = cubemap_centre(scene.camera, self._geometry)
+        reach = max(np.abs(self._geometry.bounds_low - self.centre).max(), np.abs(self._geometry.bounds_high - self.centre).max())
+        count = self._geometry.triangle_count
+        with self.timers.stage("deep cubemap"):
+            self._deep_cubemap.build(
+                self._geometry.triangles.buffer,
+                count,
+                self.centre,
+                float(np.sqrt(3.0) * max(reach, 1e-9)),
+                settings.cubemap_resolution or choose_resolution(count),
+            )
+        width, height = scene.camera.resolution
+        self._bands = bands_of(width, height)
+        rows = self._bands[0][1]
+        self._photons = Photons(self.context, self._library, settings.photons, settings.photon_path_length)
+        self._gbuffer = GBuffer(self.context, self._library, width, rows)
+        self._importons = Importons(self.context, self._library, width * rows)
+        self._splatting = Splatting(self.context, self._library, width, rows)
+        self._direct_light = DirectLight(self.context, self._library, width * rows)
+        self.film = Film(self.context, self._library, width, height)
+        self._views = [self._photons, self._gbuffer, self._importons, self._splatting, self._direct_light, self.film]
+        self._stages = Stages(
+            settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
+        )
+        self._radius_scale = radius_in_pixels(settings, scene.camera)
+        self._limits = self._first_limits()
+        self.build_seconds = time.perf_counter() - start
+
+    def iterate(self) -> None:
+        """One iteration of Algorithm 1."""
+        self.iteration += 1
+        self._trace_photons()
+        for first_row, rows in self._bands:
+            self._direct_camera_hits(first_row, rows)
+            for segment in range(self.scene.settings.camera_path_length):
+                self._trace_importons(segment)
+                self._add_direct_light(segment)
+                if segment == 0:
+                    self._direct_splatting()
+                else:
+                    self._indirect_splatting()
+            self._update_film()
+
+    @property
+    def splat_radius(self) -> float:
+        """r_max of the current iteration, metres: all splats have it."""
+        return self._limits[1] * self._shrinkage
+
+    @property
+    def photons_emitted(self) -> int:
+        return self.iteration * self.scene.settings.photons
+
+    @property
+    def triangle_count(self) -> int:
+        return self._geometry.triangle_count
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        sizes = self._geometry.memory_bytes | self._materials.memory_bytes | self._emission.memory_bytes
+        sizes |= self._deep_cubemap.memory_bytes | self._photons.memory_bytes | self._importons.memory_bytes
+        sizes |= self._splatting.memory_bytes | self._direct_light.memory_bytes | self.film.memory_bytes
+        return sizes | {"visibility buffer": self._gbuffer.memory_bytes}
+
+    def flux_balance(self) -> dict[str, float]:
+        """Emitted, absorbed, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
+        photons = self._photons.read()
+        return flux_balance(self._photons.read_emitted(self._stages, self.iteration), photons)
+
+    def read_photons(self) -> np.ndarray:
+        """(segments, photons) PHOTON records of the last iteration."""
+        return self._photons.read()
+
+    @property
+    def _shrinkage(self) -> float:
+        return shrinkage(max(self.iteration, 1), self.scene.settings.alpha)
+
+    def _first_limits(self) -> tuple[float, float]:
+        """r_min and r_max from the footprints that the camera's first hits have."""
+        settings = self.scene.settings
+        if settings.radius_minimum and settings.radius_maximum:
+            return settings.radius_minimum, settings.radius_maximum
+        footprints = []
+        for first_row, rows in self._bands:
+            view = camera_view(self.scene.camera, first_row, rows, (0.0, 0.0))
+            self._begin_band(view, first_row)
+            self._importons.resolve(self._stages, self._count, 0, 0)
+            self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
+            footprints.append(self._importons.footprints(self._count))
+        return radius_limits(settings, np.concatenate(footprints), self._geometry.radius)
+
+    def _trace_photons(self) -> None:
+        """DirectPhotonHits and TracePhotons."""
+        self._photons.run(self._stages, self.iteration)
+        # With next-event rays the photons' first hits would count direct light twice.
+        first = self._photons.photon_count if self.scene.settings.direct_light is DirectLightMode.RAYS else 0
+        with self.timers.stage("photon list"):
+            self._splatting.collect(
+                self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, first
+            )
+
+    def _begin_band(self, view: np.ndarray, first_row: int) -> None:
+        self._count = int(view["width"][0] * view["height"][0])
+        self._rows = int(view["height"][0])
+        self._first_pixel = first_row * self.film.width
+        self._gbuffer.run(
+            self._geometry, view, self._importons.rays.buffer, self._importons.hits.buffer, self._importons.paths.buffer
+        )
+
+    def _direct_camera_hits(self, first_row: int, rows: int) -> None:
+        """DirectCameraHits of a band of rows."""
+        offset = filter_offsets(self.iteration, self.scene.settings.filter_width)
+        view = camera_view(self.scene.camera, first_row, rows, offset)
+        with self.timers.stage("gbuffer"):
+            self._importons.begin()
+            self._splatting.begin()
+            self._begin_band(view, first_row)
+
+    def _trace_importons(self, segment: int) -> None:
+        if segment > 0:
+            with self.timers.stage("camera tracing"):
+                self._importons.trace(self._stages, self._count)
+        with self.timers.stage("camera resolve"):
+            self._importons.resolve(self._stages, self._count, self.iteration, segment)
+        if segment == 0:
+            self.film.add_surface(
+                self._gbuffer.camera, self._importons.closures.buffer, self._count, self._first_pixel, self.iteration
+            )
+        with self.timers.stage("camera scattering"):
+            self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits)
+
+    def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
+        self._importons.scatter(
+            self._stages, self._gbuffer.camera, self._count, self._first_pixel,
+            iteration, segment, self._radius_scale, shrink, limits,
+        )
+
+    def _add_direct_light(self, segment: int) -> None:
+        if self.scene.settings.direct_light is not DirectLightMode.RAYS:
+            return
+        with self.timers.stage("direct light"):
+            self._direct_light.run(
+                self._stages, self._importons.importons.buffer, self._importons.radiances.buffer,
+                self._count, self._first_pixel, self.iteration, segment,
+            )
+
+    def _direct_splatting(self) -> None:
+        with self.timers.stage("direct splatting"):
+            self._splatting.direct(
+                self._photons.photons.buffer, self._importons.importons.buffer, self._gbuffer.camera,
+                self.film.width, self._rows, self.splat_radius,
+            )
+
+    def _indirect_splatting(self) -> None:
+        with self.timers.stage("indirect splatting"):
+            self._splatting.indirect(
+                self._photons.photons.buffer, self._importons.importons.buffer, self._count, self.centre, self.splat_radius
+            )
+
+    def _update_film(self) -> None:
+        """UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)."""
+        with self.timers.stage("film"):
+            self.film.add(self._importons.radiances.buffer, self._splatting, self._count, self._first_pixel, self.iteration)
+
+    def _release_views(self) -> None:
+        for view in self._views:
+            view.release()
+        self._views = []
+
+    def release(self) -> None:
+        """Give all buffers back."""
+        self._release_views()
+        for part in (self._geometry, self._materials, self._emission, self._deep_cubemap):
+            part.release()

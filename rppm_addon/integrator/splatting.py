@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photon splatting: onto the camera view (direct) and onto cubemap views (indirect), section 4.2."""
+
+import moderngl
+import numpy as np
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+
+_CUBE_RESOLUTION = 64
+_JOB_HEADER, _JOB = 16, 16
+_FACES_OF_A_SPLAT = 3
+"""A cone of 30 degrees touches at most so many faces of a cube."""
+
+Record("StoredParameters", count="uint", first_slot="uint")
+Record("SplatParameters", count="uint", radius="float")
+Record("QuadParameters", width="uint", height="uint")
+Record("CubeParameters", centre="vec3", count="uint", radius="float", resolution="uint")
+
+
+class Splatting:
+    """Adds the stored photons to the importons of a band."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
+        gl = context.moderngl
+        self._context = context
+        self._stored_program = library.compute("splatting/stored.comp")
+        self._direct_jobs = library.compute("splatting/direct_jobs.comp")
+        self._direct = library.draw("splatting/quads.vert", "splatting/direct.frag")
+        self._insert = library.compute("splatting/insert.comp")
+        self._indirect_jobs = library.compute("splatting/indirect_jobs.comp")
+        self._indirect = library.draw("splatting/quads.vert", "splatting/indirect.frag")
+        self._core_program = library.compute("splatting/core.comp")
+        remedy = "lower the photons per iteration or the photon path length"
+        self._stored = GrowingBuffer(context, "stored photons", remedy)
+        self._jobs = GrowingBuffer(context, "splat jobs", remedy)
+        self._heads = GrowingBuffer(context, "splat cubemap")
+        self._core = GrowingBuffer(context, "splat core list")
+        self.gathered = GrowingBuffer(context, "gathered radiance")
+        self._heads.require(4 * 6 * _CUBE_RESOLUTION**2)
+        self._core.require(4 * (width * rows + 1))
+        self.gathered.require(12 * width * rows)
+        self.direct_splats = gl.texture((width, rows), 4, dtype="f4")
+        self.direct_splats.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        self._direct_view = gl.framebuffer([self.direct_splats])
+        self._cube_size = (3 * _CUBE_RESOLUTION, 2 * _CUBE_RESOLUTION)
+        self._cube_view = gl.empty_framebuffer(self._cube_size)
+        self.stored_count = 0
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        sizes = {b.name: b.size for b in (self._stored, self._jobs, self._heads, self._core, self.gathered)}
+        return sizes | {"direct splats": 16 * self.direct_splats.width * self.direct_splats.height}
+
+    def collect(self, photons: moderngl.Buffer, slots: int, first_slot: int) -> None:
+        """List the photons to splat: those stored in slots from ``first_slot`` to ``slots``."""
+        count = slots - first_slot
+        self._stored.require(4 * (slots + 1))
+        self._stored.buffer.write(bytes(4))
+        self._stored_program.run(
+            count, {"Photons": photons, "StoredPhotons": self._stored.buffer}, {"count": count, "first_slot": first_slot}
+        )
+        self.stored_count = int(self._stored.read(np.uint32, 1)[0]) if count else 0
+        self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, self.stored_count))
+
+    def begin(self) -> None:
+        """Forget what the band before gathered."""
+        self._direct_view.clear(0.0, 0.0, 0.0, 0.0)
+        self.gathered.clear()
+
+    def _reset_jobs(self) -> None:
+        """The arguments of the indirect draw: no vertices yet, one instance."""
+        self._jobs.buffer.write(np.array([0, 1, 0, 0], np.uint32).tobytes())
+
+    def direct(
+        self, photons: moderngl.Buffer, importons: moderngl.Buffer, camera: moderngl.Buffer, width: int, rows: int, radius: float
+    ) -> None:
+        """DirectSplatting: photons onto the importons of the camera's first hits."""
+        if not self.stored_count:
+            return
+        self._reset_jobs()
+        self._direct_jobs.run(
+            self.stored_count,
+            {"Photons": photons, "StoredPhotons": self._stored.buffer, "Camera": camera, "Jobs": self._jobs.buffer},
+            {"count": self.stored_count, "radius": radius},
+        )
+        self._direct.draw(
+            self._direct_view,
+            self._jobs.buffer,
+            {"Jobs": self._jobs.buffer, "Photons": photons, "Importons": importons},
+            {"width": width, "height": rows},
+            viewport=(0, 0, width, rows),
+            state=moderngl.BLEND,
+            blend=(moderngl.ONE, moderngl.ONE),
+        )
+
+    def indirect(
+        self, photons: moderngl.Buffer, importons: moderngl.Buffer, count: int, centre: np.ndarray, radius: float
+    ) -> None:
+        """IndirectSplatting: photons onto importons anywhere, by the cubemap's lists."""
+        if not self.stored_count:
+            return
+        self._heads.clear()
+        self._core.buffer.write(bytes(4))
+        self._reset_jobs()
+        cube = {"centre": centre, "radius": radius, "resolution": _CUBE_RESOLUTION}
+        stored = {"Photons": photons, "StoredPhotons": self._stored.buffer}
+        self._insert.run(
+            count,
+            {"Importons": importons, "Heads": self._heads.buffer, "Core": self._core.buffer},
+            {**cube, "count": count},
+        )
+        self._indirect_jobs.run(
+            self.stored_count,
+            {**stored, "Heads": self._heads.buffer, "Jobs": self._jobs.buffer},
+            {**cube, "count": self.stored_count},
+        )
+        gathered = {"Importons": importons, "Gathered": self.gathered.buffer}
+        self._indirect.draw(
+            self._cube_view,
+            self._jobs.buffer,
+            {"Jobs": self._jobs.buffer, "Photons": photons, "Heads": self._heads.buffer, **gathered},
+            {"width": self._cube_size[0], "height": self._cube_size[1]},
+            viewport=(0, 0, *self._cube_size),
+        )
+        self._core_program.run(
+            self.stored_count,
+            {**stored, "Core": self._core.buffer, **gathered},
+            {**cube, "count": self.stored_count},
+        )
+
+    def release(self) -> None:
+        for resource in (self._stored, self._jobs, self._heads, self._core, self.gathered, self._direct_view, self.direct_splats, self._cube_view):
+            resource.release()

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Unpolarised reflectance of a dielectric; eta is the index beyond over the index before.
+float fresnel_dielectric(float cosine, float eta) {
+    cosine = clamp(abs(cosine), 0.0, 1.0);
+    float g2 = eta * eta - 1.0 + cosine * cosine;
+    if (g2 <= 0.0) return 1.0;
+    float g = sqrt(g2);
+    float a = (g - cosine) / (g + cosine);
+    float b = (cosine * (g + cosine) - 1.0) / (cosine * (g - cosine) + 1.0);
+    return 0.5 * a * a * (1.0 + b * b);
+}
+
+float normal_reflectance(float eta) {
+    float root = (eta - 1.0) / (eta + 1.0);
+    return root * root;
+}
+
+// 0 at normal incidence to 1 at grazing, along the dielectric's curve; 0 for matching indices.
+float dielectric_interpolation(float cosine, float eta) {
+    float f0 = normal_reflectance(eta);
+    return f0 >= 1.0 ? 1.0 : clamp((fresnel_dielectric(cosine, eta) - f0) / (1.0 - f0), 0.0, 1.0);
+}
+
+float schlick_interpolation(float cosine) {
+    float m = clamp(1.0 - cosine, 0.0, 1.0);
+    float m2 = m * m;
+    return m2 * m2 * m;
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/geometry.glsl"
+
+// Concentric map of the unit square to the unit disk (Shirley and Chiu 1997).
+vec2 sample_disk(vec2 u) {
+    vec2 p = 2.0 * u - 1.0;
+    if (p.x == 0.0 && p.y == 0.0) return vec2(0.0);
+    float r, angle;
+    if (abs(p.x) > abs(p.y)) { r = p.x; angle = (PI / 4.0) * (p.y / p.x); }
+    else { r = p.y; angle = PI / 2.0 - (PI / 4.0) * (p.x / p.y); }
+    return r * vec2(cos(angle), sin(angle));
+}
+
+// Around n with density cosine / pi.
+vec3 sample_cosine_hemisphere(vec3 n, vec2 u) {
+    vec2 d = sample_disk(u);
+    vec3 t, b;
+    tangent_frame(n, t, b);
+    return normalize(d.x * t + d.y * b + sqrt(max(0.0, 1.0 - dot(d, d))) * n);
+}
+
+// Around axis, uniform in solid angle within the cone of this cosine. one_minus_cosine keeps small cones exact.
+vec3 sample_cone(vec3 axis, float one_minus_cosine, vec2 u) {
+    float drop = u.x * one_minus_cosine;
+    float sine = sqrt(max(0.0, drop * (2.0 - drop)));
+    float angle = 2.0 * PI * u.y;
+    vec3 t, b;
+    tangent_frame(axis, t, b);
+    return normalize(sine * (cos(angle) * t + sin(angle) * b) + (1.0 - drop) * axis);
+}
+
+vec3 sample_sphere(vec2 u) {
+    float z = 1.0 - 2.0 * u.x;
+    float r = sqrt(max(0.0, 1.0 - z * z));
+    float angle = 2.0 * PI * u.y;
+    return vec3(r * cos(angle), r * sin(angle), z);
+}

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light sources: photons that leave them, samples of them from a point, and what a ray sees of them.
+// Needs the members scene_centre and scene_radius of the parameters.
+
+#include <Light>
+#include <EmissiveTriangle>
+#include "emission/environment.glsl"
+layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
+layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]; };
+
+// The numbers of rppm_addon/integrator/emission.py.
+const uint LIGHT_POINT = 0u, LIGHT_SPOT = 1u, LIGHT_SUN = 2u, LIGHT_RECTANGLE = 3u, LIGHT_ELLIPSE = 4u,
+           LIGHT_MESH = 5u, LIGHT_WORLD = 6u;
+const uint LIGHT_VISIBLE = 1u;
+
+
+// Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.
+float spot_attenuation(Light light, vec3 direction) {
+    vec3 local = vec3(dot(direction, light.axis_u), dot(direction, light.axis_v), dot(direction, light.normal));
+    if (local.z <= 0.0) return 0.0;
+    float cosine = local.z / length(local);
+    float range = (1.0 - light.cosine_cone) * light.blend;
+    if (range <= 0.0) return cosine > light.cosine_cone ? 1.0 : 0.0;
+    float x = clamp((cosine - light.cosine_cone) / range, 0.0, 1.0);
+    return x * x * (3.0 - 2.0 * x);
+}
+
+// Cycles' spread of area lights: linear in the tangent, zero beyond half the spread.
+float spread_attenuation(Light light, float cosine) {
+    if (light.spread_tangent <= 0.0) return 1.0;
+    float tangent = sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-6);
+    return max(0.0, (light.spread_tangent - tangent) * light.spread_scale);
+}
+
+vec3 radiant_strength(Light light, vec3 direction) {
+    return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
+}
+
+uint search_emissive_triangle(float u) {
+    uint low = 0u, high = uint(parameters.emissive_triangle_count) - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (emissive_triangles[middle].cumulated > u) high = middle;
+        else low = middle + 1u;
+    }
+    return low;
+}
+
+struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float density; };
+
+// A point on the emissive meshes with its density per area.
+TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
+    uint index = search_emissive_triangle(u_triangle);
+    EmissiveTriangle emissive = emissive_triangles[index];
+    float share = emissive.cumulated - (index == 0u ? 0.0 : emissive_triangles[index - 1u].cumulated);
+    vec3 v0 = triangle_vertices[3u * emissive.triangle].xyz;
+    vec3 v1 = triangle_vertices[3u * emissive.triangle + 1u].xyz;
+    vec3 v2 = triangle_vertices[3u * emissive.triangle + 2u].xyz;
+    float root = sqrt(u.x);
+    vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
+    return TrianglePoint(position, normalize(cross(v1 - v0, v2 - v0)), emissive.triangle, emissive.radiance,
+                         share / max(emissive.area, 1e-30));
+}
+
+// --- photons --------------------------------------------------------------------------------
+
+// flux is that of the whole light divided by the density of this choice; the caller shares it out.
+struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
+
+Emission emit_from_infinity(vec3 direction, vec2 u, vec3 flux_density) {
+    vec3 t, b;
+    tangent_frame(direction, t, b);
+    vec2 disk = parameters.scene_radius * sample_disk(u);
+    vec3 origin = parameters.scene_centre + disk.x * t + disk.y * b - parameters.scene_radius * direction;
+    return Emission(origin, NO_TRIANGLE, direction, flux_density * (PI * parameters.scene_radius * parameters.scene_radius));
+}
+
+Emission emit_photon(Light light, vec2 u_position, vec2 u_direction, float u_choice) {
+    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
+        vec3 direction;
+        float solid_angle = 4.0 * PI;
+        if (light.kind == LIGHT_POINT) direction = sample_sphere(u_direction);
+        else {
+            solid_angle = 2.0 * PI * light.spread_scale;
+            direction = sample_cone(light.normal, light.spread_scale, u_direction);
+        }
+        // A sphere of uniform radiance shows the same disk to every direction.
+        vec3 t, b;
+        tangent_frame(direction, t, b);
+        vec2 disk = sample_disk(u_position);
+        float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
+        vec3 origin = light.position + light.radius * (disk.x * t + disk.y * b + forward * direction);
+        return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) * solid_angle);
+    }
+    if (light.kind == LIGHT_SUN) {
+        vec3 direction = sample_cone(light.normal, 1.0 - light.cosine_cone, u_direction);
+        return emit_from_infinity(direction, u_position, light.strength);
+    }
+    if (light.kind == LIGHT_WORLD) {
+        float density;
+        vec3 towards = sample_world(u_direction, density);
+        return emit_from_infinity(-towards, u_position, world_radiance(towards) / density);
+    }
+    if (light.kind == LIGHT_MESH) {
+        TrianglePoint point = sample_emissive_triangle(u_choice, u_position);
+        // Both sides shine: the lower half of u.x goes to the back.
+        bool back = u_direction.x < 0.5;
+        vec3 normal = back ? -point.normal : point.normal;
+        vec3 direction = sample_cosine_hemisphere(normal, vec2(fract(2.0 * u_direction.x), u_direction.y));
+        return Emission(offset_from_surface(point.position, normal), point.triangle, direction,
+                        point.radiance * (2.0 * PI / point.density));
+    }
+    vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(u_position) : 2.0 * u_position - 1.0;
+    vec3 origin = light.position + place.x * light.axis_u + place.y * light.axis_v;
+    if (light.spread_tangent <= 0.0) {
+        vec3 direction = sample_cosine_hemisphere(light.normal, u_direction);
+        return Emission(origin, NO_TRIANGLE, direction, light.strength * (PI * light.area));
+    }
+    // Narrow beams: uniform in the cone of the spread.
+    vec3 direction = sample_cone(light.normal, 1.0 - light.cosine_cone, u_direction);
+    float cosine = dot(direction, light.normal);
+    return Emission(origin, NO_TRIANGLE, direction,
+                    light.strength * (spread_attenuation(light, cosine) * cosine * light.area * 2.0 * PI * (1.0 - light.cosine_cone)));
+}
+
+// --- direct light ---------------------------------------------------------------------------
+
+// Light towards a point: radiance divided by the density in 1/sr. weight 0: nothing arrives.
+struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; };
+
+LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
+    LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE);
+    if (light.kind == LIGHT_WORLD) {
+        float density;
+        result.direction = sample_world(u, density);
+        result.distance = INFINITY_DISTANCE;
+        result.weight = world_radiance(result.direction) / density;
+        return result;
+    }
+    if (light.kind == LIGHT_SUN) {
+        result.direction = -sample_cone(light.normal, 1.0 - light.cosine_cone, u);
+        result.distance = INFINITY_DISTANCE;
+        result.weight = light.strength;
+        return result;
+    }
+    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
+        vec3 to_centre = light.position - point;
+        float distance2 = dot(to_centre, to_centre);
+        if (distance2 <= light.radius * light.radius) return result;
+        vec3 axis = to_centre * inversesqrt(distance2);
+        float sine2 = light.radius * light.radius / distance2;
+        if (sine2 < 1e-7) {
+            result.direction = axis;
+            result.distance = sqrt(distance2) - light.radius;
+            result.weight = radiant_strength(light, -axis) / distance2;
+            return result;
+        }
+        float one_minus_cosine = sine2 / (1.0 + sqrt(1.0 - sine2));
+        result.direction = sample_cone(axis, one_minus_cosine, u);
+        float along = dot(to_centre, result.direction);
+        result.distance = along - sqrt(max(0.0, light.radius * light.radius - (distance2 - along * along)));
+        float area = PI * light.radius * light.radius;
+        result.weight = radiant_strength(light, -result.direction) * (2.0 * PI * one_minus_cosine / area);
+        return result;
+    }
+    vec3 position, normal, radiance;
+    float density;
+    if (light.kind == LIGHT_MESH) {
+        TrianglePoint sampled = sample_emissive_triangle(u_choice, u);
+        position = sampled.position;
+        normal = sampled.normal;
+        radiance = sampled.radiance;
+        density = sampled.density;
+        result.triangle = sampled.triangle;
+    } else {
+        vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(u) : 2.0 * u - 1.0;
+        position = light.position + place.x * light.axis_u + place.y * light.axis_v;
+        normal = light.normal;
+        radiance = light.strength;
+        density = 1.0 / light.area;
+    }
+    vec3 to_light = position - point;
+    float distance2 = dot(to_light, to_light);
+    if (distance2 <= 0.0) return result;
+    result.distance = sqrt(distance2);
+    result.direction = to_light / result.distance;
+    float cosine = -dot(result.direction, normal);
+    if (light.kind == LIGHT_MESH) cosine = abs(cosine);
+    if (cosine <= 0.0) return result;
+    if (light.kind != LIGHT_MESH) radiance *= spread_attenuation(light, cosine);
+    result.weight = radiance * (cosine / (distance2 * density));
+    return result;
+}
+
+// --- lights that a specular path meets ----------------------------------------------------------
+
+// Radiance of the light objects that a ray passes within its length; they hide nothing.
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance) {
+    vec3 radiance = vec3(0.0);
+    for (uint index = 0u; index < parameters.light_count; ++index) {
+        Light light = lights[index];
+        if ((light.flags & LIGHT_VISIBLE) == 0u) continue;
+        if (light.kind == LIGHT_SUN) {
+            float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
+            if (maximum_distance >= INFINITY_DISTANCE && solid_angle > 0.0 && -dot(direction, light.normal) >= light.cosine_cone)
+                radiance += light.strength / solid_angle;
+        } else if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
+            if (light.radius <= 0.0) continue;
+            vec3 to_centre = light.position - origin;
+            float along = dot(to_centre, direction);
+            vec3 off_axis = to_centre - along * direction;
+            float under = light.radius * light.radius - dot(off_axis, off_axis);
+            if (under < 0.0 || along <= 0.0) continue;
+            float distance = along - sqrt(under);
+            if (distance > 0.0 && distance < maximum_distance)
+                radiance += radiant_strength(light, -direction) / (PI * light.radius * light.radius);
+        } else if (light.kind == LIGHT_RECTANGLE || light.kind == LIGHT_ELLIPSE) {
+            float cosine = -dot(direction, light.normal);
+            if (cosine <= 0.0) continue;
+            float distance = dot(origin - light.position, light.normal) / cosine;
+            if (distance <= 0.0 || distance >= maximum_distance) continue;
+            vec3 place = origin + distance * direction - light.position;
+            // The axes of a sheared light are not orthogonal: solve for the coordinates along both.
+            float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v), vv = dot(light.axis_v, light.axis_v);
+            float pu = dot(place, light.axis_u), pv = dot(place, light.axis_v);
+            float determinant = uu * vv - uv * uv;
+            vec2 at = vec2(pu * vv - pv * uv, pv * uu - pu * uv) / determinant;
+            bool inside = light.kind == LIGHT_ELLIPSE ? dot(at, at) <= 1.0 : max(abs(at.x), abs(at.y)) <= 1.0;
+            if (inside) radiance += light.strength * spread_attenuation(light, cosine);
+        }
+    }
+    return radiance;
+}

@@ -1,0 +1,49 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The visibility buffer becomes rays, hits and fresh camera paths.
+
+layout(local_size_x = 64) in;
+
+#include <CameraView>
+#include <Ray>
+#include <Hit>
+#include <CameraPath>
+#include "common/invocation.glsl"
+#include "common/constants.glsl"
+layout(binding = 0) uniform sampler2D visibility;
+layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 1) readonly buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 2) writeonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 3) writeonly buffer Hits { Hit hits[]; };
+layout(std430, binding = 4) writeonly buffer CameraPaths { CameraPath camera_paths[]; };
+
+Hit intersect_plane(Ray ray, uint triangle) {
+    vec3 v0 = triangle_vertices[3u * triangle].xyz;
+    vec3 e1 = triangle_vertices[3u * triangle + 1u].xyz - v0, e2 = triangle_vertices[3u * triangle + 2u].xyz - v0;
+    vec3 p = cross(ray.direction, e2);
+    float determinant = dot(e1, p);
+    vec3 s = ray.origin - v0;
+    vec2 b = vec2(1.0 / 3.0);
+    if (determinant != 0.0) b = vec2(dot(s, p), dot(ray.direction, cross(s, e1))) / determinant;
+    // Rasterization may round a pixel onto a triangle that its ray just misses.
+    b = clamp(b, 0.0, 1.0);
+    b /= max(1.0, b.x + b.y);
+    return Hit(triangle, b.x, b.y, length(b.x * e1 + b.y * e2 - s));
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= camera.width * camera.height) return;
+    ivec2 pixel = ivec2(index % camera.width, index / camera.width);
+    vec2 fraction = (vec2(pixel) + 0.5) / vec2(camera.width, camera.height);
+    vec2 at = mix(camera.window.xz, camera.window.yw, fraction);
+    vec3 aside = at.x * camera.right + at.y * camera.up;
+    Ray ray = camera.orthographic != 0u
+        ? Ray(camera.position + aside, NO_TRIANGLE, camera.forward, camera.clip_end)
+        : Ray(camera.position, NO_TRIANGLE, normalize(camera.forward + aside), INFINITY_DISTANCE);
+    vec2 visible = texelFetch(visibility, pixel, 0).xy;
+    uint number = uint(visible.x + 0.5) | (uint(visible.y + 0.5) << 16u);
+    rays[index] = ray;
+    hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : intersect_plane(ray, number - 1u);
+    camera_paths[index] = CameraPath(vec3(1.0), index, 0.0, 0.0, 0.0, 1u);
+}

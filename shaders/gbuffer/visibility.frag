@@ -1,0 +1,19 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The number of the nearest triangle, as two 16-bit parts that floats hold exactly.
+
+#include <CameraView>
+layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
+
+flat in uint triangle;
+in float view_depth;
+layout(location = 0) out vec2 visible;
+
+void main() {
+    // Logarithmic in perspective: the same relative resolution near and far.
+    gl_FragDepth = camera.orthographic != 0u
+        ? (view_depth - camera.clip_start) / (camera.clip_end - camera.clip_start)
+        : log(view_depth / camera.clip_start) / log(camera.clip_end / camera.clip_start);
+    uint number = triangle + 1u;
+    visible = vec2(float(number & 0xffffu), float(number >> 16u));
+}

@@ -1,0 +1,76 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Indexed meshes and their instances become world-space triangles.
+
+layout(local_size_x = 64) in;
+
+#include <InstanceEntry>
+#include <TriangleAttributes>
+#include <GatherParameters>
+#include "common/invocation.glsl"
+#include "common/geometry.glsl"
+
+layout(std140, binding = 0) uniform Parameters { GatherParameters parameters; };
+layout(std430, binding = 0) readonly buffer Instances { InstanceEntry instances[]; };
+layout(std430, binding = 1) readonly buffer Positions { float positions[]; };
+layout(std430, binding = 2) readonly buffer CornerVertices { uint corner_vertices[]; };
+layout(std430, binding = 3) readonly buffer CornerNormals { float corner_normals[]; };
+layout(std430, binding = 4) readonly buffer CornerUvs { vec2 corner_uvs[]; };
+layout(std430, binding = 5) readonly buffer TriangleCorners { uint triangle_corners[]; };
+layout(std430, binding = 6) readonly buffer TriangleSlots { uint triangle_slots[]; };
+layout(std430, binding = 7) readonly buffer SlotMaterials { uint slot_materials[]; };
+layout(std430, binding = 8) writeonly buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 9) writeonly buffer Attributes { TriangleAttributes attributes[]; };
+
+const uint NO_UV = 0xffffffffu;
+
+uint instance_of(uint triangle) {
+    uint low = 0u, high = parameters.instance_count - 1u;
+    while (low < high) {
+        uint middle = (low + high + 1u) / 2u;
+        if (instances[middle].first_triangle <= triangle) low = middle;
+        else high = middle - 1u;
+    }
+    return low;
+}
+
+vec3 three_floats(uint index) { return vec3(positions[3u * index], positions[3u * index + 1u], positions[3u * index + 2u]); }
+
+void main() {
+    uint triangle = invocation_index();
+    if (triangle >= parameters.triangle_count) return;
+    InstanceEntry instance = instances[instance_of(triangle)];
+    uint local = instance.mesh_triangle + triangle - instance.first_triangle;
+    mat3 linear = transpose(mat3(instance.row0.xyz, instance.row1.xyz, instance.row2.xyz));
+    vec3 origin = vec3(instance.row0.w, instance.row1.w, instance.row2.w);
+    // Cofactors carry normals whatever the scale; a mirroring matrix turns the winding round.
+    mat3 cofactors = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
+    bool mirrored = dot(linear[0], cofactors[0]) < 0.0;
+
+    vec3 points[3];
+    uint corners[3];
+    bool finite = true;
+    for (uint k = 0u; k < 3u; ++k) {
+        corners[k] = instance.mesh_corner + triangle_corners[3u * local + (mirrored && k > 0u ? 3u - k : k)];
+        points[k] = linear * three_floats(instance.mesh_vertex + corner_vertices[corners[k]]) + origin;
+        finite = finite && all(lessThan(abs(points[k]), vec3(1e15)));
+    }
+    vec3 face = cross(points[1] - points[0], points[2] - points[0]);
+    uint normals[3];
+    vec2 uvs[3];
+    for (uint k = 0u; k < 3u; ++k) {
+        uint at = 3u * corners[k];
+        vec3 normal = cofactors * vec3(corner_normals[at], corner_normals[at + 1u], corner_normals[at + 2u]);
+        if (mirrored) normal = -normal;
+        float size = length(normal);
+        // A normal that cannot be used (zero, not finite) gives way to the face's.
+        normals[k] = size > 0.0 && size < 1e30 ? pack_unit_vector(normal / size) : pack_unit_vector(face / max(length(face), 1e-30));
+        uvs[k] = instance.mesh_uv == NO_UV ? vec2(0.0) : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
+    }
+    // A triangle without finite corners becomes a point, which no ray meets.
+    for (uint k = 0u; k < 3u; ++k)
+        triangle_vertices[3u * triangle + k] = vec4(finite ? points[k] : parameters.fallback_point, 0.0);
+    uint slot = min(triangle_slots[local], instance.slot_count - 1u);
+    attributes[triangle] = TriangleAttributes(normals[0], normals[1], normals[2], slot_materials[instance.first_slot + slot],
+                                              uvs[0], uvs[1], uvs[2], instance.object_index, 0u);
+}

@@ -1,0 +1,148 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// TraceImportons: collect what a camera path sees shine, leave an importon for the lobes that store
+// photons, and go on by the specular ones.
+
+layout(local_size_x = 64) in;
+
+#include <Ray>
+#include <CameraPath>
+#include <Importon>
+#include <CameraView>
+#include <ScatterImportonsParameters>
+#include "common/invocation.glsl"
+#include "common/random.glsl"
+#include "common/bsdf/closure.glsl"
+layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
+#include "emission/lights.glsl"
+layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
+layout(std430, binding = 1) buffer Rays { Ray rays[]; };
+layout(std430, binding = 2) buffer CameraPaths { CameraPath camera_paths[]; };
+layout(std430, binding = 3) writeonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
+layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
+
+const uint PATH_STRAIGHT = 1u;
+
+// Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
+float first_radius(vec3 direction, float distance, vec3 normal) {
+    float facing = max(abs(dot(normal, direction)), 1e-4);
+    float area = camera.pixel_solid_angle / facing;
+    if (camera.orthographic == 0u) {
+        float cosine = dot(direction, camera.forward);
+        area *= distance * distance * cosine * cosine * cosine;
+    }
+    return parameters.radius_scale * sqrt(area / PI);
+}
+
+Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u) {
+    Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
+                                 throughput * closure.diffuse / PI, closure.shading_normal,
+                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, closure.triangle, 0u, 0u);
+    // One rough lobe stands for all of them, chosen by its albedo.
+    float cosine = clamp(dot(unpack_unit_vector(closure.shading_normal), viewer), 0.0, 1.0);
+    float total = 0.0;
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (!lobe_stores(lobe, parameters.specular_alpha)) continue;
+        float share = largest(throughput * lobe_albedo(lobe, cosine));
+        if (share <= 0.0) continue;
+        total += share;
+        if (u * total < share) {
+            u = u * total / share;
+            importon.lobe_weight = throughput * lobe.weight / share;
+            importon.lobe_kind = lobe.kind;
+            importon.lobe_f0 = lobe.kind == LOBE_GLASS ? throughput * lobe.f0 / share : lobe.f0;
+            importon.lobe_alpha = lobe.alpha;
+            importon.lobe_ior = lobe.ior;
+        } else u = (u * total - share) / (total - share);
+    }
+    importon.lobe_weight *= total;
+    if (importon.lobe_kind == LOBE_GLASS) importon.lobe_f0 *= total;
+    if (importon.lobe_kind == LOBE_NONE && largest(importon.diffuse) <= 0.0) importon.radius = 0.0;
+    return importon;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    CameraPath path = camera_paths[index];
+    Ray ray = rays[index];
+    importons[index].radius = 0.0;
+    rays[index].maximum_distance = 0.0;
+    if (!(ray.maximum_distance > 0.0)) return;
+    Closure closure = closures[index];
+    bool hit = closure_hit(closure);
+    bool straight = (path.flags & PATH_STRAIGHT) != 0u;
+    vec4 seen = vec4(0.0);
+
+    vec3 lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE);
+    seen.rgb += path.throughput * lights_passed;
+    if (!hit) {
+        if (straight && parameters.film_transparent != 0u)
+            seen.a -= (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
+        else seen.rgb += path.throughput * world_radiance(ray.direction);
+        radiances[index] += seen;
+        return;
+    }
+    path.throughput *= closure.transmittance;
+    seen.rgb += path.throughput * closure.emission;
+    radiances[index] += seen;
+
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
+    vec3 viewer = -ray.direction;
+    path.total_length += closure.distance;
+    if (parameters.segment == 0u) {
+        path.primary_distance = closure.distance;
+        path.primary_radius = first_radius(ray.direction, closure.distance, geometric);
+    }
+    // Eq. 4, with the limits that shrink as the radius does.
+    float radius = path.primary_radius * path.total_length / max(path.primary_distance, 1e-12);
+    radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
+
+    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_IMPORTONS, parameters.segment, parameters.first_pixel + index);
+    importons[index] = make_importon(closure, path.throughput, viewer, radius, next_random(random));
+
+    if (parameters.last_segment != 0u) return;
+    float cosine = clamp(dot(shading, viewer), 0.0, 1.0);
+    float share[4];
+    share[0] = largest(path.throughput * closure.transparent);
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        share[1 + k] = lobe_is_specular(lobe, parameters.specular_alpha) ? largest(path.throughput * lobe_albedo(lobe, cosine)) : 0.0;
+    }
+    float total = share[0] + share[1] + share[2] + share[3];
+    if (total <= 0.0) return;
+    // Roulette once the path's throughput has fallen.
+    float survival = min(1.0, 4.0 * total);
+    float u = next_random(random);
+    vec2 u_direction = next_random2(random);
+    float u_event = next_random(random);
+    if (u >= survival) return;
+    u *= total / survival;
+    vec3 direction, weight;
+    bool transmitted;
+    float probability;
+    if (u < share[0]) {
+        direction = ray.direction;
+        weight = closure.transparent;
+        transmitted = true;
+        probability = share[0];
+    } else {
+        u -= share[0];
+        int chosen = u < share[1] ? 0 : (u < share[1] + share[2] ? 1 : 2);
+        probability = chosen == 0 ? share[1] : (chosen == 1 ? share[2] : share[3]);
+        if (probability <= 0.0) return;
+        LobeSample sampled = sample_lobe(closure_lobe(closure, chosen), shading, viewer, u_direction, u_event, true);
+        direction = sampled.direction;
+        weight = sampled.weight;
+        transmitted = sampled.transmitted;
+        path.flags &= ~PATH_STRAIGHT;
+    }
+    path.throughput *= weight * (total / (probability * survival));
+    float side = dot(direction, geometric);
+    if (!(largest(path.throughput) > 0.0) || (transmitted ? side >= 0.0 : side <= 0.0)) return;
+    camera_paths[index] = path;
+    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
+    rays[index] = Ray(origin, closure.triangle, direction, INFINITY_DISTANCE);
+}

@@ -1,0 +1,108 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// TracePhotons: store the photon and choose how its path goes on (D, G or S by importance).
+
+layout(local_size_x = 64) in;
+
+#include <Ray>
+#include <PhotonPath>
+#include <Photon>
+#include <ScatterPhotonsParameters>
+#include "common/invocation.glsl"
+#include "common/random.glsl"
+#include "common/bsdf/closure.glsl"
+layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
+layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
+layout(std430, binding = 1) buffer Rays { Ray rays[]; };
+layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
+layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
+
+const uint PHOTON_ACTIVE = 1u, PHOTON_STORED = 2u, PHOTON_ESCAPED = 4u;
+
+struct Scattering { vec3 direction; vec3 weight; bool transmitted; };
+
+// One event by its share of the flux; what is left of the probability is absorption.
+Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout RandomSequence random) {
+    Scattering result = Scattering(shading, vec3(0.0), false);
+    float cosine = clamp(dot(shading, arrival), 0.0, 1.0);
+    float scale = 1.0 / largest(flux);
+    float share[5];
+    share[0] = largest(flux * closure.diffuse) * scale;
+    share[1] = largest(flux * closure.transparent) * scale;
+    for (int k = 0; k < CLOSURE_LOBES; ++k)
+        share[2 + k] = largest(flux * lobe_albedo(closure_lobe(closure, k), cosine)) * scale;
+    float total = share[0] + share[1] + share[2] + share[3] + share[4];
+    float norm = max(total, 1.0);
+    float u = next_random(random) * norm;
+    vec2 u_direction = next_random2(random);
+    float u_event = next_random(random);
+    if (u >= total) return result;
+    if (u < share[0]) {
+        result.direction = sample_cosine_hemisphere(shading, u_direction);
+        result.weight = closure.diffuse * (norm / share[0]);
+        return result;
+    }
+    u -= share[0];
+    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), true);
+    u -= share[1];
+    int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
+    float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
+    LobeSample sampled = sample_lobe(closure_lobe(closure, chosen), shading, arrival, u_direction, u_event, false);
+    return Scattering(sampled.direction, sampled.weight * (norm / max(probability, 1e-20)), sampled.transmitted);
+}
+
+// Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
+float adjoint_correction(vec3 arrival, vec3 departure, vec3 geometric, vec3 shading) {
+    float above = abs(dot(arrival, shading)) * abs(dot(departure, geometric));
+    float below = abs(dot(arrival, geometric)) * abs(dot(departure, shading));
+    return min(above / max(below, 1e-6), 4.0);
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint slot = parameters.segment * parameters.photon_count + index;
+    Photon photon = Photon(vec3(0.0), 0u, vec3(0.0), 0u, vec3(0.0), NO_TRIANGLE, vec3(0.0), 0u);
+    vec3 carried = photon_paths[index].flux;
+    Ray ray = rays[index];
+    rays[index].maximum_distance = 0.0;
+    photon_paths[index].flux = vec3(0.0);
+    if (!(largest(carried) > 0.0)) {
+        photons[slot] = photon;
+        return;
+    }
+    Closure closure = closures[index];
+    photon.direction = -ray.direction;
+    photon.flux = carried;
+    photon.flags = PHOTON_ACTIVE;
+    if (!closure_hit(closure)) {
+        photon.flags |= PHOTON_ESCAPED;
+        photons[slot] = photon;
+        return;
+    }
+    photon.flux *= closure.transmittance;
+    photon.position = closure.position;
+    photon.triangle = closure.triangle;
+    photon.geometric_normal = closure.geometric_normal;
+    bool stores = largest(closure.diffuse) > 0.0;
+    for (int k = 0; k < CLOSURE_LOBES; ++k)
+        stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
+    if (stores) photon.flags |= PHOTON_STORED;
+
+    if (parameters.last_segment == 0u && largest(photon.flux) > 0.0) {
+        vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
+        RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS, parameters.segment, index);
+        Scattering scattering = scatter(closure, photon.flux, shading, photon.direction, random);
+        float side = dot(scattering.direction, geometric);
+        bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
+        if (largest(scattering.weight) > 0.0 && passes) {
+            bool straight = scattering.direction == ray.direction;
+            if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, shading);
+            photon.scattered_flux = photon.flux * scattering.weight;
+            photon_paths[index].flux = photon.scattered_flux;
+            vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
+            rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
+        }
+    }
+    photons[slot] = photon;
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces of the splat cubemap: 2 axis + (1 when negative), in a 3 x 2 atlas.
+
+vec3 to_face(vec3 p, int face) {
+    vec3 q = face < 2 ? p.yzx : (face < 4 ? p.zxy : p);
+    if ((face & 1) != 0) q.z = -q.z;
+    return q;
+}
+
+int face_of(vec3 p) {
+    vec3 a = abs(p);
+    if (a.x >= a.y && a.x >= a.z) return p.x < 0.0 ? 1 : 0;
+    if (a.y >= a.z) return p.y < 0.0 ? 3 : 2;
+    return p.z < 0.0 ? 5 : 4;
+}

@@ -1,0 +1,20 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A photon meets the importon of one camera pixel; blending adds up.
+
+#include <QuadParameters>
+#include "common/importon.glsl"
+layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
+layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
+
+flat in uint photon_number;
+flat in uint face;
+layout(location = 0) out vec4 gathered;
+
+void main() {
+    uint pixel = uint(gl_FragCoord.y) * parameters.width + uint(gl_FragCoord.x);
+    vec3 radiance;
+    if (!density_estimate(importons[pixel], photons[photon_number], radiance)) discard;
+    gathered = vec4(radiance, 1.0);
+}

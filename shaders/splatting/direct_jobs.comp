@@ -1,0 +1,39 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DirectSplatting: where on the camera's band each stored photon may contribute (Fig. 6b).
+
+layout(local_size_x = 64) in;
+
+#include <CameraView>
+#include <Photon>
+#include <SplatParameters>
+#include "common/invocation.glsl"
+#include "splatting/sphere_bounds.glsl"
+#include "splatting/jobs.glsl"
+layout(std140, binding = 0) uniform Parameters { SplatParameters parameters; };
+layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint stored_photons[]; };
+layout(std430, binding = 2) readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 3) buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint number = stored_photons[index];
+    vec3 offset = photons[number].position - camera.position;
+    vec3 p = vec3(dot(offset, camera.right), dot(offset, camera.up), dot(offset, camera.forward));
+    float radius = parameters.radius;
+    if (p.z < -radius) return;
+    vec2 across = vec2(p.x - radius, p.x + radius), along = vec2(p.y - radius, p.y + radius);
+    if (camera.orthographic == 0u) {
+        if (!sphere_tangents(p.xz, radius, camera.window.xy, across)) return;
+        if (!sphere_tangents(p.yz, radius, camera.window.zw, along)) return;
+    }
+    vec2 size = vec2(camera.width, camera.height), extent = camera.window.yw - camera.window.xz;
+    vec2 low = (vec2(across.x, along.x) - camera.window.xz) / extent * size - 1e-2;
+    vec2 high = (vec2(across.y, along.y) - camera.window.xz) / extent * size + 1e-2;
+    uvec2 first = uvec2(clamp(floor(low), vec2(0.0), size)), last = uvec2(clamp(ceil(high), vec2(0.0), size));
+    if (first.x >= last.x || first.y >= last.y) return;
+    uint job = atomicAdd(job_vertices, 6u) / 6u;
+    jobs[job] = SplatJob(number, first.x | (first.y << 16u), last.x | (last.y << 16u), 0u);
+}

@@ -1,0 +1,59 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// IndirectSplatting: which cubemap pixels each stored photon may reach (Fig. 6c).
+//
+// Importons within two radii of the centre are in the core list, so a photon within one radius
+// needs no quad, and the directions to the importons that a farther one can reach part from its own
+// by 30 degrees at most.
+
+layout(local_size_x = 64) in;
+
+#include <Photon>
+#include <CubeParameters>
+#include "common/invocation.glsl"
+#include "splatting/cube.glsl"
+#include "splatting/sphere_bounds.glsl"
+#include "splatting/jobs.glsl"
+layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
+layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint stored_photons[]; };
+layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
+layout(std430, binding = 3) buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
+
+// Small footprints are looked through at once: most photons have no importon near them.
+const int SMALL_AREA = 16;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint number = stored_photons[index];
+    vec3 p = photons[number].position - parameters.centre;
+    float distance = length(p), radius = parameters.radius;
+    if (distance < radius * 0.9999) return;
+    float cosine = min((distance * distance + 3.0 * radius * radius) / (4.0 * distance * radius), 1.0);
+    float sine = distance >= 2.236 * radius ? radius / distance * 1.00001 : sqrt(max(1.0 - cosine * cosine, 0.0)) + 1e-3;
+    p /= distance;
+    int size = int(parameters.resolution);
+    for (int face = 0; face < 6; ++face) {
+        vec3 q = to_face(p, face);
+        vec2 across, along;
+        if (q.z < -sine || !sphere_tangents(q.xz, sine, vec2(-1.0, 1.0), across)
+            || !sphere_tangents(q.yz, sine, vec2(-1.0, 1.0), along)) continue;
+        vec2 low = floor((vec2(across.x, along.x) * 0.5 + 0.5) * float(size) - 1e-2);
+        vec2 high = floor((vec2(across.y, along.y) * 0.5 + 0.5) * float(size) + 1e-2) + 1.0;
+        ivec2 first = ivec2(clamp(low, vec2(0.0), vec2(float(size))));
+        ivec2 last = ivec2(clamp(high, vec2(0.0), vec2(float(size))));
+        ivec2 extent = last - first;
+        if (extent.x <= 0 || extent.y <= 0) continue;
+        if (extent.x * extent.y <= SMALL_AREA) {
+            uint any = 0u;
+            for (int y = first.y; y < last.y; ++y)
+                for (int x = first.x; x < last.x; ++x) any |= heads[(face * size + y) * size + x];
+            if (any == 0u) continue;
+        }
+        ivec2 corner = ivec2(face % 3, face / 3) * size;
+        uvec2 from = uvec2(corner + first), to = uvec2(corner + last);
+        uint job = atomicAdd(job_vertices, 6u) / 6u;
+        jobs[job] = SplatJob(number, from.x | (from.y << 16u), to.x | (to.y << 16u), uint(face));
+    }
+}

@@ -1,0 +1,31 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Importons enter the lists of the cubemap pixels that they project to; those around the centre,
+// where a photon's footprint has no bound, enter the core list.
+
+layout(local_size_x = 64) in;
+
+#include <Importon>
+#include <CubeParameters>
+#include "common/invocation.glsl"
+#include "splatting/cube.glsl"
+layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
+layout(std430, binding = 0) buffer Importons { Importon importons[]; };
+layout(std430, binding = 1) buffer Heads { uint heads[]; };
+layout(std430, binding = 2) buffer Core { uint core_count; uint core_importons[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    if (!(importons[index].radius > 0.0)) return;
+    vec3 p = importons[index].position - parameters.centre;
+    if (dot(p, p) < 4.0 * parameters.radius * parameters.radius) {
+        core_importons[atomicAdd(core_count, 1u)] = index;
+        return;
+    }
+    int face = face_of(p);
+    vec3 q = to_face(p, face);
+    int size = int(parameters.resolution);
+    ivec2 cell = ivec2(clamp(floor((q.xy / q.z * 0.5 + 0.5) * float(size)), vec2(0.0), vec2(float(size - 1))));
+    importons[index].next = atomicExchange(heads[(face * size + cell.y) * size + cell.x], index + 1u);
+}
