@@ -46,6 +46,9 @@ class RenderSettings:
     seed: int = 0
     cubemap_resolution: int = 0
     """Cells along a side of DIRT's cube faces, a power of two; 0 is automatic."""
+    filter_width: float = 1.5
+    """Width of the Blackman-Harris pixel filter in pixels (Cycles' default); 0 looks through
+    pixel centres only."""
     film_transparent: bool = False
 
     def validate(self) -> None:
@@ -69,6 +72,7 @@ class RenderSettings:
                 f"radius_maximum is {self.radius_maximum}, less than radius_minimum {self.radius_minimum}; raise it"
             )
         need("specular_roughness", 0.0 <= self.specular_roughness <= 1.0, "0 to 1")
+        need("filter_width", math.isfinite(self.filter_width) and 0.0 <= self.filter_width <= 20.0, "0 to 20 pixels")
         need("iterations_per_frame", self.iterations_per_frame >= 1, "1 or more")
         need("seed", 0 <= self.seed < 1 << 31, "0 to 2147483647")
         resolution = self.cubemap_resolution
