@@ -19,7 +19,7 @@ from .geometry import Geometry
 from .records import EMISSIVE_TRIANGLE, LIGHT
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
-_VISIBLE = 1
+_VISIBLE, _SOFT = 1, 2
 
 LIGHT_PARAMETERS = {
     "scene_centre": "vec3",
@@ -37,6 +37,7 @@ LIGHT_PARAMETERS = {
 """Parameters of every program that includes shaders/emission/lights.glsl."""
 
 Record("EmitParameters", **LIGHT_PARAMETERS)
+Record("SoftFalloffParameters", **LIGHT_PARAMETERS)
 
 
 def spot_share(cosine_cone: float, blend: float) -> float:
@@ -100,12 +101,14 @@ class Emission:
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         self._program = library.compute("emission/emit.comp")
+        self._soft_program = library.compute("emission/soft_falloff.comp")
         self._lights = GrowingBuffer(context, "lights")
         self._emissive = GrowingBuffer(context, "emissive triangles")
         self.environment = Environment(context)
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.photon_counts: dict[str, int] = {}
+        self.has_soft_lights = False
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -178,6 +181,7 @@ class Emission:
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         table["photon_count"] = counts
+        self.has_soft_lights = bool((table["flags"] & _SOFT).any())
         table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
         self._lights.upload(table)
         self._emissive.upload(emissive if len(emissive) else EMISSIVE_TRIANGLE.zeros(1))
@@ -202,6 +206,16 @@ class Emission:
             count, {**self.buffers, "Rays": rays, "PhotonPaths": photon_paths}, self.parameters(seed, iteration, count)
         )
 
+    def soften(
+        self, rays: moderngl.Buffer, hits: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int
+    ) -> None:
+        """End the photons that a soft light does not send to where they hit first."""
+        self._soft_program.run(
+            count,
+            {**self.buffers, "Rays": rays, "Hits": hits, "PhotonPaths": photon_paths},
+            self.parameters(seed, iteration, count),
+        )
+
     def release(self) -> None:
         self._lights.release()
         self._emissive.release()
@@ -222,7 +236,8 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     entry["normal"] = normal
     entry["strength"] = strength = np.maximum(light.strength, 0.0)
     entry["radius"] = max(light.radius, 0.0)
-    entry["flags"] = _VISIBLE if light.visible_to_camera else 0
+    soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
+    entry["flags"] = (_VISIBLE if light.visible_to_camera else 0) | (_SOFT if soft else 0)
     if light.kind is LightKind.POINT:
         entry["kind"] = POINT
         return entry, 4 * math.pi * strength

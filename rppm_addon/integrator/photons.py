@@ -47,11 +47,12 @@ class Photons:
     def run(self, stages: Stages, iteration: int) -> None:
         """Emit the iteration's photons and trace them to the last segment."""
         settings, timers = stages.settings, stages.timers
-        with timers.stage("emission"):
-            stages.emission.run(self._rays.buffer, self._paths.buffer, self.photon_count, settings.seed, iteration)
         for segment in range(self.segments):
-            with timers.stage("photon tracing"):
-                stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
+            if segment == 0:
+                self._emit(stages, iteration)
+            else:
+                with timers.stage("photon tracing"):
+                    stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
             with timers.stage("photon resolve"):
                 stages.resolve.run(
                     stages.geometry, stages.materials, self._rays.buffer, self._hits.buffer, self._closures.buffer,
@@ -77,9 +78,19 @@ class Photons:
                     },
                 )
 
+    def _emit(self, stages: Stages, iteration: int) -> None:
+        """DirectPhotonHits: photons leave the lights and find their first hits."""
+        rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
+        with stages.timers.stage("emission"):
+            stages.emission.run(rays, paths, self.photon_count, stages.settings.seed, iteration)
+        with stages.timers.stage("photon tracing"):
+            stages.deep_cubemap.trace(rays, hits, self.photon_count)
+            if stages.emission.has_soft_lights:
+                stages.emission.soften(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
+
     def read_emitted(self, stages: Stages, iteration: int) -> np.ndarray:
         """(photon_count, 3) flux in W with which an iteration's photons leave their lights."""
-        stages.emission.run(self._rays.buffer, self._paths.buffer, self.photon_count, stages.settings.seed, iteration)
+        self._emit(stages, iteration)
         return self._paths.read(PHOTON_PATH.dtype, self.photon_count)["flux"]
 
     def read(self) -> np.ndarray:

@@ -27,6 +27,9 @@ class Light:
     SUN irradiance on a facing surface W/m^2; AREA radiance W/(m^2 sr)."""
     radius: float = 0.0
     """POINT and SPOT: radius of the emitting sphere, metres."""
+    soft_falloff: bool = False
+    """POINT and SPOT: a disk that faces each point it lights in place of the sphere, which keeps
+    surfaces near a large lamp from glaring (Blender's Soft Falloff)."""
     spot_angle: float = np.pi
     """SPOT: full angle of the cone, radians."""
     spot_blend: float = 0.0

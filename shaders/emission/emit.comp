@@ -14,17 +14,6 @@ layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
 layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) writeonly buffer PhotonPaths { PhotonPath photon_paths[]; };
 
-// Lights hold consecutive ranges of the photons.
-uint light_of(uint photon) {
-    uint low = 0u, high = parameters.light_count - 1u;
-    while (low < high) {
-        uint middle = (low + high + 1u) / 2u;
-        if (lights[middle].first_photon <= photon) low = middle;
-        else high = middle - 1u;
-    }
-    return low;
-}
-
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;

@@ -12,7 +12,7 @@ layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]
 // The numbers of rppm_addon/integrator/emission.py.
 const uint LIGHT_POINT = 0u, LIGHT_SPOT = 1u, LIGHT_SUN = 2u, LIGHT_RECTANGLE = 3u, LIGHT_ELLIPSE = 4u,
            LIGHT_MESH = 5u, LIGHT_WORLD = 6u;
-const uint LIGHT_VISIBLE = 1u;
+const uint LIGHT_VISIBLE = 1u, LIGHT_SOFT = 2u;
 
 
 // Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.
@@ -35,6 +35,17 @@ float spread_attenuation(Light light, float cosine) {
 
 vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
+}
+
+// Lights hold consecutive ranges of the photons.
+uint light_of(uint photon) {
+    uint low = 0u, high = parameters.light_count - 1u;
+    while (low < high) {
+        uint middle = (low + high + 1u) / 2u;
+        if (lights[middle].first_photon <= photon) low = middle;
+        else high = middle - 1u;
+    }
+    return low;
 }
 
 uint search_emissive_triangle(float u) {
@@ -61,6 +72,14 @@ TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
     vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
     return TrianglePoint(position, normalize(cross(v1 - v0, v2 - v0)), emissive.triangle, emissive.radiance,
                          share / max(emissive.area, 1e-30));
+}
+
+// Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
+float soft_light_distance(Light light, vec3 origin, vec3 direction) {
+    vec3 to_centre = light.position - origin;
+    float distance = dot(to_centre, to_centre) / dot(direction, to_centre);
+    vec3 place = distance * direction - to_centre;
+    return distance > 0.0 && dot(place, place) <= light.radius * light.radius ? distance : 0.0;
 }
 
 // --- photons --------------------------------------------------------------------------------
@@ -129,6 +148,17 @@ Emission emit_photon(Light light, vec2 u_position, vec2 u_direction, float u_cho
 // Light towards a point: radiance divided by the density in 1/sr. weight 0: nothing arrives.
 struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; };
 
+// A disk that faces the point.
+LightSample sample_soft_light(Light light, vec3 to_centre, vec2 u) {
+    vec3 axis = normalize(to_centre), t, b;
+    tangent_frame(axis, t, b);
+    vec2 disk = light.radius * sample_disk(u);
+    vec3 to_light = to_centre + disk.x * t + disk.y * b;
+    float distance2 = dot(to_light, to_light), distance = sqrt(distance2);
+    vec3 direction = to_light / distance;
+    return LightSample(direction, distance, radiant_strength(light, -direction) * (dot(direction, axis) / distance2), NO_TRIANGLE);
+}
+
 LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
     LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE);
     if (light.kind == LIGHT_WORLD) {
@@ -147,6 +177,7 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
         vec3 to_centre = light.position - point;
         float distance2 = dot(to_centre, to_centre);
+        if ((light.flags & LIGHT_SOFT) != 0u) return sample_soft_light(light, to_centre, u);
         if (distance2 <= light.radius * light.radius) return result;
         vec3 axis = to_centre * inversesqrt(distance2);
         float sine2 = light.radius * light.radius / distance2;
@@ -208,6 +239,12 @@ vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance) {
         } else if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
             if (light.radius <= 0.0) continue;
             vec3 to_centre = light.position - origin;
+            if ((light.flags & LIGHT_SOFT) != 0u) {
+                float distance = soft_light_distance(light, origin, direction);
+                if (distance > 0.0 && distance < maximum_distance)
+                    radiance += radiant_strength(light, -direction) / (PI * light.radius * light.radius);
+                continue;
+            }
             float along = dot(to_centre, direction);
             vec3 off_axis = to_centre - along * direction;
             float under = light.radius * light.radius - dot(off_axis, off_axis);

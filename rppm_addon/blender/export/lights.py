@@ -48,6 +48,7 @@ def export_light(
 
 def _fill_sphere(light: Light, data: bpy.types.Light, normalize: bool) -> None:
     light.radius = data.shadow_soft_size
+    light.soft_falloff = getattr(data, "use_soft_falloff", True)
     if normalize:
         light.strength = light.strength / (4.0 * math.pi)
     elif light.radius > 0.0:
@@ -94,7 +95,9 @@ def _emission(tree: bpy.types.NodeTree, evaluator: Evaluator) -> np.ndarray:
         return total
     for shader in evaluator.shaders(output.inputs["Surface"]):
         node, path = shader.node, shader.path
-        if node.type == "EMISSION":
+        if shader.type == "COLOR":
+            total += shader.weight * evaluator.mean(shader.color)
+        elif node.type == "EMISSION":
             strength = evaluator.scalar(node.inputs["Strength"], path)
             total += shader.weight * strength * evaluator.mean_color(node.inputs["Color"], path)
         else:
