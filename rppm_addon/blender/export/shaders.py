@@ -16,6 +16,9 @@ Maker = Callable[[list[Lobe], Evaluator, float, bpy.types.Node, Path], None]
 def add_lobes(lobes: list[Lobe], evaluator: Evaluator, shader: Shader) -> None:
     """Append the lobes of one shader node; one that is not known becomes the nearest that is."""
     weight, node, path = shader.weight, shader.node, shader.path
+    if shader.type == "COLOR":
+        lobes.append(_colored(LobeKind.EMISSION, weight, shader.color))
+        return
     maker = _MAKERS.get(shader.type)
     if maker is not None:
         maker(lobes, evaluator, weight, node, path)

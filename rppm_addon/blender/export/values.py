@@ -34,7 +34,10 @@ class Shader:
     node: bpy.types.Node
     path: Path
     type: str
-    """The node's type, or that of the node that does what it and its neighbours do together."""
+    """The node's type, or that of the node that does what it and its neighbours do together;
+    COLOR where a colour feeds a shader input, which glows with it, as in Cycles."""
+    color: Value | None = None
+    """COLOR: that colour."""
 
 
 class Evaluator:
@@ -94,7 +97,8 @@ class Evaluator:
                 continue
             node, path = source.node, source.path
             if source.output.type != "SHADER":
-                self.warn(node, "feeds a shader input with a colour, which is ignored")
+                value = constants.evaluate(self, source)
+                yield Shader(weight, node, path, "COLOR", Value(np.zeros(3)) if value is None else value)
             elif node.type == "MIX_SHADER":
                 refraction = self._refraction_of_glass(node, path)
                 if refraction is not None:

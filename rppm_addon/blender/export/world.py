@@ -27,6 +27,9 @@ def export_world(world: bpy.types.World | None, report: Report, images: ImageTab
         report.warn(f'World "{world.name}": its volume is not rendered yet and is ignored')
     for shader in evaluator.shaders(output.inputs["Surface"]):
         node, path = shader.node, shader.path
+        if shader.type == "COLOR":
+            _add_color(exported, shader.weight * evaluator.mean(shader.color), evaluator, node)
+            continue
         if node.type not in {"BACKGROUND", "EMISSION"}:
             evaluator.warn(node, "gives no light in a world and counts as black")
             continue

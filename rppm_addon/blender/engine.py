@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine that Blender lists as RPPM."""
+
+import logging
+
+import bpy
+
+from .final import render_final
+
+logger = logging.getLogger(__name__)
+
+VIEWPORT_TEXT = "The viewport is not rendered in this version; press F12 for a render"
+
+
+class RppmRenderEngine(bpy.types.RenderEngine):
+    bl_idname = "RPPM"
+    bl_label = "RPPM"
+    bl_use_preview = False
+    bl_use_eevee_viewport = True  # Material Preview is drawn by EEVEE
+    bl_use_shading_nodes_custom = False  # Cycles' nodes are ours
+    bl_use_postprocess = True
+    bl_use_gpu_context = False
+
+    def __init__(self, *args, **kwargs):
+        # Blender calls this twice on one object: nothing may be started here.
+        super().__init__(*args, **kwargs)
+
+    def update_render_passes(self, scene: bpy.types.Scene, renderlayer: bpy.types.ViewLayer) -> None:
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        if renderlayer.use_pass_z:
+            self.register_pass(scene, renderlayer, "Depth", 1, "Z", "VALUE")
+        if renderlayer.use_pass_normal:
+            self.register_pass(scene, renderlayer, "Normal", 3, "XYZ", "VECTOR")
+
+    def render(self, depsgraph: bpy.types.Depsgraph) -> None:
+        render_final(self, depsgraph)
+
+    def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        logger.info(VIEWPORT_TEXT)
+
+    def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        self.update_stats("RPPM", VIEWPORT_TEXT)
+
+
+def register() -> None:
+    bpy.utils.register_class(RppmRenderEngine)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(RppmRenderEngine)

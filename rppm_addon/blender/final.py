@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A final render: export, render, and show the picture as it grows."""
+
+import logging
+import time
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ..scene import Scene
+from ..scene.errors import RppmError
+from ..session.observers import RenderObserver, current_observer
+from . import renderer_thread
+from .export import ExportStopped, export_scene
+
+if TYPE_CHECKING:
+    from ..session.renderer import Frame, Progress
+
+logger = logging.getLogger(__name__)
+
+PICTURE_SECONDS = 1.0
+"""Least time between two pictures shown; the first one comes after the first iteration."""
+PICTURE_SHARE = 0.2
+"""Most of the time that showing pictures may take."""
+WARNINGS_SHOWN = 8
+"""Warnings reported one by one; the log has them all."""
+
+
+def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+    """Render the depsgraph's view layer into the engine's result.
+
+    Errors end in the engine's error text and report; nothing is raised.
+    """
+    observer = current_observer()
+    try:
+        _render(engine, depsgraph, observer)
+    except ExportStopped:
+        logger.info("the render was stopped during the export")
+    except RppmError as error:
+        _fail(engine, observer, str(error))
+    except Exception as error:
+        logger.exception("RPPM failed")
+        _fail(
+            engine,
+            observer,
+            f"RPPM failed unexpectedly ({type(error).__name__}: {error}); please report the system console's text",
+        )
+
+
+def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> None:
+    scene = export_scene(depsgraph, engine, observer.should_stop)
+    _report_warnings(engine, scene)
+    if not observer.on_scene(scene):
+        return
+    engine.update_stats("", "Preparing the graphics device")
+    job = _FinalJob(engine, scene, depsgraph.view_layer_eval.name, observer)
+    try:
+        result = renderer_thread.render(scene, job)
+        job.show(result.frame)
+    except BaseException:
+        job.end(cancel=True)
+        raise
+    job.end(cancel=False)
+    for warning in result.statistics.warnings:
+        engine.report({"WARNING"}, warning)
+    observer.on_finish(result, scene)
+
+
+def _fail(engine: bpy.types.RenderEngine, observer: RenderObserver, text: str) -> None:
+    engine.error_set(text)
+    engine.report({"ERROR"}, text)
+    observer.on_error(text)
+
+
+def _report_warnings(engine: bpy.types.RenderEngine, scene: Scene) -> None:
+    for warning in scene.warnings[:WARNINGS_SHOWN]:
+        engine.report({"WARNING"}, warning)
+    more = len(scene.warnings) - WARNINGS_SHOWN
+    if more > 0:
+        engine.report({"WARNING"}, f"{more} more warnings of this kind are in the log")
+
+
+class _FinalJob(renderer_thread.RenderJob):
+    """Shows a render in the engine's result and tells the observer."""
+
+    def __init__(self, engine: bpy.types.RenderEngine, scene: Scene, layer: str, observer: RenderObserver) -> None:
+        self._engine = engine
+        self._scene = scene
+        self._layer = layer
+        self._observer = observer
+        self._result = None
+        self._shown_at = -1e9
+        self._showing_seconds = 0.0
+
+    @property
+    def snapshots(self) -> tuple[float, ...]:
+        return self._observer.snapshots
+
+    def should_stop(self) -> bool:
+        return self._engine.test_break() or self._observer.should_stop()
+
+    def on_start(self) -> None:
+        self._observer.on_start(self._scene)
+
+    def on_progress(self, progress: "Progress") -> bool:
+        self._observer.on_progress(progress)
+        self._engine.update_progress(progress.fraction)
+        self._engine.update_stats("", status_text(progress, self._scene))
+        if progress.iteration == 0 or progress.iteration == progress.iterations:
+            return False  # nothing to see yet, or shown at the end
+        waited = time.monotonic() - self._shown_at
+        due = waited >= max(PICTURE_SECONDS, self._showing_seconds / PICTURE_SHARE)
+        first = progress.iteration == 1
+        return first or (due and progress.iteration % self._scene.settings.iterations_per_frame == 0)
+
+    def on_frame(self, progress: "Progress", frame: "Frame") -> None:
+        self.show(frame)
+
+    def on_snapshot(self, seconds: float, frame: "Frame") -> None:
+        self._observer.on_snapshot(seconds, frame, self._scene)
+
+    def show(self, frame: "Frame") -> None:
+        """Put a picture into the engine's result."""
+        started = time.monotonic()
+        if self._result is None:
+            width, height = self._scene.camera.resolution
+            self._result = self._engine.begin_result(0, 0, width, height, layer=self._layer)
+        pictures = {"Combined": frame.combined, "Depth": frame.depth, "Normal": frame.normal}
+        for render_pass in self._result.layers[0].passes:
+            picture = pictures.get(render_pass.name)
+            if picture is not None:
+                # Blender takes a flat array of single precision only.
+                render_pass.rect.foreach_set(np.ascontiguousarray(picture, np.float32).reshape(-1))
+        self._engine.update_result(self._result)
+        self._shown_at = time.monotonic()
+        self._showing_seconds = self._shown_at - started
+
+    def end(self, cancel: bool) -> None:
+        """Hand the result back to Blender."""
+        if self._result is not None:
+            self._engine.end_result(self._result, cancel=cancel)
+            self._result = None
+
+
+def status_text(progress: "Progress", scene: Scene) -> str:
+    """One line on how far the render is; farm managers read its ``Sample n/m``."""
+    if progress.iteration == 0:
+        return f"Sample 0/{progress.iterations} | Building the deep cubemap of {scene.triangle_count} triangles"
+    text = f"Sample {progress.iteration}/{progress.iterations} | {progress.photons / 1e6:.2f} million photons"
+    if 0.0 < progress.fraction < 1.0:
+        remaining = progress.elapsed_seconds * (1.0 / progress.fraction - 1.0)
+        text += f" | Remaining {int(remaining // 60):02d}:{remaining % 60:04.1f}"
+    return text

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scene.rppm and light.rppm; the scene's names and defaults are those of RenderSettings."""
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+from ..scene import RenderSettings
+
+DEFAULTS = RenderSettings()
+
+
+class RppmSceneProperties(bpy.types.PropertyGroup):
+    """Settings of the photon mapper."""
+
+    iterations: IntProperty(
+        name="Iterations",
+        description="Passes of the photon mapper; each makes the picture sharper and less noisy",
+        default=DEFAULTS.iterations,
+        min=1,
+        soft_max=4096,
+    )
+    time_limit: FloatProperty(
+        name="Time Limit",
+        description="Stop after this time even if iterations are left; 0 is no limit",
+        default=DEFAULTS.time_limit,
+        min=0.0,
+        soft_max=3600.0,
+        step=100,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+    )
+    photons: IntProperty(
+        name="Photons",
+        description="Photons emitted in each iteration, shared among the lights by their power and photon share",
+        default=DEFAULTS.photons,
+        min=1,
+        max=1 << 22,
+        soft_min=1024,
+        step=1024,
+    )
+    camera_path_length: IntProperty(
+        name="Camera Paths",
+        description="Segments of camera paths through glass and mirrors, the one from the camera being the first",
+        default=DEFAULTS.camera_path_length,
+        min=1,
+        max=64,
+        soft_max=32,
+    )
+    photon_path_length: IntProperty(
+        name="Photon Paths",
+        description="Segments of photon paths, the one that leaves the light being the first",
+        default=DEFAULTS.photon_path_length,
+        min=1,
+        max=64,
+        soft_max=32,
+    )
+    alpha: FloatProperty(
+        name="Alpha",
+        description=(
+            "Share of the new photons that are kept as the radius shrinks: "
+            "low values sharpen quickly and stay noisy, high values stay smooth and blurred"
+        ),
+        default=DEFAULTS.alpha,
+        min=0.01,
+        max=0.99,
+        subtype="FACTOR",
+    )
+    radius_scale: FloatProperty(
+        name="Initial Radius",
+        description="Radius of the first iteration in pixels of a 1 megapixel picture, scaled with the picture's size",
+        default=DEFAULTS.radius_scale,
+        min=0.01,
+        soft_min=1.0,
+        soft_max=50.0,
+        subtype="PIXEL",
+    )
+    radius_minimum: FloatProperty(
+        name="Minimum",
+        description="Smallest radius in the first iteration, shrinking from there; 0 is automatic",
+        default=DEFAULTS.radius_minimum,
+        min=0.0,
+        soft_max=1.0,
+        precision=4,
+        subtype="DISTANCE",
+        unit="LENGTH",
+    )
+    radius_maximum: FloatProperty(
+        name="Maximum",
+        description="Largest radius in the first iteration, shrinking from there; 0 is automatic",
+        default=DEFAULTS.radius_maximum,
+        min=0.0,
+        soft_max=1.0,
+        precision=4,
+        subtype="DISTANCE",
+        unit="LENGTH",
+    )
+    specular_roughness: FloatProperty(
+        name="Specular Roughness",
+        description=(
+            "Surfaces up to this roughness, as their node shows it, are followed as mirrors and glass; "
+            "rougher ones gather photons"
+        ),
+        default=DEFAULTS.specular_roughness,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    direct_light: EnumProperty(
+        name="Direct Light",
+        description="How light that comes straight from a source is estimated",
+        items=[
+            ("RAYS", "Rays", "Follow a ray to a light from each point: less noise", 0),
+            ("PHOTONS", "Photons", "Use the photons that come straight from the lights, as the paper does", 1),
+        ],
+        default=DEFAULTS.direct_light.name,
+    )
+    iterations_per_frame: IntProperty(
+        name="Iterations per Picture",
+        description="Iterations between two pictures shown while rendering",
+        default=DEFAULTS.iterations_per_frame,
+        min=1,
+        soft_max=64,
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="Start of the random numbers; the same seed gives the same noise",
+        default=DEFAULTS.seed,
+        min=0,
+    )
+    cubemap_resolution: IntProperty(
+        name="Cubemap Resolution",
+        description=(
+            "Cells along a side of the deep cubemap's faces, a power of two from 16 to 1024: "
+            "more cells trace faster and take longer to fill; 0 is automatic"
+        ),
+        default=DEFAULTS.cubemap_resolution,
+        min=0,
+        max=1024,
+    )
+
+
+class RppmLightProperties(bpy.types.PropertyGroup):
+    """Settings of a light."""
+
+    photon_share: FloatProperty(
+        name="Photon Share",
+        description=(
+            "Weight of this light, on top of its power, when photons are shared out; "
+            "more photons make its light smoother, never brighter"
+        ),
+        default=1.0,
+        min=0.0,
+        soft_max=10.0,
+    )
+
+
+_CLASSES = (RppmSceneProperties, RppmLightProperties)
+
+
+def register() -> None:
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.rppm = PointerProperty(type=RppmSceneProperties, name="RPPM")
+    bpy.types.Light.rppm = PointerProperty(type=RppmLightProperties, name="RPPM")
+
+
+def unregister() -> None:
+    del bpy.types.Light.rppm
+    del bpy.types.Scene.rppm
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

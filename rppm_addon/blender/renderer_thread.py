@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one Renderer of this Blender, in a thread of its own.
+
+A GL context belongs to the thread that made it, and Blender renders from ever new threads (F12)
+or from its main thread, where a context of ours would collide with Blender's. So the renderer
+lives in one thread that outlasts renders and keeps its compiled programs; whoever renders waits
+for it and runs the callbacks, which may then talk to Blender.
+"""
+
+import atexit
+import contextvars
+import queue
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from ..scene import Scene
+
+if TYPE_CHECKING:
+    from ..session.renderer import Frame, Progress, RenderResult
+
+POLL_SECONDS = 0.05
+"""How often a waiting caller asks whether to stop, beside every iteration."""
+
+
+class RenderJob:
+    """One render, as its caller sees it; all methods run in the caller's thread.
+
+    A render with nothing to show overrides none of them.
+    """
+
+    snapshots: tuple[float, ...] = ()
+
+    def should_stop(self) -> bool:
+        """Whether the render is to end with what it has."""
+        return False
+
+    def on_start(self) -> None:
+        """The renderer exists and is about to be given the scene."""
+
+    def on_progress(self, progress: "Progress") -> bool:
+        """After each iteration. Returns whether on_frame is to be given the picture."""
+        return False
+
+    def on_frame(self, progress: "Progress", frame: "Frame") -> None:
+        """The picture so far, as on_progress asked for."""
+
+    def on_snapshot(self, seconds: float, frame: "Frame") -> None:
+        """The picture at a mark of ``snapshots``."""
+
+
+class _Conversation:
+    """How the renderer's thread has its caller run a function and waits for what it returns."""
+
+    def __init__(self, scene: Scene, job: RenderJob) -> None:
+        self.scene = scene
+        self.job = job
+        self.stop = threading.Event()
+        self._questions: queue.SimpleQueue = queue.SimpleQueue()
+        self._answers: queue.SimpleQueue = queue.SimpleQueue()
+
+    # In the renderer's thread.
+
+    def ask(self, function: Callable, *arguments: object) -> Any:
+        """Run a function in the caller's thread; its exceptions are raised here."""
+        self._questions.put((function, arguments))
+        answer, error = self._answers.get()
+        if error is not None:
+            raise error
+        return answer
+
+    def finish(self, result: "RenderResult | None", error: BaseException | None) -> None:
+        self._questions.put((None, (result, error)))
+
+    # In the caller's thread.
+
+    def attend(self) -> "RenderResult":
+        """Serve the renderer until it is done; raises what it raised."""
+        while True:
+            try:
+                function, arguments = self._questions.get(timeout=POLL_SECONDS)
+            except queue.Empty:
+                self._poll()
+                continue
+            if function is None:
+                result, error = arguments
+                if error is not None:
+                    raise error
+                return result
+            answer = error = None
+            try:
+                answer = function(*arguments)
+                self._poll()
+            except BaseException as raised:  # goes through the renderer, so that it can clean up
+                error = raised
+            self._answers.put((answer, error))
+
+    def _poll(self) -> None:
+        if not self.stop.is_set() and self.job.should_stop():
+            self.stop.set()
+
+
+class RendererThread:
+    """Owns the thread and, in it, the Renderer; one render at a time."""
+
+    def __init__(self) -> None:
+        self._jobs: queue.SimpleQueue = queue.SimpleQueue()
+        self._thread: threading.Thread | None = None
+        self._lock = threading.Lock()
+
+    def render(self, scene: Scene, job: RenderJob) -> "RenderResult":
+        """Render a scene; returns or raises what Renderer.render does."""
+        with self._lock:
+            if self._thread is None or not self._thread.is_alive():
+                # A daemon: a Blender that ends without unregistering must not wait for it.
+                self._thread = threading.Thread(target=self._run, name="RPPM renderer", daemon=True)
+                self._thread.start()
+            conversation = _Conversation(scene, job)
+            self._jobs.put((conversation, contextvars.copy_context()))
+            return conversation.attend()
+
+    def release(self) -> None:
+        """Release the renderer and end the thread; a later render starts anew."""
+        with self._lock:
+            if self._thread is not None and self._thread.is_alive():
+                self._jobs.put(None)
+                self._thread.join(timeout=30.0)
+            self._thread = None
+
+    def _run(self) -> None:
+        renderer = None
+        while (job := self._jobs.get()) is not None:
+            conversation, context = job
+            result = error = None
+            try:
+                if renderer is None:
+                    from ..session.renderer import Renderer
+
+                    renderer = Renderer()
+                result = context.run(_render, renderer, conversation)
+            except BaseException as raised:
+                error = raised
+                # What state a failed render leaves the device in is unknown: start anew.
+                if renderer is not None:
+                    _release_quietly(renderer)
+                    renderer = None
+            conversation.finish(result, error)
+        if renderer is not None:
+            _release_quietly(renderer)
+
+
+def _render(renderer: Any, conversation: _Conversation) -> "RenderResult":
+    job = conversation.job
+    conversation.ask(job.on_start)
+
+    def on_progress(progress: "Progress", read_frame: "Callable[[], Frame]") -> None:
+        if conversation.ask(job.on_progress, progress):
+            conversation.ask(job.on_frame, progress, read_frame())
+
+    return renderer.render(
+        conversation.scene,
+        on_progress=on_progress,
+        should_stop=conversation.stop.is_set,
+        snapshots=conversation.ask(lambda: job.snapshots),
+        on_snapshot=lambda seconds, frame: conversation.ask(job.on_snapshot, seconds, frame),
+    )
+
+
+def _release_quietly(renderer: Any) -> None:
+    try:
+        renderer.release()
+    except Exception:
+        import logging
+
+        logging.getLogger(__name__).exception("the renderer could not be released")
+
+
+_shared = RendererThread()
+
+
+def render(scene: Scene, job: RenderJob) -> "RenderResult":
+    """Render with the Renderer that all renders of this Blender share."""
+    return _shared.render(scene, job)
+
+
+def release() -> None:
+    """Release the shared Renderer; the next render makes a new one."""
+    _shared.release()
+
+
+atexit.register(release)
