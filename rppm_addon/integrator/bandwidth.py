@@ -9,6 +9,7 @@ from ..scene.camera import Camera
 from ..scene.settings import RenderSettings
 
 _REFERENCE_PIXELS = 1 << 20
+EXPECTED_PHOTONS = 8
 
 
 def shrinkage(iteration: int, alpha: float) -> float:
@@ -20,6 +21,18 @@ def shrinkage(iteration: int, alpha: float) -> float:
 def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
     """s_r of Eq. 3 for this frame: the setting is for 1 megapixel and follows the frame's side."""
     return settings.radius_scale * math.sqrt(camera.width * camera.height / _REFERENCE_PIXELS)
+
+
+def wide_radius(diffused_photons: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
+    """Radius of the first iteration for photons that a diffuse surface has scattered, metres.
+
+    Such light varies slowly, and its photons are spread over all of the scene: the disk holds
+    EXPECTED_PHOTONS of them where they lie evenly on surfaces as large as the bounds' six sides.
+    """
+    x, y, z = bounds_high - bounds_low
+    area = 2.0 * (x * y + y * z + z * x)
+    spaced = math.sqrt(EXPECTED_PHOTONS * area / (math.pi * max(diffused_photons, 1)))
+    return min(spaced, 0.05 * float(np.linalg.norm(bounds_high - bounds_low)))
 
 
 def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius: float) -> tuple[float, float]:

@@ -229,7 +229,7 @@ class DeepCubemap:
     def _list_jobs(self, state: np.void) -> None:
         """Step 1; fills in the counts of jobs and core triangles. Repeats when a list was too short."""
         count = int(state["triangle_count"])
-        self._grow(self._jobs, min(2 * count + 4096, self._context.storage_block_limit // _JOB_SIZE), _JOB_SIZE)
+        self._grow(self._jobs, min(_expected_jobs(count), self._context.storage_block_limit // _JOB_SIZE), _JOB_SIZE)
         while True:
             state["job_capacity"] = self._jobs.size // _JOB_SIZE
             state["core_capacity"] = self._core.size // 4
@@ -256,10 +256,8 @@ class DeepCubemap:
 
     def _find_fragments(self, state: np.void) -> None:
         """Step 2; fills the cells, and the fragments. Repeats when their list was too short."""
-        expected = 14 * self.resolution**2 + 4 * int(state["triangle_count"])
-        self._grow(
-            self._fragments, min(expected, self._context.storage_block_limit // FRAGMENT.size), FRAGMENT.size
-        )
+        expected = _expected_fragments(int(state["triangle_count"]), self.resolution)
+        self._grow(self._fragments, min(expected, self._context.storage_block_limit // FRAGMENT.size), FRAGMENT.size)
         draw = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag")
         buffers = {
             "Triangles": self._triangles,
@@ -321,3 +319,13 @@ class DeepCubemap:
 def _top_level(resolution: int) -> int:
     """Levels of blocks above the cells, each a quarter as fine as the one below."""
     return (resolution.bit_length() - 1) // 2
+
+
+def _expected_jobs(triangle_count: int) -> int:
+    """Most triangles are seen through one face."""
+    return 2 * triangle_count + 4096
+
+
+def _expected_fragments(triangle_count: int, resolution: int) -> int:
+    """Walls twice over in every cell, and some cells for each small triangle."""
+    return 14 * resolution**2 + 4 * triangle_count

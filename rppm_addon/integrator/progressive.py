@@ -12,7 +12,7 @@ from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
-from .bandwidth import radius_in_pixels, radius_limits, shrinkage
+from .bandwidth import radius_in_pixels, radius_limits, shrinkage, wide_radius
 from .deep_cubemap import DeepCubemap, choose_resolution
 from .direct_light import DirectLight
 from .emission import Emission
@@ -44,6 +44,7 @@ class ProgressivePhotonMapper:
         self.iteration = 0
         self.build_seconds = 0.0
         self._views: list = []
+        self._wide_radius = 0.0
 
     def build(self, scene: Scene) -> None:
         """Init(): take a scene, allocate its buffers and build the deep cubemap.
@@ -103,9 +104,9 @@ class ProgressivePhotonMapper:
             self._update_film()
 
     @property
-    def splat_radius(self) -> float:
-        """r_max of the current iteration, metres: all splats have it."""
-        return self._limits[1] * self._shrinkage
+    def splat_radii(self) -> tuple[float, float]:
+        """r_max of the current iteration and the wide radius of diffused photons, metres."""
+        return self._limits[1] * self._shrinkage, self._wide_radius * self._shrinkage
 
     @property
     def photons_emitted(self) -> int:
@@ -159,6 +160,10 @@ class ProgressivePhotonMapper:
             self._splatting.collect(
                 self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, first
             )
+        if self.iteration == 1:
+            self._wide_radius = wide_radius(
+                self._splatting.diffused_count, self._geometry.bounds_low, self._geometry.bounds_high
+            )
 
     def _begin_band(self, view: np.ndarray, first_row: int) -> None:
         self._count = int(view["width"][0] * view["height"][0])
@@ -209,13 +214,13 @@ class ProgressivePhotonMapper:
         with self.timers.stage("direct splatting"):
             self._splatting.direct(
                 self._photons.photons.buffer, self._importons.importons.buffer, self._gbuffer.camera,
-                self.film.width, self._rows, self.splat_radius,
+                self.film.width, self._rows, self.splat_radii,
             )
 
     def _indirect_splatting(self) -> None:
         with self.timers.stage("indirect splatting"):
             self._splatting.indirect(
-                self._photons.photons.buffer, self._importons.importons.buffer, self._count, self.centre, self.splat_radius
+                self._photons.photons.buffer, self._importons.importons.buffer, self._count, self.centre, self.splat_radii
             )
 
     def _update_film(self) -> None:

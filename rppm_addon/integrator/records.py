@@ -88,6 +88,8 @@ PHOTON = Record(
 PHOTON_ACTIVE = 1
 PHOTON_STORED = 2
 PHOTON_ESCAPED = 4
+PHOTON_DIFFUSED = 8
+"""Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before."""
 
 CAMERA_PATH = Record(
     "CameraPath",

@@ -15,9 +15,11 @@ _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
 Record("StoredParameters", count="uint", first_slot="uint")
-Record("SplatParameters", count="uint", radius="float")
-Record("QuadParameters", width="uint", height="uint")
-Record("CubeParameters", centre="vec3", count="uint", radius="float", resolution="uint")
+Record("SplatParameters", count="uint", radius="float", wide_radius="float")
+Record("QuadParameters", width="uint", height="uint", wide_radius="float")
+Record("CubeParameters", centre="vec3", count="uint", radius="float", wide_radius="float", resolution="uint")
+
+_STORED_HEADER = 8
 
 
 class Splatting:
@@ -47,7 +49,7 @@ class Splatting:
         self._direct_view = gl.framebuffer([self.direct_splats])
         self._cube_size = (3 * _CUBE_RESOLUTION, 2 * _CUBE_RESOLUTION)
         self._cube_view = gl.empty_framebuffer(self._cube_size)
-        self.stored_count = 0
+        self.stored_count = self.diffused_count = 0
 
     @property
     def memory_bytes(self) -> dict[str, int]:
@@ -57,12 +59,12 @@ class Splatting:
     def collect(self, photons: moderngl.Buffer, slots: int, first_slot: int) -> None:
         """List the photons to splat: those stored in slots from ``first_slot`` to ``slots``."""
         count = slots - first_slot
-        self._stored.require(4 * (slots + 1))
-        self._stored.buffer.write(bytes(4))
+        self._stored.require(_STORED_HEADER + 4 * slots)
+        self._stored.buffer.write(bytes(_STORED_HEADER))
         self._stored_program.run(
             count, {"Photons": photons, "StoredPhotons": self._stored.buffer}, {"count": count, "first_slot": first_slot}
         )
-        self.stored_count = int(self._stored.read(np.uint32, 1)[0]) if count else 0
+        self.stored_count, self.diffused_count = map(int, self._stored.read(np.uint32, 2))
         self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, self.stored_count))
 
     def begin(self) -> None:
@@ -75,29 +77,29 @@ class Splatting:
         self._jobs.buffer.write(np.array([0, 1, 0, 0], np.uint32).tobytes())
 
     def direct(
-        self, photons: moderngl.Buffer, importons: moderngl.Buffer, camera: moderngl.Buffer, width: int, rows: int, radius: float
+        self, photons: moderngl.Buffer, importons: moderngl.Buffer, camera: moderngl.Buffer, width: int, rows: int, radii: tuple[float, float]
     ) -> None:
-        """DirectSplatting: photons onto the importons of the camera's first hits."""
+        """DirectSplatting: photons (narrow and wide radius) onto the importons of the camera's first hits."""
         if not self.stored_count:
             return
         self._reset_jobs()
         self._direct_jobs.run(
             self.stored_count,
             {"Photons": photons, "StoredPhotons": self._stored.buffer, "Camera": camera, "Jobs": self._jobs.buffer},
-            {"count": self.stored_count, "radius": radius},
+            {"count": self.stored_count, "radius": radii[0], "wide_radius": radii[1]},
         )
         self._direct.draw(
             self._direct_view,
             self._jobs.buffer,
             {"Jobs": self._jobs.buffer, "Photons": photons, "Importons": importons},
-            {"width": width, "height": rows},
+            {"width": width, "height": rows, "wide_radius": radii[1]},
             viewport=(0, 0, width, rows),
             state=moderngl.BLEND,
             blend=(moderngl.ONE, moderngl.ONE),
         )
 
     def indirect(
-        self, photons: moderngl.Buffer, importons: moderngl.Buffer, count: int, centre: np.ndarray, radius: float
+        self, photons: moderngl.Buffer, importons: moderngl.Buffer, count: int, centre: np.ndarray, radii: tuple[float, float]
     ) -> None:
         """IndirectSplatting: photons onto importons anywhere, by the cubemap's lists."""
         if not self.stored_count:
@@ -105,7 +107,7 @@ class Splatting:
         self._heads.clear()
         self._core.buffer.write(bytes(4))
         self._reset_jobs()
-        cube = {"centre": centre, "radius": radius, "resolution": _CUBE_RESOLUTION}
+        cube = {"centre": centre, "radius": radii[0], "wide_radius": radii[1], "resolution": _CUBE_RESOLUTION}
         stored = {"Photons": photons, "StoredPhotons": self._stored.buffer}
         self._insert.run(
             count,
@@ -122,7 +124,7 @@ class Splatting:
             self._cube_view,
             self._jobs.buffer,
             {"Jobs": self._jobs.buffer, "Photons": photons, "Heads": self._heads.buffer, **gathered},
-            {"width": self._cube_size[0], "height": self._cube_size[1]},
+            {"width": self._cube_size[0], "height": self._cube_size[1], "wide_radius": radii[1]},
             viewport=(0, 0, *self._cube_size),
         )
         self._core_program.run(

@@ -170,7 +170,7 @@ class Renderer:
             build_seconds=mapper.build_seconds,
             device=self.device.name,
             triangles=mapper.triangle_count,
-            radius_metres=mapper.splat_radius,
+            radius_metres=mapper.splat_radii[0],
             stage_seconds=mapper.timers.seconds,
             memory_bytes=mapper.memory_bytes,
             flux_watts=balance,

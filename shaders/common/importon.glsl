@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Importon>
-#include <Photon>
+#include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 
 // BSDF times path throughput of an importon for light from wi.
@@ -20,18 +20,19 @@ const float PLANE_TOLERANCE = 0.35;
 
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
 // integral over the unit disk is 1. False when it adds nothing.
-bool density_estimate(Importon importon, Photon photon, out vec3 radiance) {
+bool density_estimate(Importon importon, Photon photon, float wide_radius, out vec3 radiance) {
     radiance = vec3(0.0);
     vec3 offset = photon.position - importon.position;
-    float distance2 = dot(offset, offset), radius2 = importon.radius * importon.radius;
-    if (!(distance2 < radius2)) return false;
+    float distance2 = dot(offset, offset);
+    float radius = photon_radius(photon.flags, importon.radius, wide_radius), radius2 = radius * radius;
+    if (!(distance2 < radius2) || !(importon.radius > 0.0)) return false;
     vec3 geometric = unpack_unit_vector(importon.geometric_normal);
     vec3 photon_normal = unpack_unit_vector(photon.geometric_normal);
     float alignment = dot(geometric, photon_normal);
     if (abs(alignment) < NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
     if (alignment < 0.0 && !lobe_transmits(importon.lobe_kind)) return false;
-    if (abs(dot(offset, geometric)) > PLANE_TOLERANCE * importon.radius) return false;
+    if (abs(dot(offset, geometric)) > PLANE_TOLERANCE * radius) return false;
     vec3 shading = unpack_unit_vector(importon.shading_normal);
     // Flux arrived by the geometric cosine; shading asks for its own.
     float correction = min(abs(dot(shading, photon.direction)) / max(abs(dot(photon_normal, photon.direction)), 1e-5), 4.0);

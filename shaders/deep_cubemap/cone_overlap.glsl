@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A triangle against the cone of a cell (or of a whole face): exact but for an outward margin.
 // The common part of a triangle and a cone is a polygon. Its corners lie on the triangle's edges, or
-// where one of the cone's four corner lines pierces the triangle. Edges are clipped one by one and
-// need no orientation, so triangles seen edge-on, slivers and triangles around the centre are
-// treated like all others. Everything is in face coordinates about the centre.
+// where one of the cone's four corner lines pierces the triangle, or at the cone's tip. Edges are
+// clipped one by one and need no orientation, so triangles seen edge-on, slivers and triangles around
+// the centre are treated like all others. Everything is in face coordinates about the centre.
 
 // Distances (scaled) from the cone's four planes, positive inside, planes moved out by the margin.
 vec4 inside_cone(vec3 point, vec4 bounds, float margin) {
@@ -54,6 +54,16 @@ bool corner_depth(ConeCorners triangle, int corner, vec4 bounds, float margin, o
     return between && approach != 0.0 && depth >= -margin;
 }
 
+// Whether the triangle may come within `reach` of the centre along every axis.
+// Planes that are moved out meet behind the centre, margin / tan(half the cone's angle) deep: so far
+// around the centre the polygon has corners that are neither on edges nor on corner lines. Without
+// this, triangles that contain the centre or almost do would seem to begin at their edges.
+bool touches_tip(ConeCorners triangle, vec3 b, vec3 c, float reach) {
+    vec3 low = min(min(triangle.a, b), c), high = max(max(triangle.a, b), c);
+    return all(lessThanEqual(low, vec3(reach))) && all(greaterThanEqual(high, vec3(-reach)))
+        && abs(dot(triangle.a, triangle.plane_normal)) <= reach * dot(abs(triangle.plane_normal), vec3(1.0));
+}
+
 void widen(float depth, inout vec2 interval) {
     interval = vec2(min(interval.x, depth), max(interval.y, depth));
 }
@@ -86,6 +96,8 @@ bool cone_depths(vec3 a, vec3 b, vec3 c, vec4 bounds, float margin, out vec2 int
                 widen(clamp(depth, range.x, range.y), interval);
             }
         }
+        // the planes meet 2 * margin / (bounds.y - bounds.x) behind the centre
+        if (touches_tip(triangle, b, c, margin * (2.0 + 2.0 / (bounds.y - bounds.x)))) interval.x = min(interval.x, 0.0);
     }
     if (interval.x > interval.y || interval.y < -margin) return false;
     interval = max(interval + vec2(-1.0, 1.0) * (margin + 1e-6 * abs(interval)), vec2(0.0));

@@ -44,6 +44,7 @@ bool face_cells(vec3 a, vec3 b, vec3 c, float margin, uint resolution, out ivec2
                 widen_by_point(vec3(position * max(depth, 0.0), depth), margin, extent);
             }
         }
+        if (touches_tip(triangle, b, c, LEAST_MARGINS * margin)) extent = vec4(-1.0, -1.0, 1.0, 1.0);
     }
     // the float error of the division and of this line is far below a thousandth of a cell
     vec4 cells = (extent * 0.5 + 0.5) * float(resolution) + vec4(-1e-3, -1e-3, 1e-3, 1e-3);

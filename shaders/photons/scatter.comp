@@ -6,24 +6,22 @@ layout(local_size_x = 64) in;
 
 #include <Ray>
 #include <PhotonPath>
-#include <Photon>
 #include <ScatterPhotonsParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
+#include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
 layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
 
-const uint PHOTON_ACTIVE = 1u, PHOTON_STORED = 2u, PHOTON_ESCAPED = 4u;
-
-struct Scattering { vec3 direction; vec3 weight; bool transmitted; };
+struct Scattering { vec3 direction; vec3 weight; bool transmitted; bool specular; };
 
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout RandomSequence random) {
-    Scattering result = Scattering(shading, vec3(0.0), false);
+    Scattering result = Scattering(shading, vec3(0.0), false, false);
     float cosine = clamp(dot(shading, arrival), 0.0, 1.0);
     float scale = 1.0 / largest(flux);
     float share[5];
@@ -43,12 +41,14 @@ Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout
         return result;
     }
     u -= share[0];
-    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), true);
+    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), true, true);
     u -= share[1];
     int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
     float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
-    LobeSample sampled = sample_lobe(closure_lobe(closure, chosen), shading, arrival, u_direction, u_event, false);
-    return Scattering(sampled.direction, sampled.weight * (norm / max(probability, 1e-20)), sampled.transmitted);
+    MicrofacetLobe lobe = closure_lobe(closure, chosen);
+    LobeSample sampled = sample_lobe(lobe, shading, arrival, u_direction, u_event, false);
+    return Scattering(sampled.direction, sampled.weight * (norm / max(probability, 1e-20)), sampled.transmitted,
+                      lobe_is_specular(lobe, parameters.specular_alpha));
 }
 
 // Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
@@ -74,7 +74,7 @@ void main() {
     Closure closure = closures[index];
     photon.direction = -ray.direction;
     photon.flux = carried;
-    photon.flags = PHOTON_ACTIVE;
+    photon.flags = PHOTON_ACTIVE | photon_paths[index].flags;
     if (!closure_hit(closure)) {
         photon.flags |= PHOTON_ESCAPED;
         photons[slot] = photon;
@@ -100,6 +100,7 @@ void main() {
             if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, shading);
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
+            if (!scattering.specular) photon_paths[index].flags = PHOTON_DIFFUSED;
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
             rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
         }

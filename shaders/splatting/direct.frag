@@ -15,6 +15,6 @@ layout(location = 0) out vec4 gathered;
 void main() {
     uint pixel = uint(gl_FragCoord.y) * parameters.width + uint(gl_FragCoord.x);
     vec3 radiance;
-    if (!density_estimate(importons[pixel], photons[photon_number], radiance)) discard;
+    if (!density_estimate(importons[pixel], photons[photon_number], parameters.wide_radius, radiance)) discard;
     gathered = vec4(radiance, 1.0);
 }

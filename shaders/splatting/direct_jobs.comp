@@ -5,14 +5,14 @@
 layout(local_size_x = 64) in;
 
 #include <CameraView>
-#include <Photon>
 #include <SplatParameters>
 #include "common/invocation.glsl"
+#include "common/photon.glsl"
 #include "splatting/sphere_bounds.glsl"
 #include "splatting/jobs.glsl"
 layout(std140, binding = 0) uniform Parameters { SplatParameters parameters; };
 layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint stored_photons[]; };
+layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
 layout(std430, binding = 2) readonly buffer Camera { CameraView camera; };
 layout(std430, binding = 3) buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
 
@@ -22,7 +22,7 @@ void main() {
     uint number = stored_photons[index];
     vec3 offset = photons[number].position - camera.position;
     vec3 p = vec3(dot(offset, camera.right), dot(offset, camera.up), dot(offset, camera.forward));
-    float radius = parameters.radius;
+    float radius = photon_radius(photons[number].flags, parameters.radius, parameters.wide_radius);
     if (p.z < -radius) return;
     vec2 across = vec2(p.x - radius, p.x + radius), along = vec2(p.y - radius, p.y + radius);
     if (camera.orthographic == 0u) {

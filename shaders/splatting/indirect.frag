@@ -23,7 +23,7 @@ void main() {
     while (entry != 0u) {
         Importon importon = importons[entry - 1u];
         vec3 radiance;
-        if (density_estimate(importon, photon, radiance)) add_gathered(entry - 1u, radiance);
+        if (density_estimate(importon, photon, parameters.wide_radius, radiance)) add_gathered(entry - 1u, radiance);
         entry = importon.next;
     }
 }

@@ -8,15 +8,15 @@
 
 layout(local_size_x = 64) in;
 
-#include <Photon>
 #include <CubeParameters>
 #include "common/invocation.glsl"
+#include "common/photon.glsl"
 #include "splatting/cube.glsl"
 #include "splatting/sphere_bounds.glsl"
 #include "splatting/jobs.glsl"
 layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
 layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint stored_photons[]; };
+layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
 layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
 layout(std430, binding = 3) buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
 
@@ -28,7 +28,7 @@ void main() {
     if (index >= parameters.count) return;
     uint number = stored_photons[index];
     vec3 p = photons[number].position - parameters.centre;
-    float distance = length(p), radius = parameters.radius;
+    float distance = length(p), radius = photon_radius(photons[number].flags, parameters.radius, parameters.wide_radius);
     if (distance < radius * 0.9999) return;
     float cosine = min((distance * distance + 3.0 * radius * radius) / (4.0 * distance * radius), 1.0);
     float sine = distance >= 2.236 * radius ? radius / distance * 1.00001 : sqrt(max(1.0 - cosine * cosine, 0.0)) + 1e-3;

@@ -19,7 +19,8 @@ void main() {
     if (index >= parameters.count) return;
     if (!(importons[index].radius > 0.0)) return;
     vec3 p = importons[index].position - parameters.centre;
-    if (dot(p, p) < 4.0 * parameters.radius * parameters.radius) {
+    float core_radius = 2.0 * max(parameters.radius, parameters.wide_radius);
+    if (dot(p, p) < core_radius * core_radius) {
         core_importons[atomicAdd(core_count, 1u)] = index;
         return;
     }

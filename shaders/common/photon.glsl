@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Photon>
+
+// The numbers of rppm_addon/integrator/records.py.
+const uint PHOTON_ACTIVE = 1u, PHOTON_STORED = 2u, PHOTON_ESCAPED = 4u, PHOTON_DIFFUSED = 8u;
+
+// Photons that a diffuse surface has scattered are spread evenly and estimated with a wider radius;
+// those straight from a light or by specular surfaces only make the caustics and keep the narrow one.
+float photon_radius(uint flags, float narrow, float wide) {
+    return (flags & PHOTON_DIFFUSED) != 0u ? max(narrow, wide) : narrow;
+}
