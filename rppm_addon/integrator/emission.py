@@ -84,15 +84,15 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
     while there are enough (largest remainders)."""
     if len(weights) == 0 or weights.sum() <= 0:
         return np.zeros(len(weights), np.int64)
-    exact = photons * weights / weights.sum()
+    exact = photons * (weights / weights.sum())
     counts = np.floor(exact).astype(np.int64)
-    counts[(counts == 0) & (weights > 0)] = 1
-    while counts.sum() > photons and counts.max() > 1:
-        counts[np.argmax(counts)] -= min(counts.max() - 1, counts.sum() - photons)
-    remaining = photons - counts.sum()
-    for index in np.argsort(counts - exact)[: max(0, remaining)]:
-        counts[index] += 1
-    counts[np.argmax(counts)] += photons - counts.sum()
+    by_remainder = np.argsort(counts - exact, kind="stable")
+    counts[by_remainder[: photons - counts.sum()]] += 1
+    for index in np.nonzero((counts == 0) & (weights > 0))[0]:
+        richest = np.argmax(counts)
+        if counts[richest] > 1:
+            counts[richest] -= 1
+            counts[index] = 1
     return counts
 
 

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Powers of lights and shares of photons."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rppm_addon.integrator.emission import _spread_share, emitted_radiance, share_out, spot_share, spread_constants
+from rppm_addon.integrator.environment import distribution_of
+from rppm_addon.scene import Lobe, LobeKind, Material
+
+
+@given(st.lists(st.floats(0, 1e6), min_size=1, max_size=20), st.integers(1, 100000))
+def test_shares_add_up(weights, photons):
+    weights = np.array(weights)
+    counts = share_out(weights, photons)
+    assert (counts >= 0).all()
+    if weights.sum() <= 0:
+        assert counts.sum() == 0
+        return
+    assert counts.sum() == photons
+    assert (counts[weights == 0] == 0).all()
+    if photons >= len(weights):
+        assert (counts[weights > 0] >= 1).all()
+        np.testing.assert_allclose(counts, photons * weights / weights.sum(), atol=len(weights) + 1)
+
+
+@pytest.mark.parametrize("angle", [0.1, 0.8, 2.5])
+def test_hard_spot_has_the_flux_of_its_cone(angle):
+    cosine = math.cos(angle / 2)
+    assert spot_share(cosine, 0.0) == pytest.approx(2 * math.pi * (1 - cosine), rel=1e-3)
+
+
+def test_soft_spot_has_the_flux_of_the_smooth_step():
+    # the integral of 3x^2 - 2x^3 over [0, 1] is 1/2
+    assert spot_share(0.5, 1.0) == pytest.approx(math.pi * 0.5, rel=1e-3)
+
+
+@pytest.mark.parametrize("degrees", [170, 120, 90, 60, 20, 5])
+def test_spread_keeps_the_flux_of_an_area_light(degrees):
+    assert _spread_share(*spread_constants(math.radians(degrees))) == pytest.approx(math.pi, rel=2e-3)
+    assert spread_constants(math.pi) == (0.0, 1.0)
+
+
+def test_emission_adds_up_lobes():
+    lobes = [
+        Lobe(LobeKind.EMISSION, weight=0.5, color=(2, 4, 6)),
+        Lobe(LobeKind.PRINCIPLED, weight=0.5, alpha=0.5, emission=(4, 0, 0)),
+        Lobe(LobeKind.DIFFUSE, color=(9, 9, 9)),
+    ]
+    np.testing.assert_allclose(emitted_radiance(Material("m", lobes), []), [2, 2, 3])
+    image = Lobe(LobeKind.EMISSION, color=(2, 2, 2), color_image=0)
+    np.testing.assert_allclose(emitted_radiance(Material("m", [image]), [np.array([0.5, 1, 0])]), [1, 2, 0])
+
+
+def test_environment_distribution_is_the_image_by_solid_angle():
+    rng = np.random.default_rng(2)
+    brightness = rng.random((16, 32)) ** 4
+    listed = distribution_of(brightness)
+    rows, cells = listed[:16], listed[16:].reshape(16, 32)
+    share = np.diff(rows, prepend=0)[:, None] * np.diff(cells, axis=1, prepend=0)
+    expected = (brightness + 0.01 * brightness.mean()) * np.sin(np.pi * (np.arange(16) + 0.5) / 16)[:, None]
+    np.testing.assert_allclose(share, expected / expected.sum(), atol=2e-6)
+    assert rows[-1] == 1 and (cells[:, -1] == 1).all()

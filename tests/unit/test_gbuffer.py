@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bands, subpixel offsets and the camera record."""
+
+import numpy as np
+import pytest
+
+from rppm_addon.integrator.gbuffer import MAXIMUM_BAND_PIXELS, bands_of, camera_view, filter_offsets
+from rppm_addon.integrator.photons import flux_balance
+from rppm_addon.integrator.records import PHOTON, PHOTON_ACTIVE, PHOTON_ESCAPED
+from rppm_addon.scene import Camera
+from rppm_addon.scene.errors import SceneError
+
+
+@pytest.mark.parametrize("size", [(1, 1), (128, 128), (1920, 1080), (7680, 4320), (300000, 3), (3, 300000)])
+def test_bands_cover_every_row_once(size):
+    rows = [row for first, count in bands_of(*size) for row in range(first, first + count)]
+    assert rows == list(range(size[1]))
+    assert all(size[0] * count <= max(MAXIMUM_BAND_PIXELS, size[0]) for _, count in bands_of(*size))
+
+
+def test_offsets_have_the_moments_of_the_filter():
+    offsets = np.array([filter_offsets(i, 1.5) for i in range(1, 4001)])
+    assert filter_offsets(1, 1.5) == pytest.approx((0, 0), abs=1e-9)
+    assert np.abs(offsets).max() <= 0.75
+    np.testing.assert_allclose(offsets.mean(axis=0), 0, atol=2e-3)
+    x = np.linspace(-0.5, 0.5, 20001)
+    w = 0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
+    np.testing.assert_allclose(offsets.var(axis=0), (w * (1.5 * x) ** 2).sum() / w.sum(), rtol=0.01)
+
+
+def test_windows_of_bands_tile_the_region():
+    camera = Camera(np.eye(4), (-2, 2, -1, 1), 400, 200, crop=(100, 50, 300, 150))
+    low, high = camera_view(camera, 0, 60, (0, 0))["window"][0], camera_view(camera, 60, 40, (0, 0))["window"][0]
+    np.testing.assert_allclose(low, [-1, 1, -0.5, 0.1], atol=1e-6)
+    np.testing.assert_allclose(high, [-1, 1, 0.1, 0.5], atol=1e-6)
+    shifted = camera_view(camera, 0, 60, (0.5, -0.5))["window"][0]
+    np.testing.assert_allclose(shifted - low, [0.005, 0.005, -0.005, -0.005], atol=1e-6)
+
+
+def test_unusable_cameras_are_refused():
+    matrix = np.eye(4)
+    matrix[0, 3] = np.nan
+    with pytest.raises(SceneError, match="camera"):
+        camera_view(Camera(matrix, (-1, 1, -1, 1), 4, 4), 0, 4, (0, 0))
+    with pytest.raises(SceneError, match="camera"):
+        camera_view(Camera(np.eye(4), (1, 1, -1, 1), 4, 4), 0, 4, (0, 0))
+
+
+def test_flux_balance_finds_lost_flux():
+    photons = PHOTON.zeros(6).reshape(2, 3)
+    emitted = np.full((3, 3), 1.0)
+    photons["flags"] = [[PHOTON_ACTIVE, PHOTON_ACTIVE | PHOTON_ESCAPED, PHOTON_ACTIVE], [PHOTON_ACTIVE, 0, 0]]
+    photons["scattered_flux"][0, 0] = 0.25
+    balance = flux_balance(emitted, photons)
+    assert balance == {"emitted": 9.0, "absorbed": 6.0, "escaped": 3.0, "lost": 0.0}
+    photons["flags"][1, 0] = 0  # a segment that no record tells of
+    assert flux_balance(emitted, photons)["lost"] == 0.75

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings and storage of scenes."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from rppm_addon.scene import (
+    Camera, DirectLight, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, Mesh, RenderSettings, Scene, World,
+    load_scene, save_scene,
+)
+from rppm_addon.scene.errors import SceneError, SettingsError
+
+
+def full_scene() -> Scene:
+    rng = np.random.default_rng(0)
+    mesh = Mesh(
+        "m", rng.random((4, 3), np.float32), np.arange(4, dtype=np.int32), rng.random((4, 3), np.float32),
+        np.array([[0, 1, 2], [0, 2, 3]], np.int32), np.array([0, 1], np.int32), rng.random((4, 2), np.float32),
+    )
+    bare = dataclasses.replace(mesh, name="bare", corner_uv=None)
+    return Scene(
+        camera=Camera(np.eye(4), (-1, 1, -0.5, 0.5), 64, 32, True, 0.2, 50.0, (1, 2, 30, 31)),
+        meshes=[mesh, bare],
+        instances=[Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3), Instance(1, np.eye(4))],
+        materials=[Material("a", [Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1)], np.array([1, 2, 3.0]))],
+        lights=[Light("sun", LightKind.SUN, np.eye(4), np.array([1, 2, 3.0]), sun_angle=0.1)],
+        world=World(np.array([0.1, 0.2, 0.3]), 0),
+        images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],
+        settings=RenderSettings(iterations=7, direct_light=DirectLight.PHOTONS),
+        exposure=2.0,
+        warnings=["w"],
+    )
+
+
+def assert_same(first, second):
+    assert type(first) is type(second)
+    if dataclasses.is_dataclass(first):
+        for field in dataclasses.fields(first):
+            assert_same(getattr(first, field.name), getattr(second, field.name))
+    elif isinstance(first, np.ndarray):
+        assert first.dtype == second.dtype
+        np.testing.assert_array_equal(first, second)
+    elif isinstance(first, list | tuple):
+        assert len(first) == len(second)
+        for a, b in zip(first, second, strict=True):
+            assert_same(a, b)
+    else:
+        assert first == second
+
+
+def test_a_stored_scene_comes_back_whole(tmp_path):
+    scene = full_scene()
+    save_scene(scene, tmp_path / "scene.npz")
+    assert_same(scene, load_scene(tmp_path / "scene.npz"))
+
+
+def test_other_files_are_refused_in_one_line(tmp_path):
+    (tmp_path / "a.npz").write_bytes(b"not a scene")
+    np.savez(tmp_path / "b.npz", x=np.zeros(3))
+    for name in ("a.npz", "b.npz", "absent.npz"):
+        with pytest.raises(SceneError, match="rppm export") as error:
+            load_scene(tmp_path / name)
+        assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("iterations", 0), ("photons", 0), ("photons", 1 << 23), ("alpha", 1.0), ("alpha", 0.0), ("radius_scale", 0.0),
+        ("camera_path_length", 0), ("photon_path_length", 65), ("cubemap_resolution", 100), ("seed", -1),
+        ("specular_roughness", 1.1), ("radius_scale", float("nan")), ("time_limit", -1.0), ("filter_width", -1.0),
+    ],
+)  # fmt: skip
+def test_bad_settings_are_named(name, value):
+    with pytest.raises(SettingsError, match=f"^{name} is .*; set it to"):
+        dataclasses.replace(RenderSettings(), **{name: value}).validate()
+
+
+def test_default_settings_are_valid():
+    RenderSettings().validate()
+
+
+def test_settings_from_text():
+    settings = RenderSettings().with_values(iterations="3", alpha="0.5", direct_light="photons", film_transparent="true")
+    assert (settings.iterations, settings.alpha) == (3, 0.5)
+    assert settings.direct_light is DirectLight.PHOTONS and settings.film_transparent is True
+    with pytest.raises(SettingsError, match="there is no setting nonsense"):
+        RenderSettings().with_values(nonsense=1)
+    with pytest.raises(SettingsError, match="iterations cannot be 'many'"):
+        RenderSettings().with_values(iterations="many")
+
+
+def test_radius_limits_must_be_in_order():
+    with pytest.raises(SettingsError, match="raise it"):
+        RenderSettings(radius_minimum=2.0, radius_maximum=1.0).validate()
