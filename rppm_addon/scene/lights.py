@@ -43,6 +43,7 @@ class Light:
     spread: float = np.pi
     """AREA: full angle of emission, radians (Cycles' spread); pi is diffuse."""
     visible_to_camera: bool = True
+    """Whether the camera sees the light itself; mirrors and glass show it in any case, as in Cycles."""
     photon_share: float = 1.0
     """Weight of this light when photons are shared out (paper section 4.3), on top of its power."""
 

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "deep_cubemap/bins.glsl"
 #include "deep_cubemap/cell_runs.glsl"
 
-const int MOST_BINS_EXPONENT = 4;
+const int MOST_BINS_EXPONENT = 6;
 
 uint bins_exponent(uint fragments) {
     return fragments <= 2u ? 0u : uint(min(findMSB(fragments), MOST_BINS_EXPONENT));

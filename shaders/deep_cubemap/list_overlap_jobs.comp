@@ -1,7 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A thread a triangle: culls it against the six faces, lists a rectangle of cells for each face that
-// it may be seen through, and lists it among the core triangles if it comes near the centre.
+// it may be seen through. A triangle that comes near the centre is listed among the core triangles;
+// if all of it is there, only there, for cells near the centre are never walked.
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
@@ -33,6 +34,9 @@ void main() {
     vec3 c = triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.centre;
     if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return;
     list_core_triangle(triangle, a, b, c);
+    float farthest = max(max(dot(a, a), dot(b, b)), dot(c, c));
+    float core_inside = 0.98 * deep_cubemap.core_radius;
+    if (farthest < core_inside * core_inside) return;
     for (int face = 0; face < 6; ++face) {
         ivec2 first, last;
         bool seen = face_cells(

@@ -227,11 +227,11 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
 // --- lights that a specular path meets ----------------------------------------------------------
 
 // Radiance of the light objects that a ray passes within its length; they hide nothing.
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance) {
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, bool from_camera) {
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < parameters.light_count; ++index) {
         Light light = lights[index];
-        if ((light.flags & LIGHT_VISIBLE) == 0u) continue;
+        if (from_camera && (light.flags & LIGHT_VISIBLE) == 0u) continue;
         if (light.kind == LIGHT_SUN) {
             float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
             if (maximum_distance >= INFINITY_DISTANCE && solid_angle > 0.0 && -dot(direction, light.normal) >= light.cosine_cone)

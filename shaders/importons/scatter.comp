@@ -76,10 +76,11 @@ void main() {
     bool straight = (path.flags & PATH_STRAIGHT) != 0u;
     vec4 seen = vec4(0.0);
 
-    vec3 lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE);
+    vec3 lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, straight);
     seen.rgb += path.throughput * lights_passed;
     if (!hit) {
-        if (straight && parameters.film_transparent != 0u)
+        bool background = largest(lights_passed) <= 0.0;
+        if (straight && background && parameters.film_transparent != 0u)
             seen.a -= (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
         else seen.rgb += path.throughput * world_radiance(ray.direction);
         radiances[index] += seen;

@@ -40,7 +40,7 @@ float glass_albedo(float ior, float roughness, float cosine) {
                       : table_volume(GLASS_LEAVING_TABLE, 1.0 / ior, roughness, cosine);
 }
 
-// Mean over visible microfacets of the way from normal to grazing reflectance.
-float dielectric_average_interpolation(float ior, float roughness, float cosine) {
+// Albedo of a lobe whose reflectance is dielectric_interpolation: what grazing incidence adds.
+float dielectric_grazing_albedo(float ior, float roughness, float cosine) {
     return table_volume(DIELECTRIC_TABLE, ior, roughness, cosine);
 }

@@ -76,13 +76,6 @@ void add_glass(inout ClosureBuilder builder, vec3 reflected, vec3 passed, float 
     add_lobe(builder, MicrofacetLobe(reflected, LOBE_GLASS, passed, roughness * roughness, relative));
 }
 
-// Cosine-weighted mean over the hemisphere of dielectric_interpolation; the mean of Fresnel's
-// reflectance is the fit (eta - 1) / (4.08567 + 1.00071 eta) of Kulla and Conty 2017.
-float dielectric_hemisphere_interpolation(float eta) {
-    float f0 = normal_reflectance(eta);
-    return clamp(((eta - 1.0) / (4.08567 + 1.00071 * eta) - f0) / (1.0 - f0), 0.0, 1.0);
-}
-
 float index_from_reflectance(float f0) {
     float root = sqrt(clamp(f0, 0.0, 0.99));
     return (1.0 + root) / (1.0 - root);
@@ -113,10 +106,10 @@ void add_principled(inout ClosureBuilder builder, MaterialLobe lobe, vec3 color)
     if (f0 > 0.0) {
         vec3 tinted = min(f0 * lobe.specular_tint, vec3(1.0));
         float outside = max(ior, 1.0 / ior);
-        vec3 albedo = mix(tinted, vec3(1.0), dielectric_average_interpolation(outside, roughness, cosine));
-        vec3 average = mix(tinted, vec3(1.0), dielectric_hemisphere_interpolation(outside));
-        vec3 factor = lobe.multiscatter != 0u ? multiscatter_factor(roughness, cosine, average) : vec3(1.0);
-        add_lobe(builder, MicrofacetLobe(weight * factor, LOBE_DIELECTRIC, tinted, roughness * roughness, outside));
+        // Cycles does not compensate this lobe: what it loses passes to the layer below.
+        vec3 albedo = tinted * white_albedo(roughness, cosine)
+                    + (1.0 - tinted) * dielectric_grazing_albedo(outside, roughness, cosine);
+        add_lobe(builder, MicrofacetLobe(vec3(weight), LOBE_DIELECTRIC, tinted, roughness * roughness, outside));
         below *= 1.0 - largest(albedo);
     }
     builder.closure.diffuse += max(below, vec3(0.0)) * color;
