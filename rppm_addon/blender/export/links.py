@@ -25,6 +25,14 @@ class Unlinked:
     socket: bpy.types.NodeSocket
 
 
+def node_tree(owner: bpy.types.Material | bpy.types.World) -> bpy.types.NodeTree | None:
+    """The node tree that makes a material or world, None where plain properties do."""
+    # From 5.0 on there is always one, and asking for use_nodes is deprecated.
+    if bpy.app.version < (5, 0) and not owner.use_nodes:
+        return None
+    return owner.node_tree
+
+
 def find_source(socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
     """What feeds an input socket of a node that lies in the groups of ``path``."""
     start = socket

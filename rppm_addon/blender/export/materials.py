@@ -6,6 +6,7 @@ import numpy as np
 
 from ...scene import Lobe, LobeKind, Material
 from .images import ImageTable
+from .links import node_tree
 from .report import Report
 from .shaders import add_lobes
 from .values import Evaluator
@@ -40,11 +41,12 @@ class MaterialTable:
 def export_material(material: bpy.types.Material, report: Report, images: ImageTable) -> Material:
     """The surface and the interior of a material; what has no counterpart is reported and left out."""
     exported = Material(material.name)
-    if not material.use_nodes or material.node_tree is None:
+    tree = node_tree(material)
+    if tree is None:
         exported.lobes.append(Lobe(LobeKind.DIFFUSE, color=tuple(material.diffuse_color[:3])))
         return exported
     evaluator = Evaluator(f'Material "{material.name}"', report, images)
-    output = material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
+    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
         report.warn(f'Material "{material.name}": it has no Material Output node and is black')
         return exported

@@ -36,11 +36,9 @@ class ObjectExporter:
         for number, instance in enumerate(depsgraph.object_instances):
             if number % 256 == 0:
                 self._report.progress(f"Exporting objects ({number})")
-            if not (instance.show_self or instance.show_particles):
-                continue
             # Only valid inside the loop: Blender reuses the memory for the next instance.
-            matrix = np.array(instance.matrix_world, np.float64)
-            self._export_instance(instance.object, matrix)
+            if instance.show_self:
+                self._export_instance(instance.object, np.array(instance.matrix_world, np.float64))
         self._convert(depsgraph)
         self._keep_usable()
         self._scene.materials = self._materials.materials

@@ -7,7 +7,7 @@ from mathutils import Euler
 
 from ...scene import World
 from .images import ImageTable
-from .links import Path, Source, find_source
+from .links import Path, Source, find_source, node_tree
 from .report import Report
 from .values import Evaluator
 
@@ -16,10 +16,11 @@ def export_world(world: bpy.types.World | None, report: Report, images: ImageTab
     """The surroundings; black where the scene has no world."""
     if world is None:
         return World()
-    if not world.use_nodes or world.node_tree is None:
+    tree = node_tree(world)
+    if tree is None:
         return World(radiance=_finite(np.array(world.color, np.float64)))
     evaluator = Evaluator(f'World "{world.name}"', report, images)
-    output = world.node_tree.get_output_node("CYCLES") or world.node_tree.get_output_node("ALL")
+    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
         return World()
     exported = World()

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Short ways to put things into a Blender scene."""
+
+import bpy
+
+from rppm_addon.blender.export import export_scene
+from rppm_addon.scene import Scene
+
+QUAD = ([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [(0, 1, 2, 3)])
+
+
+def add_mesh(scene, name="Mesh", vertices=QUAD[0], faces=QUAD[1], **values):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices, [], faces)
+    return add_object(scene, name, mesh, **values)
+
+
+def add_object(scene, name, data, **values):
+    created = bpy.data.objects.new(name, data)
+    for key, value in values.items():
+        setattr(created, key, value)
+    scene.collection.objects.link(created)
+    return created
+
+
+def add_light(scene, kind, name="Light", **values):
+    data = bpy.data.lights.new(name, kind)
+    for key, value in values.items():
+        setattr(data, key, value)
+    return add_object(scene, name, data, location=(0.0, 0.0, 3.0))
+
+
+def set_world(scene, color=(0.0, 0.0, 0.0), strength=1.0):
+    world = bpy.data.worlds.new("World")
+    scene.world = world
+    with_nodes(world)
+    background = world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (*color, 1.0)
+    background.inputs["Strength"].default_value = strength
+    return world
+
+
+def new_material(name="Material"):
+    """A material with a Material Output node and nothing else."""
+    material = bpy.data.materials.new(name)
+    with_nodes(material)
+    material.node_tree.nodes.clear()
+    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    output.name = "Output"
+    return material
+
+
+def with_nodes(owner):
+    if bpy.app.version < (5, 0):
+        owner.use_nodes = True
+
+
+def add_node(tree, kind, name=None, **inputs):
+    """A node; keywords set the inputs of that name, with _ for a space."""
+    node = tree.nodes.new(kind)
+    if name is not None:
+        node.name = name
+    for key, value in inputs.items():
+        node.inputs[key.replace("_", " ")].default_value = value
+    return node
+
+
+def link(tree, output, target):
+    tree.links.new(output, target)
+
+
+def to_surface(material, node):
+    link(material.node_tree, node.outputs[0], material.node_tree.nodes["Output"].inputs["Surface"])
+
+
+def export(scene) -> Scene:
+    scene.view_layers[0].update()
+    return export_scene(bpy.context.evaluated_depsgraph_get())
+
+
+def export_lobes(scene, material):
+    """The lobes of a material on a quad, and the warnings of the export."""
+    quad = add_mesh(scene)
+    quad.data.materials.append(material)
+    exported = export(scene)
+    (instance,) = exported.instances
+    return exported.materials[instance.materials[0]].lobes, exported.warnings

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lights in radiometric quantities. The factors are those of Cycles, measured on a diffuse plane."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
+
+from rppm_addon.scene import LightKind
+
+
+def exported_light(scene, kind, **values):
+    scale = values.pop("scale", None)
+    added = add_light(scene, kind, **values)
+    if scale is not None:
+        added.scale = scale
+    lights = export(scene).lights
+    assert len(lights) == 1
+    return lights[0]
+
+
+@pytest.mark.parametrize("kind", ["POINT", "SPOT"])
+def test_point_and_spot(scene, kind):
+    light = exported_light(scene, kind, energy=100.0, color=(1.0, 0.5, 0.25), shadow_soft_size=0.2, scale=(3, 3, 3))
+    assert light.kind is LightKind[kind] and light.name == "Light"
+    np.testing.assert_allclose(light.strength, 100.0 / (4.0 * math.pi) * np.array([1.0, 0.5, 0.25]))
+    assert light.radius == pytest.approx(0.2)  # not scaled, as in Cycles
+    np.testing.assert_allclose(light.matrix[:3, 3], (0.0, 0.0, 3.0))
+    np.testing.assert_allclose(np.linalg.norm(light.matrix[:3, 0]), 3.0)
+
+
+def test_spot_cone(scene):
+    light = exported_light(scene, "SPOT", spot_size=1.2, spot_blend=0.4)
+    assert (light.spot_angle, light.spot_blend) == pytest.approx((1.2, 0.4))
+
+
+def test_sun(scene):
+    light = exported_light(scene, "SUN", energy=3.0, angle=0.3)
+    np.testing.assert_allclose(light.strength, [3.0] * 3)
+    assert light.sun_angle == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(
+    ("shape", "area"), [("SQUARE", 4.0), ("RECTANGLE", 1.0), ("DISK", math.pi), ("ELLIPSE", math.pi / 4)]
+)
+@pytest.mark.parametrize("scale", [(1, 1, 1), (2, 3, 5)])
+def test_area_radiance(scene, shape, area, scale):
+    light = exported_light(scene, "AREA", energy=10.0, shape=shape, size=2.0, size_y=0.5, spread=1.0, scale=scale)
+    world_area = area * scale[0] * scale[1]
+    np.testing.assert_allclose(light.strength, [10.0 / (math.pi * world_area)] * 3, rtol=1e-6)
+    assert light.size == ((2.0, 0.5) if shape in {"RECTANGLE", "ELLIPSE"} else (2.0, 2.0))
+    assert light.shape == shape and light.spread == pytest.approx(1.0)
+
+
+def test_photon_share_and_visibility(scene):
+    added = add_light(scene, "POINT")
+    added.data.rppm.photon_share = 2.5
+    added.visible_camera = True
+    (light,) = export(scene).lights
+    assert light.photon_share == 2.5 and light.visible_to_camera
+    added.visible_camera = False
+    assert not export(scene).lights[0].visible_to_camera
+
+
+def test_instanced_lights(scene):
+    added = add_light(scene, "POINT")
+    collection = bpy.data.collections.new("Lights")
+    collection.objects.link(added)
+    scene.collection.objects.unlink(added)
+    for x in (1.0, 2.0):
+        empty = bpy.data.objects.new("Empty", None)
+        empty.instance_type, empty.instance_collection, empty.location = "COLLECTION", collection, (x, 0.0, 0.0)
+        scene.collection.objects.link(empty)
+    assert sorted(light.matrix[0, 3] for light in export(scene).lights) == [1.0, 2.0]
+
+
+def test_light_nodes_multiply(scene):
+    added = add_light(scene, "POINT", energy=4.0 * math.pi)
+    added.data.use_nodes = True
+    emission = added.data.node_tree.nodes["Emission"]
+    emission.inputs["Color"].default_value = (0.5, 1.0, 0.0, 1.0)
+    emission.inputs["Strength"].default_value = 3.0
+    np.testing.assert_allclose(export(scene).lights[0].strength, (1.5, 3.0, 0.0))
+    noise = add_node(added.data.node_tree, "ShaderNodeTexNoise", "Flicker")
+    link(
+        added.data.node_tree,
+        noise.outputs["Fac" if bpy.app.version < (5, 0) else "Factor"],
+        emission.inputs["Strength"],
+    )
+    exported = export(scene)
+    assert any('Light "Light": node "Flicker" (TEX_NOISE)' in warning for warning in exported.warnings)
+
+
+@pytest.mark.parametrize("values", [{"energy": 0.0}, {"energy": -5.0}, {"color": (0.0, 0.0, 0.0)}])
+def test_lights_without_power_are_left_out(scene, values):
+    add_light(scene, "POINT", **values)
+    assert export(scene).lights == []
+
+
+def test_area_light_without_area(scene):
+    add_light(scene, "AREA").scale = (0.0, 1.0, 1.0)
+    exported = export(scene)
+    assert exported.lights == [] and any('"Light"' in warning for warning in exported.warnings)
+
+
+needs_light_units = pytest.mark.skipif(bpy.app.version < (4, 5), reason="this Blender's lights have no exposure")
+
+CYCLES_CASES = [
+    pytest.param("POINT", {"shadow_soft_size": 0.02}, id="point"),
+    pytest.param("POINT", {"shadow_soft_size": 0.5, "normalize": False}, id="point-radiant", marks=needs_light_units),
+    pytest.param("POINT", {"shadow_soft_size": 0.0, "normalize": False}, id="point-zero", marks=needs_light_units),
+    pytest.param("SPOT", {"shadow_soft_size": 0.02, "exposure": 1.5}, id="spot-exposure", marks=needs_light_units),
+    pytest.param("SUN", {"angle": 0.1}, id="sun"),
+    pytest.param("SUN", {"angle": 0.5, "normalize": False}, id="sun-radiance", marks=needs_light_units),
+    pytest.param("AREA", {"shape": "SQUARE", "size": 0.1}, id="square"),
+    pytest.param("AREA", {"shape": "RECTANGLE", "size": 0.1, "size_y": 0.2}, id="rectangle"),
+    pytest.param("AREA", {"shape": "DISK", "size": 0.1}, id="disk"),
+    pytest.param("AREA", {"shape": "ELLIPSE", "size": 0.1, "size_y": 0.05}, id="ellipse"),
+    pytest.param("AREA", {"shape": "ELLIPSE", "size": 0.2, "normalize": False}, id="area-radiance", marks=needs_light_units),
+    pytest.param("POINT", {"use_temperature": True, "temperature": 3000.0}, id="temperature", marks=needs_light_units),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "values"), CYCLES_CASES)
+def test_irradiance_agrees_with_cycles(scene, kind, values, tmp_path):
+    """The plane below a light, seen straight on, against what the exported quantities say."""
+    added = add_light(scene, kind, energy=100.0, **values)
+    distance = 10.0
+    added.location = (0.0, 0.0, distance)
+    set_world(scene)
+    white = new_material("White")
+    to_surface(white, add_node(white.node_tree, "ShaderNodeBsdfDiffuse", Color=(1.0, 1.0, 1.0, 1.0)))
+    add_mesh(scene).data.materials.append(white)
+    (light,) = export(scene).lights
+    if light.kind is LightKind.SUN:
+        expected = light.strength
+    elif light.kind is LightKind.AREA:
+        round_share = math.pi / 4 if light.shape in {"DISK", "ELLIPSE"} else 1.0
+        expected = light.strength * light.size[0] * light.size[1] * round_share / distance**2
+    else:
+        expected = light.strength / (distance**2 + light.radius**2)  # Cycles' soft falloff: a facing disk
+    np.testing.assert_allclose(cycles_radiance(scene, tmp_path) * math.pi, expected, rtol=3e-3)
+
+
+def cycles_radiance(scene, folder):
+    """Mean radiance of a millimetre around the origin from above, by Cycles, (3,)."""
+    import OpenEXR
+
+    render = scene.render
+    render.engine = "CYCLES"
+    scene.cycles.device, scene.cycles.samples, scene.cycles.max_bounces = "CPU", 256, 0
+    scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
+    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 0.002
+    render.resolution_x = render.resolution_y = 4
+    if hasattr(render.image_settings, "media_type"):
+        render.image_settings.media_type = "IMAGE"
+    render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+    render.filepath = str(folder / "plane.exr")
+    bpy.ops.render.render(write_still=True)
+    with OpenEXR.File(render.filepath) as file:
+        pixels = next(iter(file.channels().values())).pixels
+    return pixels[..., :3].reshape(-1, 3).mean(axis=0)

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exported arrays against Blender read one element at a time."""
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_mesh, add_object, export, new_material
+
+from rppm_addon.blender.export import triangles
+
+
+def naive_arrays(mesh):
+    """What the export should give, by Blender's plain documented properties."""
+    mesh.calc_loop_triangles()
+    uv = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    return {
+        "positions": np.array([tuple(vertex.co) for vertex in mesh.vertices], np.float32),
+        "corner_vertices": np.array([loop.vertex_index for loop in mesh.loops], np.int32),
+        "corner_normals": np.array([tuple(normal.vector) for normal in mesh.corner_normals], np.float32),
+        "triangle_corners": np.array([tuple(triangle.loops) for triangle in mesh.loop_triangles], np.int32),
+        "triangle_slots": np.array(
+            [mesh.polygons[triangle.polygon_index].material_index for triangle in mesh.loop_triangles], np.int32
+        ),
+        "corner_uv": None if uv is None else np.array([tuple(item.vector) for item in uv.uv], np.float32),
+    }
+
+
+def assert_same(exported, mesh):
+    for name, expected in naive_arrays(mesh).items():
+        found = getattr(exported, name)
+        if expected is None:
+            assert found is None
+        else:
+            assert found.dtype == expected.dtype and found.shape == expected.shape, name
+            np.testing.assert_allclose(found, expected, atol=1e-6, err_msg=name)
+
+
+def evaluated(source):
+    return source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+
+
+def monkey(scene, **values):
+    bpy.ops.mesh.primitive_monkey_add()
+    source = bpy.context.object
+    for key, value in values.items():
+        setattr(source, key, value)
+    return source
+
+
+def test_arrays_equal_the_naive_reading(scene):
+    source = monkey(scene)
+    for polygon in source.data.polygons:
+        polygon.material_index = polygon.index % 3
+        polygon.use_smooth = polygon.index % 2 == 0
+    for _ in range(3):
+        source.data.materials.append(bpy.data.materials.new("M"))
+    mesh = export(scene).meshes[0]
+    assert mesh.triangle_count == 968 and set(mesh.triangle_slots) == {0, 1, 2}
+    assert_same(mesh, evaluated(source))
+
+
+def test_modifiers_are_applied(scene):
+    source = add_mesh(scene)
+    array = source.modifiers.new("Array", "ARRAY")
+    array.count = 5
+    source.modifiers.new("Subdivision", "SUBSURF").render_levels = 1
+    exported = export(scene)
+    assert exported.meshes[0].triangle_count > 5 * 2
+    assert_same(exported.meshes[0], evaluated(source))
+
+
+def test_custom_normals_reach_the_corners(scene):
+    source = add_mesh(scene)
+    tilted = [(0.6, 0.0, 0.8)] * 4
+    source.data.normals_split_custom_set(tilted)
+    mesh = export(scene).meshes[0]
+    np.testing.assert_allclose(mesh.corner_normals, tilted, atol=1e-3)
+    assert_same(mesh, evaluated(source))
+
+
+def test_the_uv_map_for_rendering_is_the_one_exported(scene):
+    source = add_mesh(scene)
+    for index, name in enumerate(("First", "Second", "Third")):
+        layer = source.data.uv_layers.new(name=name)
+        for corner, item in enumerate(layer.uv):
+            item.vector = (index, corner)
+    source.data.uv_layers["Second"].active_render = True
+    source.data.uv_layers.active = source.data.uv_layers["Third"]
+    mesh = export(scene).meshes[0]
+    np.testing.assert_array_equal(mesh.corner_uv, [(1, 0), (1, 1), (1, 2), (1, 3)])
+
+
+def test_a_mesh_shared_by_objects_is_exported_once(scene):
+    first = add_mesh(scene, "First")
+    second = add_object(scene, "Second", first.data, location=(3.0, 0.0, 0.0))
+    exported = export(scene)
+    assert len(exported.meshes) == 1
+    assert {instance.object_name for instance in exported.instances} == {"First", "Second"}
+    second.modifiers.new("Array", "ARRAY").count = 3
+    exported = export(scene)
+    assert sorted(mesh.triangle_count for mesh in exported.meshes) == [2, 6]
+
+
+def text_object(scene):
+    data = bpy.data.curves.new("Text", "FONT")
+    data.body = "ab"
+    data.extrude = 0.1
+    return add_object(scene, "Text", data)
+
+
+def curve_object(scene):
+    data = bpy.data.curves.new("Curve", "CURVE")
+    data.dimensions = "3D"
+    data.bevel_depth = 0.1
+    spline = data.splines.new("POLY")
+    spline.points.add(3)
+    for index, point in enumerate(spline.points):
+        point.co = (index, index * index * 0.2, 0.0, 1.0)
+    return add_object(scene, "Curve", data)
+
+
+def metaball_object(scene):
+    data = bpy.data.metaballs.new("Metaball")
+    data.elements.new()
+    return add_object(scene, "Metaball", data)
+
+
+def surface_object(scene):
+    bpy.ops.surface.primitive_nurbs_surface_sphere_add()
+    return bpy.context.object
+
+
+MAKERS = [text_object, curve_object, metaball_object, surface_object]
+
+
+@pytest.mark.parametrize("make", MAKERS)
+def test_what_evaluates_to_a_mesh_is_exported_once(scene, make):
+    source = make(scene)
+    source.location = (1.0, 2.0, 3.0)
+    material = new_material("Own")
+    source.data.materials.append(material)
+    exported = export(scene)
+    (instance,) = exported.instances
+    np.testing.assert_allclose(instance.matrix[:3, 3], (1.0, 2.0, 3.0))
+    assert exported.materials[instance.materials[0]].name == "Own"
+    reference = source.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    assert_same(exported.meshes[instance.mesh], reference.to_mesh())
+    reference.to_mesh_clear()
+
+
+@pytest.mark.parametrize("make", [text_object, curve_object, surface_object])
+def test_converted_objects_are_multiplied_by_faces_and_collections(scene, make):
+    source = make(scene)
+    collection = bpy.data.collections.new("Instanced")
+    collection.objects.link(source)
+    scene.collection.objects.unlink(source)
+    for index in range(2):
+        empty = add_object(scene, f"Empty{index}", None, location=(0.0, 0.0, index))
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    exported = export(scene)
+    assert len(exported.instances) == 2 and len(exported.meshes) == 1
+    assert sorted(instance.matrix[2, 3] for instance in exported.instances) == [0.0, 1.0]
+
+    scene.collection.objects.link(source)
+    for index in range(2):
+        bpy.data.objects.remove(bpy.data.objects[f"Empty{index}"])
+    parent = add_mesh(scene, "Parent", *two_quads())
+    parent.instance_type = "FACES"
+    source.parent = parent
+    exported = export(scene)
+    of_source = [instance for instance in exported.instances if instance.object_name == source.name]
+    # Blender shows the object on each face, and itself.
+    assert sorted(instance.matrix[0, 3] for instance in of_source) == [-0.5, 0.0, 1.5]
+    assert len({exported.meshes[instance.mesh].triangle_count for instance in of_source}) == 1
+
+
+def two_quads():
+    return [(-1, -1, 0), (0, -1, 0), (0, 0, 0), (-1, 0, 0), (1, 1, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0)], [
+        (0, 1, 2, 3),
+        (4, 5, 6, 7),
+    ]
+
+
+def test_triangles_are_read_by_pointer_only_where_that_is_right(scene, monkeypatch):
+    mesh = evaluated(monkey(scene))
+    mesh.calc_loop_triangles()
+    assert triangles.pointer_view_is_right(mesh)
+    by_pointer = triangles.triangle_corners(mesh)
+    monkeypatch.setattr(triangles, "_pointer_view_is_right", False)
+    np.testing.assert_array_equal(triangles.triangle_corners(mesh), by_pointer)
+    # Another layout must be noticed, and then not be used.
+    monkeypatch.setattr(triangles, "_pointer_view_is_right", None)
+    monkeypatch.setattr(triangles, "_by_pointer", lambda mesh: by_pointer[:, ::-1])
+    np.testing.assert_array_equal(triangles.triangle_corners(mesh), by_pointer)
+    assert triangles._pointer_view_is_right is False
+
+
+def test_one_triangle_and_no_triangle(scene):
+    add_mesh(scene, "Triangle", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    add_mesh(scene, "Edge", [(0, 0, 0), (1, 0, 0)], [])
+    add_mesh(scene, "Nothing", [], [])
+    exported = export(scene)
+    assert [instance.object_name for instance in exported.instances] == ["Triangle"]
+    np.testing.assert_array_equal(exported.meshes[0].triangle_corners, [(0, 1, 2)])
