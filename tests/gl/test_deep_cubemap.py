@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hits through the deep cubemap are those of testing every triangle."""
+
+import time
+
+import numpy as np
+import pytest
+from deep_cubemap_device import Scene, ray_records
+from deep_cubemap_rays import KINDS, make_rays
+from deep_cubemap_reference import Reference
+from deep_cubemap_scenes import CENTRES, box, furnished_room, room_with_meshes
+
+from rppm_addon.integrator import deep_cubemap
+from rppm_addon.integrator.deep_cubemap import choose_resolution
+from rppm_addon.integrator.records import NO_TRIANGLE
+from rppm_addon.scene.errors import DeviceError
+
+PLAIN = CENTRES["plain"]
+
+
+def bits(hits: np.ndarray) -> np.ndarray:
+    return hits.view(np.uint32).reshape(-1, 4)
+
+
+def different(hits: np.ndarray, expected: np.ndarray) -> int:
+    """Rays whose triangle differs or whose distance does, by more than an intersection rounds.
+
+    Devices may round a division otherwise than the CPU does, hence not bit for bit.
+    """
+    same_triangle = hits["triangle"] == expected["triangle"]
+    both_hit = (hits["triangle"] != NO_TRIANGLE) & (expected["triangle"] != NO_TRIANGLE)
+    near = np.abs(hits["distance"] - expected["distance"]) <= 1e-6 * expected["distance"]
+    return int(np.count_nonzero(~np.where(both_hit, near & (same_triangle | (hits["distance"] != 0)), same_triangle)))
+
+
+@pytest.fixture(scope="module")
+def meshes():
+    return room_with_meshes(10_000)
+
+
+@pytest.fixture(scope="module")
+def reference(meshes):
+    return Reference(meshes)
+
+
+def test_a_million_random_rays(context, library, meshes, reference):
+    rays = ray_records(*make_rays("uniform", 1_000_000, PLAIN, seed=1))
+    with Scene(context, library, meshes, PLAIN, 128) as scene:
+        scene.trace(rays[:1000])  # compiles
+        start = time.perf_counter()
+        hits = scene.trace(rays)
+        seconds = time.perf_counter() - start
+    expected = reference.trace(rays)
+    unequal = int(np.any(bits(hits) != bits(expected), axis=1).sum())
+    print(
+        f"\n{len(meshes)} triangles, {len(rays)} rays: {different(hits, expected)} differences from the reference, "
+        f"{unequal} not bit-identical, {len(rays) / seconds / 1e6:.2f} Mray/s"
+    )
+    assert different(hits, expected) == 0
+    assert np.all(hits["triangle"] != NO_TRIANGLE)
+    corners = meshes[hits["triangle"]].astype(float)
+    b1, b2 = hits["b1"].astype(float)[:, None], hits["b2"].astype(float)[:, None]
+    points = (1 - b1 - b2) * corners[:, 0] + b1 * corners[:, 1] + b2 * corners[:, 2]
+    on_ray = rays["origin"] + rays["direction"].astype(float) * hits["distance"][:, None]
+    np.testing.assert_allclose(points, on_ray, atol=2e-6)
+    assert np.all(b1 >= 0) and np.all(b2 >= 0) and np.all(b1 + b2 <= 1 + 1e-6)
+
+
+def test_embree_agrees(context, library, meshes):
+    from embreex import rtcore_scene
+    from embreex.mesh_construction import TriangleMesh
+
+    origins, directions = make_rays("uniform", 1_000_000, PLAIN, seed=2)
+    embree = rtcore_scene.EmbreeScene()
+    TriangleMesh(embree, meshes)
+    expected = embree.run(origins, directions, output=1)
+    with Scene(context, library, meshes, PLAIN, 128) as scene:
+        hits = scene.trace(ray_records(origins, directions))
+    far = np.abs(hits["distance"] - expected["tfar"]) > 1e-4 * np.maximum(hits["distance"], 1e-2)
+    print(
+        f"\n{far.sum()} of {len(origins)} distances differ from Embree's, which misses {(expected['primID'] < 0).sum()}"
+    )
+    assert far.sum() <= 3  # each is a ray that starts on a surface or grazes an edge
+    assert np.all(hits["triangle"] != NO_TRIANGLE)
+
+
+@pytest.mark.parametrize("place", CENTRES)
+def test_all_kinds_of_rays_from_all_kinds_of_centres(context, library, meshes, reference, place):
+    centre = CENTRES[place]
+    with Scene(context, library, meshes, centre, 64) as scene:
+        for kind in KINDS:
+            rays = ray_records(*make_rays(kind, 60_000, centre, seed=3))
+            hits = scene.trace(rays)
+            wrong = different(hits, reference.trace(rays))
+            inside = np.all(np.abs(rays["origin"]) < 0.999, axis=1)
+            escaped = np.count_nonzero(hits["triangle"][inside] == NO_TRIANGLE)
+            print(f"{place}, {kind}: {wrong} differences, {escaped} of {inside.sum()} escape from the closed room")
+            assert wrong == 0
+            assert escaped == 0
+
+
+@pytest.mark.parametrize("place", ["plain", "on a corner of the table", "outside"])
+def test_large_triangles_bit_for_bit(context, library, place):
+    """Against a GPU kernel that tests all triangles with the same routine."""
+    centre = CENTRES[place]
+    with Scene(context, library, furnished_room(4), centre, 128) as scene:
+        for kind in KINDS:
+            rays = ray_records(*make_rays(kind, 30_000, centre, seed=4))
+            np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
+
+
+@pytest.mark.parametrize("scale, offset", [(0.01, 0.0), (100.0, 0.0), (1.0, 1000.0), (0.01, 1.0)])
+def test_scale_and_offset(context, library, scale, offset):
+    triangles = furnished_room(4) * np.float32(scale) + np.float32(offset)
+    centre = np.float32(PLAIN) * np.float32(scale) + np.float32(offset)
+    with Scene(context, library, triangles, centre, 64) as scene:
+        for kind in KINDS:
+            origins, directions = make_rays(kind, 20_000, PLAIN, seed=5)
+            rays = ray_records(origins * np.float32(scale) + np.float32(offset), directions)
+            hits = scene.trace(rays)
+            np.testing.assert_array_equal(bits(hits), bits(scene.brute_force(rays)))
+            inside = np.all(np.abs(origins) < 0.97, axis=1)
+            assert np.all(hits["triangle"][inside] != NO_TRIANGLE)
+
+
+def test_the_resolution_does_not_matter(context, library, meshes):
+    rays = ray_records(*make_rays("uniform", 50_000, PLAIN, seed=6))
+    with Scene(context, library, meshes, PLAIN, 256) as scene:
+        expected = scene.trace(rays)
+        for resolution in (4, 8, 32, 64, 128, 512):
+            scene.build(resolution)
+            assert scene.cubemap.resolution == resolution
+            np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
+
+
+def test_any_hit_decides_as_the_nearest_hit_does(context, library, meshes):
+    rays = ray_records(*make_rays("uniform", 100_000, PLAIN, seed=7))
+    rng = np.random.default_rng(8)
+    with Scene(context, library, meshes, PLAIN, 64) as scene:
+        distances = scene.trace(rays)["distance"]
+        # just reaching the hit, just not reaching it, and anything
+        rays["maximum_distance"] = np.where(rng.random(len(rays)) < 0.5, distances, rng.uniform(0.0, 2.0, len(rays)))
+        short = rng.random(len(rays)) < 0.3
+        rays["maximum_distance"][short] = np.nextafter(distances[short], np.float32(0))
+        hits = scene.trace(rays)
+        free = scene.occluded(rays)
+    np.testing.assert_array_equal(free, hits["triangle"] == NO_TRIANGLE)
+    np.testing.assert_array_equal(free == 1, rays["maximum_distance"] < distances)
+    assert 0.2 < free.mean() < 0.8
+
+
+def test_source_triangles_are_never_hit(context, library, meshes, reference):
+    """Rays that leave surfaces: from the hits of other rays on, with and without tracing through them."""
+    first = ray_records(*make_rays("uniform", 100_000, PLAIN, seed=9))
+    with Scene(context, library, meshes, PLAIN, 64) as scene:
+        hits = scene.trace(first)
+        rays = ray_records(*make_rays("uniform", 100_000, PLAIN, seed=10))
+        rays["origin"] = first["origin"] + first["direction"] * hits["distance"][:, None]
+        rays["source_triangle"] = hits["triangle"]
+        onward = scene.trace(rays)
+        assert not np.any(onward["triangle"] == rays["source_triangle"])
+        assert different(onward, reference.trace(rays)) == 0
+
+
+def test_inactive_and_broken_rays_miss(context, library, meshes):
+    rays = ray_records(*make_rays("uniform", 64, PLAIN, seed=11))
+    rays["maximum_distance"][:16] = 0.0
+    rays["maximum_distance"][16:24] = -1.0
+    rays["maximum_distance"][24:32] = np.nan
+    rays["origin"][32:36, 1] = np.nan
+    rays["direction"][36:40] = np.inf
+    rays["direction"][40:48] = 0.0
+    rays["maximum_distance"][48:56] = np.inf
+    with Scene(context, library, meshes, PLAIN) as scene:
+        hits, free = scene.trace(rays), scene.occluded(rays)
+    assert np.all(hits["triangle"][:48] == NO_TRIANGLE) and np.all(free[:48] == 1)
+    assert np.all(hits["triangle"][48:] != NO_TRIANGLE) and np.all(free[48:] == 0)
+
+
+def test_an_empty_scene(context, library):
+    rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=12))
+    with Scene(context, library, np.zeros((0, 3, 3)), PLAIN) as scene:
+        assert np.all(scene.trace(rays)["triangle"] == NO_TRIANGLE)
+        assert np.all(scene.occluded(rays) == 1)
+
+
+def test_an_empty_scene_after_a_full_one(context, library, meshes):
+    """Nothing of the last build is left."""
+    rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=13))
+    with Scene(context, library, meshes, PLAIN) as scene:
+        scene.cubemap.build(scene.triangles, 0, PLAIN, 2.0, 64)
+        assert np.all(scene.trace(rays)["triangle"] == NO_TRIANGLE)
+
+
+def test_broken_triangles_do_no_harm(context, library):
+    room = furnished_room(4)
+    rng = np.random.default_rng(14)
+    broken = room[rng.integers(0, len(room), 60)].copy()
+    broken[:20, 1, 2] = np.nan
+    broken[20:30, 0] = np.inf
+    broken[30:40, 2, 0] = -np.inf
+    broken[40:50] = broken[40:50, :1]  # points
+    broken[50:, 2] = broken[50:, 0]  # lines
+    with (
+        Scene(context, library, np.concatenate([room, broken]), PLAIN) as scene,
+        Scene(context, library, room, PLAIN) as whole,
+    ):
+        for kind in KINDS:
+            rays = ray_records(*make_rays(kind, 20_000, PLAIN, seed=15))
+            np.testing.assert_array_equal(bits(scene.trace(rays)), bits(whole.trace(rays)))
+
+
+def test_lists_that_are_too_short_grow(context, library, meshes, monkeypatch):
+    monkeypatch.setattr(deep_cubemap, "_expected_jobs", lambda triangle_count: 3)
+    monkeypatch.setattr(deep_cubemap, "_expected_fragments", lambda triangle_count, resolution: 3)
+    centre = meshes[len(meshes) // 2, 0]  # on a dense mesh: a long core list
+    rays = ray_records(*make_rays("past the centre", 20_000, centre, seed=16))
+    with Scene(context, library, meshes, centre) as scene:
+        first = scene.cubemap.memory_bytes
+        hits = scene.trace(rays)
+        assert scene.cubemap.counts["core"] > 0
+        scene.build(64)
+        assert scene.cubemap.memory_bytes == first  # what has grown is kept
+        np.testing.assert_array_equal(bits(scene.trace(rays)), bits(hits))
+    assert different(hits, Reference(meshes).trace(rays)) == 0
+
+
+def test_a_crowd_at_the_centre(context, library):
+    """The core list outgrows its first capacity many times over."""
+    rng = np.random.default_rng(17)
+    crowd = (rng.normal(size=(5000, 1, 3)) * 1e-4 + rng.normal(size=(5000, 3, 3)) * 1e-4).astype(np.float32)
+    triangles = np.concatenate([box((-1, -1, -1), (1, 1, 1)).astype(np.float32), crowd])
+    with Scene(context, library, triangles, (0, 0, 0), 32) as scene:
+        assert scene.cubemap.counts["core"] == 5000
+        for kind in KINDS:
+            rays = ray_records(*make_rays(kind, 1000, (0, 0, 0), seed=18))
+            np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
+
+
+def test_limits_of_the_device_are_errors(context, library, meshes, monkeypatch):
+    with Scene(context, library, meshes, PLAIN) as scene:
+        monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 1 << 20)
+        with pytest.raises(DeviceError, match=r"MiB .* allows 1 MiB .*lower the cubemap resolution"):
+            scene.build(256)
+        monkeypatch.undo()
+        monkeypatch.setitem(context.limits, "GL_MAX_TEXTURE_SIZE", 1000)
+        with pytest.raises(DeviceError, match=r"1536 pixels .* allows 1000; lower the cubemap resolution"):
+            scene.build(512)
+        monkeypatch.undo()
+        rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=19))
+        scene.build(256)  # and it can be built after an error
+        np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
+
+
+@pytest.mark.parametrize("resolution", [0, 2, 48, -64])
+def test_resolutions_are_powers_of_two(context, library, resolution):
+    with pytest.raises(ValueError, match=str(resolution)):
+        Scene(context, library, furnished_room(), PLAIN, resolution)
+
+
+def test_the_chosen_resolution_grows_with_the_scene():
+    chosen = [choose_resolution(count) for count in (0, 12, 10_000, 100_000, 1_000_000, 10_000_000)]
+    assert chosen == sorted(chosen) and chosen[0] >= 32 and chosen[-1] <= 512
+
+
+def test_build_times(context, library):
+    for count, resolution in ((10_000, 64), (10_000, 128), (100_000, 128)):
+        with Scene(context, library, room_with_meshes(count), PLAIN, resolution) as scene:
+            context.finish()
+            start = time.perf_counter()
+            scene.build(resolution)
+            context.finish()
+            seconds = time.perf_counter() - start
+            counts = scene.cubemap.counts
+        print(f"\n{counts['triangle']} triangles at {resolution}: {seconds * 1e3:.0f} ms, {counts}")
+        # a triangle lies in one job but for those seen through several faces
+        assert counts["triangle"] <= counts["job"] <= 1.5 * counts["triangle"]
+        assert counts["fragment"] <= counts["entry"] <= 1.5 * counts["fragment"]
