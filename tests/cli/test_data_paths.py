@@ -44,7 +44,7 @@ def test_what_is_no_assignment_is_refused(text):
     [
         ("render.film_transparent", "true", lambda: bpy.context.scene.render.film_transparent is True),
         ("render.resolution_x", "77", lambda: bpy.context.scene.render.resolution_x == 77),
-        ("view_settings.view_transform", "Standard", lambda: bpy.context.scene.view_settings.view_transform == "Standard"),
+        ("view_settings.view_transform", "Raw", lambda: bpy.context.scene.view_settings.view_transform == "Raw"),
         (r'objects["A \"lamp\" = b"].data.energy', "50", lambda: bpy.data.lights["Light"].energy == 50.0),
         ('objects["Cube"].location', "1,2, -3", lambda: bpy.data.objects["Cube"].location[:] == (1, 2, -3)),
         ('objects["Cube"].location[2]', "-4.5", lambda: bpy.data.objects["Cube"].location[2] == -4.5),
