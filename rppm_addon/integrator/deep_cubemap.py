@@ -6,7 +6,8 @@ Building takes four steps, shaders of these names in shaders/deep_cubemap:
 
 1. list_overlap_jobs: per triangle and face, the rectangle of cells it may touch;
 2. overlap: rasterizes the rectangles; the fragment shader tests triangle against cell exactly and
-   appends a fragment (cell, triangle, depth interval);
+   appends a fragment (cell, triangle, depth interval). A compute shader can do the same, for devices
+   that have much arithmetic and few units that rasterize;
 3. allocate_bins, count_entries, place_entries, scatter_entries: a counting sort of the fragments
    into lists by cell and depth bin;
 4. merge_blocks: a hierarchy of blocks of cells that says which depths are empty.
@@ -48,14 +49,14 @@ STATE = Record(
     core_capacity="uint",
     bin_count="uint",
     entry_count="uint",
-    unused="uint",
+    job_size="uint",
 )
 """Lengths in metres. ``margin``: how far cells are widened; ``cell_size``: 2 / resolution, the size of
-a cell on the plane at distance 1; the counts may pass the capacities, then something was dropped."""
+a cell on the plane at distance 1; ``job_size``: cells along the longest side of a job; the counts may pass the capacities, then something was dropped."""
 
 CELL = Record("CubemapCell", near_complement="uint", far="uint", slices="uint", bins="uint")
 FRAGMENT = Record("OverlapFragment", cell="uint", triangle="uint", near="float", far="float")
-OVERLAP_DRAW = Record("OverlapDraw", first_job="uint", resolution="uint")
+OVERLAP_DRAW = Record("OverlapDraw", first_job="uint", end_job="uint", resolution="uint")
 MERGE_LEVEL = Record("MergeLevel", level="uint")
 TRACE_RANGE = Record("TraceRange", first_ray="uint", end_ray="uint")
 
@@ -73,6 +74,7 @@ _ENTRY_SIZE = 8
 # Work per submission, so that no driver watchdog mistakes it for a hang.
 _RAYS_PER_DISPATCH = 1 << 18
 _JOBS_PER_DRAW = 1 << 16
+_COMPUTE_JOB_SIZE = 32
 
 _REMEDY = "lower the cubemap resolution or simplify the geometry"
 
@@ -92,10 +94,12 @@ class DeepCubemap:
 
     ``resolution`` (cells along a face's side), ``centre`` (three floats, metres) and ``counts``
     (jobs, fragments, bin ends, entries, core triangles) are those of the last build.
+    ``rasterize``: whether triangles are found in cells by rasterization or in a compute shader.
     """
 
-    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+    def __init__(self, context: Context, library: ProgramLibrary, rasterize: bool = True) -> None:
         self._context = context
+        self._rasterize = rasterize
         self._library = library
         self._state = GrowingBuffer(context, "deep cubemap state")
         self._cells = GrowingBuffer(context, "deep cubemap cells", _REMEDY)
@@ -145,6 +149,7 @@ class DeepCubemap:
         state["resolution"] = resolution
         state["top_level"] = _top_level(resolution)
         state["triangle_count"] = triangle_count
+        state["job_size"] = resolution if self._rasterize else _COMPUTE_JOB_SIZE
         self._list_jobs(state)
         self._find_fragments(state)
         self._sort_fragments()
@@ -258,7 +263,6 @@ class DeepCubemap:
         """Step 2; fills the cells, and the fragments. Repeats when their list was too short."""
         expected = _expected_fragments(int(state["triangle_count"]), self.resolution)
         self._grow(self._fragments, min(expected, self._context.storage_block_limit // FRAGMENT.size), FRAGMENT.size)
-        draw = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag")
         buffers = {
             "Triangles": self._triangles,
             "DeepCubemap": self._state.buffer,
@@ -272,16 +276,19 @@ class DeepCubemap:
             self._cells.clear()
             buffers["OverlapFragments"] = self._fragments.buffer
             for first in range(0, jobs, _JOBS_PER_DRAW):
-                draw.draw(
-                    self._framebuffer,
-                    6 * min(_JOBS_PER_DRAW, jobs - first),
-                    buffers,
-                    {"first_job": first, "resolution": self.resolution},
-                )
+                self._classify(first, min(first + _JOBS_PER_DRAW, jobs), buffers)
             found = int(self._read_state()["fragment_count"])
             if found <= state["fragment_capacity"]:
                 return
             self._grow(self._fragments, found, FRAGMENT.size)
+
+    def _classify(self, first_job: int, end_job: int, buffers: Mapping[str, moderngl.Buffer]) -> None:
+        parameters = {"first_job": first_job, "end_job": end_job, "resolution": self.resolution}
+        if self._rasterize:
+            program = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag")
+            program.draw(self._framebuffer, 6 * (end_job - first_job), buffers, parameters)
+        else:
+            self._library.compute("deep_cubemap/overlap.comp").run(end_job - first_job, buffers, parameters)
 
     def _sort_fragments(self) -> None:
         """Step 3."""

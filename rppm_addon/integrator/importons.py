@@ -91,6 +91,7 @@ class Importons:
                 "Importons": self.importons.buffer,
                 "Radiances": self.radiances.buffer,
                 "Camera": camera,
+                "Materials": stages.materials.buffers["Materials"],
             },
             {
                 **stages.emission.parameters(settings.seed, iteration, count),

@@ -66,6 +66,7 @@ class Photons:
                         "Rays": self._rays.buffer,
                         "PhotonPaths": self._paths.buffer,
                         "Photons": self.photons.buffer,
+                        "Materials": stages.materials.buffers["Materials"],
                     },
                     {
                         "count": self.photon_count,

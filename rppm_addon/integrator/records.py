@@ -48,8 +48,8 @@ CLOSURE = Record(
     geometric_normal="uint",
     transparent="vec3",
     shading_normal="uint",
-    transmittance="vec3",
     distance="float",
+    material="uint",
     lobe0_weight="vec3",
     lobe0_kind="uint",
     lobe0_f0="vec3",
@@ -66,10 +66,11 @@ CLOSURE = Record(
     unused="float",
 )
 """All that scattering, storing and estimating need to know about a hit. Normals face the arriving
-path. ``transmittance`` is that of the segment that arrives (absorption inside a volume)."""
+path; bit 0 of ``flags`` tells that it came from behind."""
 
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
-"""Flux that a photon path carries along its current ray; zero once the path has ended."""
+"""Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
+with the volumes it is in (materials/medium.glsl)."""
 
 PHOTON = Record(
     "Photon",

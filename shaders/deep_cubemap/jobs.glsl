@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rectangles of cells that a triangle may touch on a face: (triangle, face, first cell, last cell),
-// a cell as x | y << 16.
+// a cell as x | y << 16. No side is longer than deep_cubemap.job_size.
 
 layout(std430, binding = 15) buffer OverlapJobs { uvec4 overlap_jobs[]; };
 

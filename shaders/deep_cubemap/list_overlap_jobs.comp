@@ -26,6 +26,21 @@ void list_core_triangle(uint triangle, vec3 a, vec3 b, vec3 c) {
     if (index < deep_cubemap.core_capacity) core_triangles[index] = triangle;
 }
 
+// In rectangles of a limited size. Jobs are counted past the capacity as well, so that the host
+// learns how much is needed.
+void list_jobs(uint triangle, int face, ivec2 first, ivec2 last) {
+    int size = int(deep_cubemap.job_size);
+    ivec2 tiles = (last - first) / size + 1;
+    uint index = atomicAdd(deep_cubemap.job_count, uint(tiles.x * tiles.y));
+    for (ivec2 tile = ivec2(0); tile.y < tiles.y; ++tile.y) {
+        for (tile.x = 0; tile.x < tiles.x; ++tile.x, ++index) {
+            if (index >= deep_cubemap.job_capacity) return;
+            ivec2 start = first + tile * size;
+            overlap_jobs[index] = uvec4(triangle, face, pack_cell(start), pack_cell(min(start + size - 1, last)));
+        }
+    }
+}
+
 void main() {
     uint triangle = invocation_index();
     if (triangle >= deep_cubemap.triangle_count) return;
@@ -42,10 +57,6 @@ void main() {
         bool seen = face_cells(
             to_face(a, face), to_face(b, face), to_face(c, face),
             deep_cubemap.margin, deep_cubemap.resolution, first, last);
-        if (!seen) continue;
-        uint index = atomicAdd(deep_cubemap.job_count, 1u);
-        if (index < deep_cubemap.job_capacity) {
-            overlap_jobs[index] = uvec4(triangle, face, pack_cell(first), pack_cell(last));
-        }
+        if (seen) list_jobs(triangle, face, first, last);
     }
 }

@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
+#include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "emission/lights.glsl"
 layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
@@ -86,7 +87,7 @@ void main() {
         radiances[index] += seen;
         return;
     }
-    path.throughput *= closure.transmittance;
+    path.throughput *= segment_transmittance(path.flags, closure);
     seen.rgb += path.throughput * closure.emission;
     radiances[index] += seen;
 
@@ -143,6 +144,7 @@ void main() {
     path.throughput *= weight * (total / (probability * survival));
     float side = dot(direction, geometric);
     if (!(largest(path.throughput) > 0.0) || (transmitted ? side >= 0.0 : side <= 0.0)) return;
+    if (transmitted) path.flags = cross_surface(path.flags, closure);
     camera_paths[index] = path;
     vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
     rays[index] = Ray(origin, closure.triangle, direction, INFINITY_DISTANCE);

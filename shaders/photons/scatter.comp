@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/photon.glsl"
+#include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) buffer Rays { Ray rays[]; };
@@ -74,13 +75,14 @@ void main() {
     Closure closure = closures[index];
     photon.direction = -ray.direction;
     photon.flux = carried;
-    photon.flags = PHOTON_ACTIVE | photon_paths[index].flags;
+    uint path_flags = photon_paths[index].flags;
+    photon.flags = PHOTON_ACTIVE | (path_flags & PATH_MASK);
     if (!closure_hit(closure)) {
         photon.flags |= PHOTON_ESCAPED;
         photons[slot] = photon;
         return;
     }
-    photon.flux *= closure.transmittance;
+    photon.flux *= segment_transmittance(path_flags, closure);
     photon.position = closure.position;
     photon.triangle = closure.triangle;
     photon.geometric_normal = closure.geometric_normal;
@@ -100,7 +102,9 @@ void main() {
             if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, shading);
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
-            if (!scattering.specular) photon_paths[index].flags = PHOTON_DIFFUSED;
+            if (!scattering.specular) path_flags |= PHOTON_DIFFUSED;
+            if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
+            photon_paths[index].flags = path_flags;
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
             rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
         }

@@ -21,7 +21,7 @@ layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attr
 
 Closure empty_closure() {
     vec3 none = vec3(0.0);
-    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, vec3(1.0), 0.0,
+    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, 0.0, 0u,
                    none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, vec3(1.0), 0.0);
 }
 
@@ -58,14 +58,13 @@ void main() {
     builder.cosine = clamp(dot(shading, viewer), 0.0, 1.0);
     builder.closure.position = b.x * v0 + b.y * v1 + b.z * v2;
     builder.closure.triangle = hit.triangle;
-    builder.closure.flags = builder.backfacing ? 1u : 0u;
+    builder.closure.flags = builder.backfacing ? CLOSURE_BACKFACING : 0u;
+    builder.closure.material = corners.material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(geometric);
     builder.closure.shading_normal = pack_unit_vector(shading);
     vec2 uv = b.x * corners.uv0 + b.y * corners.uv1 + b.z * corners.uv2;
     Material material = materials[corners.material];
-    // Seen from inside, the segment ran through the material's interior.
-    if (builder.backfacing) builder.closure.transmittance = exp(-material.absorption * hit.distance);
     for (uint lobe = 0u; lobe < material.lobe_count; ++lobe)
         add_material_lobe(builder, material_lobes[material.first_lobe + lobe], uv);
     closures[index] = builder.closure;

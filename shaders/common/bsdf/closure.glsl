@@ -3,6 +3,7 @@
 #include "common/bsdf/microfacet.glsl"
 
 const int CLOSURE_LOBES = 3;
+const uint CLOSURE_BACKFACING = 1u;
 
 MicrofacetLobe closure_lobe(Closure closure, int index) {
     if (index == 0)

@@ -1,0 +1,48 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What overlap.vert and overlap.frag do, without the rasterizer. A group takes as many jobs as it has
+// threads and shares out all their cells evenly, whatever the sizes of the rectangles.
+layout(local_size_x = 64) in;
+#define DEEP_CUBEMAP_BUILD
+#include "common/invocation.glsl"
+#include <OverlapDraw>
+layout(std140, binding = 0) uniform Parameters { OverlapDraw parameters; };
+#include "deep_cubemap/jobs.glsl"
+#include "deep_cubemap/classify.glsl"
+
+const uint JOBS = 64u;
+shared uint cells_up_to[JOBS]; // of this job and those before it
+
+// The job that the group's cell of a number belongs to.
+uint job_of_cell(uint number) {
+    uint job = 0u;
+    for (uint stride = JOBS / 2u; stride > 0u; stride /= 2u) {
+        if (cells_up_to[job + stride - 1u] <= number) job += stride;
+    }
+    return job;
+}
+
+void main() {
+    uint thread = gl_LocalInvocationIndex;
+    uint group_start = parameters.first_job + invocation_index() - thread;
+    uint cells = 0u;
+    if (group_start + thread < parameters.end_job) {
+        uvec4 job = overlap_jobs[group_start + thread];
+        ivec2 size = unpack_cell(job.w) - unpack_cell(job.z) + 1;
+        cells = uint(size.x * size.y);
+    }
+    cells_up_to[thread] = cells;
+    barrier();
+    for (uint earlier = 0u; earlier < thread; ++earlier) cells += cells_up_to[earlier];
+    barrier();
+    cells_up_to[thread] = cells;
+    barrier();
+    for (uint number = thread; number < cells_up_to[JOBS - 1u]; number += JOBS) {
+        uint index = job_of_cell(number);
+        uvec4 job = overlap_jobs[group_start + index];
+        uint within = number - (index == 0u ? 0u : cells_up_to[index - 1u]);
+        ivec2 first = unpack_cell(job.z);
+        uint width = uint(unpack_cell(job.w).x - first.x + 1);
+        classify_cell(job.x, int(job.y), first + ivec2(within % width, within / width));
+    }
+}
