@@ -118,7 +118,7 @@ CYCLES_CASES = [
     pytest.param("AREA", {"shape": "RECTANGLE", "size": 0.1, "size_y": 0.2}, id="rectangle"),
     pytest.param("AREA", {"shape": "DISK", "size": 0.1}, id="disk"),
     pytest.param("AREA", {"shape": "ELLIPSE", "size": 0.1, "size_y": 0.05}, id="ellipse"),
-    pytest.param("AREA", {"shape": "ELLIPSE", "size": 0.2, "normalize": False}, id="area-radiance", marks=needs_light_units),
+    pytest.param("AREA", {"shape": "DISK", "size": 0.2, "normalize": False}, id="radiance", marks=needs_light_units),
     pytest.param("POINT", {"use_temperature": True, "temperature": 3000.0}, id="temperature", marks=needs_light_units),
 ]  # fmt: skip
 

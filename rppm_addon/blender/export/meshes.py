@@ -8,11 +8,14 @@ from ...scene import Mesh
 from .report import Report
 from .triangles import triangle_corners
 
+FARTHEST = 1e18
+"""Coordinates beyond overflow in single precision as soon as they are squared."""
+
 
 def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report) -> Mesh | None:
     """The arrays of an evaluated mesh, in its object space; None when it has no triangle.
 
-    Triangles with a vertex that is not finite are left out, with a warning that names ``name``.
+    Triangles with a vertex that is not finite, or beyond FARTHEST, are left out, with a warning that names ``name``.
     """
     if len(mesh.polygons) == 0:
         return None
@@ -28,11 +31,11 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report) -> Mesh | None:
     corner_vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)[:, 0]
     corner_normals = _read(mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32)
 
-    finite = np.isfinite(positions).all(axis=1)
+    finite = (np.abs(positions) < FARTHEST).all(axis=1)  # false for NaN as well
     if not finite.all():
         good = finite[corner_vertices[triangles]].all(axis=1)
         report.warn(
-            f'Object "{name}": {np.count_nonzero(~finite)} vertices are not finite and '
+            f'Object "{name}": {np.count_nonzero(~finite)} vertices are not finite or too far away, so '
             f"{np.count_nonzero(~good)} triangles were left out; correct the mesh or its modifiers"
         )
         triangles, triangle_slots = triangles[good], triangle_slots[good]

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Image textures on colours, and what happens where an image is missing."""
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_mesh, add_node, export, export_lobes, link, new_material, to_surface
+
+from rppm_addon.scene import LobeKind
+
+
+def new_image(name, pixels, is_float=False, space=None):
+    """pixels: (height, width, 4), as Blender stores them."""
+    height, width = pixels.shape[:2]
+    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
+    if space is not None:
+        image.colorspace_settings.name = space
+    image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
+    return image
+
+
+def textured(image, socket="Color", shader="ShaderNodeBsdfDiffuse", output="Color"):
+    material = new_material()
+    node = add_node(material.node_tree, shader)
+    texture = add_node(material.node_tree, "ShaderNodeTexImage", "Picture")
+    texture.image = image
+    link(material.node_tree, texture.outputs[output], node.inputs[socket])
+    to_surface(material, node)
+    return material
+
+
+def exported_image(scene, material):
+    add_mesh(scene).data.materials.append(material)
+    exported = export(scene)
+    (lobe,) = exported.materials[0].lobes
+    return exported.images[lobe.color_image], lobe, exported.warnings
+
+
+PIXELS = np.linspace(0.0, 1.0, 3 * 5 * 4).reshape(3, 5, 4)
+PIXELS[..., 3] = 1.0
+
+
+def test_byte_images_keep_their_encoding(scene):
+    image, lobe, warnings = exported_image(scene, textured(new_image("Byte", PIXELS)))
+    assert lobe.kind is LobeKind.DIFFUSE and lobe.color == (1.0, 1.0, 1.0)
+    assert image.name == "Byte" and image.encoding == "SRGB" and image.pixels.dtype == np.uint8
+    np.testing.assert_allclose(image.pixels, PIXELS * 255.0, atol=0.51)
+    assert warnings == []
+
+
+def test_float_images_are_linear(scene):
+    image, _, warnings = exported_image(scene, textured(new_image("Float", PIXELS * 7.0, is_float=True)))
+    assert image.encoding == "LINEAR" and image.pixels.dtype == np.float32
+    np.testing.assert_allclose(image.pixels, PIXELS * 7.0, atol=1e-5)
+    assert warnings == []
+
+
+def test_data_images_are_not_decoded(scene):
+    image, _, _ = exported_image(scene, textured(new_image("Data", PIXELS, space="Non-Color")))
+    assert image.encoding == "LINEAR" and image.pixels.dtype == np.uint8
+
+
+def test_rows_run_from_the_bottom(scene):
+    pixels = np.zeros((2, 1, 4))
+    pixels[0, 0] = (1.0, 0.0, 0.0, 1.0)
+    pixels[1, 0] = (0.0, 1.0, 0.0, 1.0)
+    image, _, _ = exported_image(scene, textured(new_image("Rows", pixels)))
+    assert image.pixels[0, 0, 0] == 255 and image.pixels[1, 0, 1] == 255
+
+
+def test_saved_and_packed_images_agree(scene, tmp_path):
+    image = new_image("Saved", PIXELS)
+    image.filepath_raw, image.file_format = str(tmp_path / "saved.png"), "PNG"
+    image.save()
+    loaded = bpy.data.images.load(str(tmp_path / "saved.png"))
+    packed = bpy.data.images.load(str(tmp_path / "saved.png"), check_existing=False)
+    packed.pack()
+    material = new_material()
+    tree = material.node_tree
+    add = add_node(tree, "ShaderNodeAddShader")
+    for socket, source in zip(add.inputs, (loaded, packed), strict=True):
+        node, texture = add_node(tree, "ShaderNodeBsdfDiffuse"), add_node(tree, "ShaderNodeTexImage")
+        texture.image = source
+        link(tree, texture.outputs["Color"], node.inputs["Color"])
+        link(tree, node.outputs[0], socket)
+    to_surface(material, add)
+    add_mesh(scene).data.materials.append(material)
+    exported = export(scene)
+    assert len(exported.images) == 2
+    np.testing.assert_array_equal(exported.images[0].pixels, exported.images[1].pixels)
+    np.testing.assert_allclose(exported.images[0].pixels, PIXELS * 255.0, atol=0.51)
+
+
+def test_an_image_used_twice_is_exported_once(scene):
+    image = new_image("Shared", PIXELS)
+    for name in ("First", "Second"):
+        add_mesh(scene, name).data.materials.append(textured(image))
+    exported = export(scene)
+    assert len(exported.images) == 1 and len(exported.materials) == 2
+
+
+def test_a_constant_multiplies_an_image(scene):
+    material = textured(new_image("Image", PIXELS))
+    tree = material.node_tree
+    mix = add_node(tree, "ShaderNodeMix")
+    mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+    sockets = [socket for socket in mix.inputs if socket.enabled]
+    sockets[0].default_value = 0.5
+    diffuse, picture = tree.nodes["Diffuse BSDF"], tree.nodes["Picture"]
+    link(tree, picture.outputs["Color"], sockets[1])
+    sockets[2].default_value = (0.0, 1.0, 0.5, 1.0)
+    link(tree, next(socket for socket in mix.outputs if socket.enabled), diffuse.inputs["Color"])
+    _, lobe, warnings = exported_image(scene, material)
+    np.testing.assert_allclose(lobe.color, (0.5, 1.0, 0.75))
+    assert warnings == []
+
+
+def test_images_on_principled_and_emission(scene):
+    image = new_image("Image", PIXELS)
+    material = textured(image, "Base Color", "ShaderNodeBsdfPrincipled")
+    tree = material.node_tree
+    principled = tree.nodes["Principled BSDF"]
+    link(tree, tree.nodes["Picture"].outputs["Color"], principled.inputs["Emission Color"])
+    principled.inputs["Emission Strength"].default_value = 2.0
+    lobes, _ = export_lobes(scene, material)
+    assert [(lobe.kind.name, lobe.color_image) for lobe in lobes] == [("PRINCIPLED", 0), ("EMISSION", 0)]
+    assert lobes[1].color == (2.0, 2.0, 2.0)
+
+
+def test_an_image_on_a_number_counts_by_its_mean(scene):
+    pixels = np.full((2, 2, 4), 0.25)
+    pixels[0] = 0.75
+    material = textured(new_image("Rough", pixels, space="Non-Color"), "Roughness", "ShaderNodeBsdfPrincipled")
+    (lobe,), warnings = export_lobes(scene, material)
+    assert lobe.roughness == pytest.approx(0.5, abs=0.01)
+    assert any('"Picture" (TEX_IMAGE)' in text and "mean" in text for text in warnings)
+
+
+def test_missing_file(scene, tmp_path):
+    image = new_image("Lost", PIXELS)
+    image.source = "FILE"
+    image.filepath = str(tmp_path / "nowhere.png")
+    (lobe,), warnings = export_lobes(scene, textured(image))
+    assert lobe.color == (1.0, 0.0, 1.0) and lobe.color_image == -1
+    assert any('"Material"' in text and '"Lost"' in text and "nowhere.png" in text for text in warnings)
+
+
+def test_texture_without_an_image(scene):
+    (lobe,), warnings = export_lobes(scene, textured(None))
+    assert lobe.color == (1.0, 0.0, 1.0) and any('"Picture"' in text for text in warnings)
+
+
+def test_placement_by_a_mapping_is_reported(scene):
+    material = textured(new_image("Image", PIXELS))
+    tree = material.node_tree
+    mapping = add_node(tree, "ShaderNodeMapping", "Shift")
+    link(tree, mapping.outputs[0], tree.nodes["Picture"].inputs["Vector"])
+    _, warnings = export_lobes(scene, material)
+    assert any('"Shift" (MAPPING)' in text for text in warnings)
+    coordinates = add_node(tree, "ShaderNodeTexCoord")
+    link(tree, coordinates.outputs["UV"], tree.nodes["Picture"].inputs["Vector"])
+    bpy.data.objects.remove(bpy.data.objects["Mesh"])
+    assert export_lobes(scene, material)[1] == []
+
+
+def test_pixels_that_are_not_finite(scene):
+    pixels = PIXELS.copy()
+    pixels[0, 0, 0], pixels[0, 1, 1] = np.nan, np.inf
+    image, _, _ = exported_image(scene, textured(new_image("Broken", pixels, is_float=True)))
+    assert np.isfinite(image.pixels).all()

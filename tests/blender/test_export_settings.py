@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scene.rppm carries exactly the render settings."""
+
+import dataclasses
+
+import bpy
+import pytest
+from blender_scenes import export
+
+from rppm_addon.scene import DirectLight, RenderSettings
+
+ELSEWHERE = {"film_transparent"}  # a property that Blender itself has
+
+
+def test_properties_are_the_settings_with_their_defaults(scene):
+    names = {field.name for field in dataclasses.fields(RenderSettings)}
+    properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
+    assert properties == names - ELSEWHERE
+    found, expected = export(scene).settings, RenderSettings()
+    for name in names:
+        assert getattr(found, name) == pytest.approx(getattr(expected, name)) if name == "alpha" else True
+        if isinstance(getattr(expected, name), float):
+            assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-6)
+        else:
+            assert getattr(found, name) == getattr(expected, name)
+
+
+def test_every_property_has_a_description(scene):
+    for item in (*scene.rppm.bl_rna.properties, *bpy.data.lights.new("L", "POINT").rppm.bl_rna.properties):
+        if item.identifier not in {"rna_type", "name"}:
+            assert len(item.description) > 20 and not item.description.endswith("."), item.identifier
+
+
+def test_values_are_exported(scene):
+    scene.rppm.iterations = 7
+    scene.rppm.photons = 1234
+    scene.rppm.alpha = 0.5
+    scene.rppm.direct_light = "PHOTONS"
+    scene.rppm.cubemap_resolution = 64
+    scene.rppm.seed = 5
+    scene.render.film_transparent = True
+    scene.cycles.film_exposure = 2.5
+    exported = export(scene)
+    settings = exported.settings
+    assert (settings.iterations, settings.photons, settings.alpha, settings.seed) == (7, 1234, 0.5, 5)
+    assert settings.direct_light is DirectLight.PHOTONS and settings.cubemap_resolution == 64
+    assert settings.film_transparent and exported.exposure == 2.5
+
+
+def test_the_ranges_of_the_properties_are_valid_settings(scene):
+    for item in scene.rppm.bl_rna.properties:
+        if item.type in {"INT", "FLOAT"} and item.identifier != "cubemap_resolution":
+            for value in (item.hard_min, min(item.hard_max, 1e9)):
+                kind = int if item.type == "INT" else float
+                settings = RenderSettings(**{item.identifier: kind(value)})
+                if item.identifier == "radius_minimum":
+                    settings.radius_maximum = 0.0
+                settings.validate()
