@@ -52,7 +52,8 @@ STATE = Record(
     job_size="uint",
 )
 """Lengths in metres. ``margin``: how far cells are widened; ``cell_size``: 2 / resolution, the size of
-a cell on the plane at distance 1; ``job_size``: cells along the longest side of a job; the counts may pass the capacities, then something was dropped."""
+a cell on the plane at distance 1; ``job_size``: cells along the longest side of a job. The counts may
+pass the capacities, then something was dropped and the step is repeated."""
 
 CELL = Record("CubemapCell", near_complement="uint", far="uint", slices="uint", bins="uint")
 FRAGMENT = Record("OverlapFragment", cell="uint", triangle="uint", near="float", far="float")

@@ -6,17 +6,13 @@
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
+#include "common/finite.glsl"
 #include "deep_cubemap/triangles.glsl"
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/core.glsl"
 #include "deep_cubemap/jobs.glsl"
 #include "deep_cubemap/faces.glsl"
 #include "deep_cubemap/face_bounds.glsl"
-
-// By the exponent's bits: compilers may assume that no float is NaN.
-bool is_finite(vec3 v) {
-    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec3(0x7f800000u)));
-}
 
 void list_core_triangle(uint triangle, vec3 a, vec3 b, vec3 c) {
     vec3 outside = max(max(min(min(a, b), c), -max(max(a, b), c)), vec3(0.0)); // the box's nearest point

@@ -7,6 +7,7 @@
 // plane distance. Cells are stepped by whole numbers in a direction that is fixed for a face: rounding
 // can neither make the walk loop nor skip a cell.
 #include "common/constants.glsl"
+#include "common/finite.glsl"
 #include "common/intersection.glsl"
 #include "deep_cubemap/triangles.glsl"
 #include "deep_cubemap/state.glsl"
@@ -183,10 +184,6 @@ bool clip_to_ball(float closest, float squared_miss, float squared_length, float
     float half_chord = sqrt(max(room, 0.0) / squared_length);
     between = vec2(closest - half_chord, closest + half_chord);
     return room > 0.0;
-}
-
-bool is_finite(vec3 v) {
-    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec3(0x7f800000u)));
 }
 
 Hit trace_deep_cubemap(Ray ray, bool any_hit) {

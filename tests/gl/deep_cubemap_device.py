@@ -21,14 +21,16 @@ def ray_records(origins, directions, maximum_distance=1e9) -> np.ndarray:
 class Scene:
     """Triangles on the device and their cubemap; a context manager."""
 
-    def __init__(self, context, library, triangles: np.ndarray, centre, resolution: int = 64) -> None:
+    def __init__(
+        self, context, library, triangles: np.ndarray, centre, resolution: int = 64, rasterize: bool = True
+    ) -> None:
         self.context, self.library = context, library
         self.host_triangles = np.asarray(triangles, np.float32)
         vertices = np.zeros((max(3 * len(triangles), 1), 4), np.float32)
         vertices[: 3 * len(triangles), :3] = self.host_triangles.reshape(-1, 3)
         self.triangles = context.moderngl.buffer(vertices.tobytes())
         self.centre = np.asarray(centre, np.float32)
-        self.cubemap = DeepCubemap(context, library)
+        self.cubemap = DeepCubemap(context, library, rasterize)
         self.build(resolution)
 
     def build(self, resolution: int) -> None:

@@ -103,3 +103,19 @@ def test_lists_are_the_same_every_time(context, library):
     np.testing.assert_array_equal(first.entries, second.entries)
     np.testing.assert_array_equal(first.near, second.near)
     np.testing.assert_array_equal(first.cells["slices"], second.cells["slices"])
+
+
+@pytest.mark.parametrize("place", CENTRES)
+def test_the_compute_route_builds_the_same(context, library, place):
+    """Rasterized rectangles and those walked by a compute shader leave the same fragments behind."""
+    triangles = room_with_meshes(10_000)
+    structures = []
+    for rasterize in (True, False):
+        with Scene(context, library, triangles, CENTRES[place], 128, rasterize) as scene:
+            structure = read_structure(scene.cubemap)
+            structure.entries = structure.entries[np.lexsort(structure.entries.T)]
+            structures.append(structure)
+    first, second = structures
+    np.testing.assert_array_equal(first.entries, second.entries)
+    np.testing.assert_array_equal(first.near, second.near)
+    np.testing.assert_array_equal(first.far, second.far)
