@@ -11,6 +11,7 @@ import sys
 import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from .commands.data_paths import split_assignment
 from .commands.interruption import Interruption
@@ -50,6 +51,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong with the arguments in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
 def _parser() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--debug", action="store_true", help="show tracebacks and everything that is logged")
@@ -67,7 +75,7 @@ def _parser() -> argparse.ArgumentParser:
         "bpy.data (render.film_transparent=true, 'objects[\"Lamp\"].data.energy=50'); may be repeated",
     )
 
-    parser = argparse.ArgumentParser(prog="rppm", description="Progressive photon mapping by rasterization.")
+    parser = _Parser(prog="rppm", description="Progressive photon mapping by rasterization.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     render = commands.add_parser(

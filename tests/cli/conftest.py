@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small scenes for the rppm program, and a way to run it as its users do."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from rppm_addon.scene import (
+    Camera,
+    Instance,
+    Light,
+    LightKind,
+    Lobe,
+    LobeKind,
+    Material,
+    Mesh,
+    RenderSettings,
+    Scene,
+    save_scene,
+)
+
+
+def start_rppm(*arguments):
+    """The program as a process with pipes."""
+    command = [sys.executable, "-m", "rppm_addon", *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+@pytest.fixture
+def rppm():
+    """Run the program: returns exit status, standard output, standard error."""
+
+    def run(*arguments, timeout=120):
+        with start_rppm(*arguments) as process:
+            try:
+                output, errors = process.communicate(timeout=timeout)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise
+        return process.returncode, output, errors
+
+    return run
+
+
+def floor_scene():
+    """A camera 4 m above a diffuse floor that covers the left half of its view, lit by a point light."""
+    down = np.eye(4)
+    down[2, 3] = 4.0
+    floor = Mesh(
+        "Floor",
+        positions=np.array([[-9, -9, 0], [0, -9, 0], [0, 9, 0], [-9, 9, 0]], np.float32),
+        corner_vertices=np.arange(4, dtype=np.int32),
+        corner_normals=np.tile(np.float32([0, 0, 1]), (4, 1)),
+        triangle_corners=np.array([[0, 1, 2], [0, 2, 3]], np.int32),
+        triangle_slots=np.zeros(2, np.int32),
+    )
+    lamp = np.eye(4)
+    lamp[:3, 3] = (-1.0, 1.0, 2.0)
+    return Scene(
+        Camera(down, (-0.5, 0.5, -0.375, 0.375), 16, 12),
+        meshes=[floor],
+        instances=[Instance(0, np.eye(4), [0], "Floor")],
+        materials=[Material("Grey", [Lobe(LobeKind.DIFFUSE, color=(0.5, 0.5, 0.5))])],
+        lights=[Light("Lamp", LightKind.POINT, lamp, np.full(3, 10.0))],
+        settings=RenderSettings(iterations=3, photons=1024),
+    )
+
+
+@pytest.fixture
+def saved_scene(tmp_path):
+    """The floor as a .npz."""
+    path = tmp_path / "floor.npz"
+    save_scene(floor_scene(), path)
+    return path
+
+
+_MAKE_BLEND = """
+import sys
+import bpy
+import rppm_addon
+rppm_addon.register()
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_plane_add(size=18, location=(-9, 0, 0))
+lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+lamp.location, lamp.data.energy = (-1, 1, 2), 300
+camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+camera.location = (0, 0, 4)
+for made in (lamp, camera):
+    scene.collection.objects.link(made)
+lamp.keyframe_insert("location", frame=1)
+lamp.location.x = -90
+lamp.keyframe_insert("location", frame=2)
+scene.frame_set(1)
+scene.camera = camera
+scene.render.engine = "RPPM"
+scene.render.resolution_x, scene.render.resolution_y = 16, 12
+scene.rppm.iterations, scene.rppm.photons = 3, 1024
+bpy.ops.wm.save_as_mainfile(filepath=sys.argv[1])
+scene.camera = None
+bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])
+rppm_addon.unregister()
+"""
+
+
+@pytest.fixture(scope="session")
+def blend_files(tmp_path_factory):
+    """The same floor as a .blend whose lamp is gone in frame 2, and that file without a camera."""
+    pytest.importorskip("bpy", reason="the bpy module is not installed")
+    folder = tmp_path_factory.mktemp("blend")
+    paths = folder / "floor.blend", folder / "no_camera.blend"
+    subprocess.run([sys.executable, "-c", _MAKE_BLEND, *map(str, paths)], check=True, timeout=120, capture_output=True)
+    return paths
