@@ -50,9 +50,11 @@ STATE = Record(
     bin_count="uint",
     entry_count="uint",
     job_size="uint",
+    greatest_depth_bits="uint",
 )
 """Lengths in metres. ``margin``: how far cells are widened; ``cell_size``: 2 / resolution, the size of
-a cell on the plane at distance 1; ``job_size``: cells along the longest side of a job. The counts may
+a cell on the plane at distance 1; ``job_size``: cells along the longest side of a job;
+``greatest_depth_bits``: of the greatest coordinate about the centre, as float bits. The counts may
 pass the capacities, then something was dropped and the step is repeated."""
 
 CELL = Record("CubemapCell", near_complement="uint", far="uint", slices="uint", bins="uint")
@@ -145,7 +147,6 @@ class DeepCubemap:
         state["margin"] = scene_radius * _MARGIN
         state["core_radius"] = scene_radius * _CORE_RADIUS
         state["scene_radius"] = scene_radius
-        state["slices_per_metre"] = _DEPTH_SLICES / scene_radius
         state["cell_size"] = 2 / resolution
         state["resolution"] = resolution
         state["top_level"] = _top_level(resolution)
@@ -233,7 +234,7 @@ class DeepCubemap:
         return min(buffer.size // size, limit)
 
     def _list_jobs(self, state: np.void) -> None:
-        """Step 1; fills in the counts of jobs and core triangles. Repeats when a list was too short."""
+        """Step 1; fills in what the triangles yield of the state. Repeats when a list was too short."""
         count = int(state["triangle_count"])
         self._grow(self._jobs, min(_expected_jobs(count), self._context.storage_block_limit // _JOB_SIZE), _JOB_SIZE)
         while True:
@@ -255,6 +256,9 @@ class DeepCubemap:
             found = self._read_state()
             state["job_count"] = found["job_count"]
             state["core_count"] = found["core_count"]
+            # The radius would do, but reaches into corners where there are no faces.
+            greatest_depth = max(float(found["greatest_depth_bits"].view(np.float32)), 1e-20)
+            state["slices_per_metre"] = _DEPTH_SLICES / greatest_depth
             if found["job_count"] <= state["job_capacity"] and found["core_count"] <= state["core_capacity"]:
                 return
             self._grow(self._jobs, int(found["job_count"]), _JOB_SIZE)

@@ -14,6 +14,13 @@ layout(local_size_x = 64) in;
 #include "deep_cubemap/faces.glsl"
 #include "deep_cubemap/face_bounds.glsl"
 
+void raise_greatest_depth(vec3 a, vec3 b, vec3 c) {
+    vec3 farthest = max(max(abs(a), abs(b)), abs(c));
+    uint bits = floatBitsToUint(max(max(farthest.x, farthest.y), farthest.z));
+    // most threads find that the depth has been reached already and need no atomic operation
+    if (bits > deep_cubemap.greatest_depth_bits) atomicMax(deep_cubemap.greatest_depth_bits, bits);
+}
+
 void list_core_triangle(uint triangle, vec3 a, vec3 b, vec3 c) {
     vec3 outside = max(max(min(min(a, b), c), -max(max(a, b), c)), vec3(0.0)); // the box's nearest point
     float reach = 1.01 * deep_cubemap.core_radius;
@@ -44,6 +51,7 @@ void main() {
     vec3 b = triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.centre;
     vec3 c = triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.centre;
     if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return;
+    raise_greatest_depth(a, b, c);
     list_core_triangle(triangle, a, b, c);
     float farthest = max(max(dot(a, a), dot(b, b)), dot(c, c));
     float core_inside = 0.98 * deep_cubemap.core_radius;
