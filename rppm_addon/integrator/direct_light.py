@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Light straight from the sources, by next-event rays from the importons."""
-
-import moderngl
+"""Light straight from the sources, by next-event rays from the camera paths' vertices."""
 
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from .emission import LIGHT_PARAMETERS
+from .importons import Importons
 from .records import RAY
 from .stages import Stages
 
-Record("DirectLightParameters", **LIGHT_PARAMETERS, segment="uint", first_pixel="uint")
+Record("DirectLightParameters", **LIGHT_PARAMETERS, segment="uint", first_pixel="uint", specular_alpha="float")
 Record("CountParameters", count="uint")
 
 
 class DirectLight:
-    """One sampled light and one shadow ray for every importon."""
+    """One sampled light and one shadow ray for every camera path and segment."""
 
     def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
         self._sample = library.compute("direct_light/sample.comp")
@@ -35,24 +34,35 @@ class DirectLight:
     def run(
         self,
         stages: Stages,
-        importons: moderngl.Buffer,
-        radiances: moderngl.Buffer,
+        importons: Importons,
         count: int,
         first_pixel: int,
         iteration: int,
         segment: int,
     ) -> None:
-        """Add the direct light of ``count`` importons to the band's radiances."""
+        """Add the direct light of the resolved vertices of ``count`` camera paths to the band's radiance.
+
+        To be called before the paths scatter on.
+        """
         parameters = stages.emission.parameters(stages.settings.seed, iteration, count)
+        stages.emission.environment.use()
         self._sample.run(
             count,
             {
                 **stages.emission.buffers,
-                "Importons": importons,
-                "Rays": self._rays.buffer,
+                "Closures": importons.closures.buffer,
+                "Rays": importons.rays.buffer,
+                "CameraPaths": importons.paths.buffer,
+                "ShadowRays": self._rays.buffer,
                 "Contributions": self._contributions.buffer,
+                "Materials": stages.materials.buffers["Materials"],
             },
-            {**parameters, "segment": segment, "first_pixel": first_pixel},
+            {
+                **parameters,
+                "segment": segment,
+                "first_pixel": first_pixel,
+                "specular_alpha": stages.settings.specular_roughness**2,
+            },
         )
         stages.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, count)
         self._add.run(
@@ -60,7 +70,7 @@ class DirectLight:
             {
                 "Visibility": self._visibility.buffer,
                 "Contributions": self._contributions.buffer,
-                "Radiances": radiances,
+                "Radiances": importons.radiances.buffer,
             },
             {"count": count},
         )

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """DirectPhotonHits and TracePhotons: photons from the lights through the scene."""
 
-import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer

@@ -97,6 +97,7 @@ class ProgressivePhotonMapper:
             for segment in range(self.scene.settings.camera_path_length):
                 self._trace_importons(segment)
                 self._add_direct_light(segment)
+                self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits)
                 if segment == 0:
                     self._direct_splatting()
                 else:
@@ -192,22 +193,20 @@ class ProgressivePhotonMapper:
             self.film.add_surface(
                 self._gbuffer.camera, self._importons.closures.buffer, self._count, self._first_pixel, self.iteration
             )
-        with self.timers.stage("camera scattering"):
-            self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits)
 
     def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
-        self._importons.scatter(
-            self._stages, self._gbuffer.camera, self._count, self._first_pixel,
-            iteration, segment, self._radius_scale, shrink, limits,
-        )
+        with self.timers.stage("camera scattering"):
+            self._importons.scatter(
+                self._stages, self._gbuffer.camera, self._count, self._first_pixel,
+                iteration, segment, self._radius_scale, shrink, limits,
+            )
 
     def _add_direct_light(self, segment: int) -> None:
         if self.scene.settings.direct_light is not DirectLightMode.RAYS:
             return
         with self.timers.stage("direct light"):
             self._direct_light.run(
-                self._stages, self._importons.importons.buffer, self._importons.radiances.buffer,
-                self._count, self._first_pixel, self.iteration, segment,
+                self._stages, self._importons, self._count, self._first_pixel, self.iteration, segment
             )
 
     def _direct_splatting(self) -> None:

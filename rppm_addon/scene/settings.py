@@ -37,7 +37,7 @@ class RenderSettings:
     """r_min of the first iteration; 0 is automatic."""
     radius_maximum: float = 0.0
     """r_max of the first iteration; 0 is automatic."""
-    specular_roughness: float = 0.3
+    specular_roughness: float = 0.5
     """Lobes with at most this roughness (the user's, not its square) are traced as specular;
     rougher ones store photons."""
     direct_light: DirectLight = DirectLight.RAYS

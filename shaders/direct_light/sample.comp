@@ -1,19 +1,27 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Next-event rays from importons to a sampled light.
+// Next-event rays from the camera paths' vertices to a sampled light, for all lobes that store photons. Lights
+// without extent cannot be met by the specular rays: those light the specular lobes too, unless
+// they are perfectly smooth.
 
 layout(local_size_x = 64) in;
 
 #include <Ray>
+#include <CameraPath>
 #include <DirectLightParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
-#include "common/importon.glsl"
+#include "common/bsdf/closure.glsl"
+#include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "emission/lights.glsl"
-layout(std430, binding = 0) readonly buffer Importons { Importon importons[]; };
-layout(std430, binding = 1) writeonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 2) writeonly buffer Contributions { vec4 contributions[]; };
+layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
+layout(std430, binding = 1) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 2) readonly buffer CameraPaths { CameraPath camera_paths[]; };
+layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(std430, binding = 8) writeonly buffer Contributions { vec4 contributions[]; };
+
+const float SMOOTHEST_LIT = 1e-4;
 
 uint choose_light(float u) {
     uint low = 0u, high = parameters.light_count - 1u;
@@ -25,26 +33,50 @@ uint choose_light(float u) {
     return low;
 }
 
+bool without_extent(Light light) {
+    return (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) && light.radius <= 0.0
+        || light.kind == LIGHT_SUN && light.cosine_cone >= 1.0;
+}
+
+vec3 evaluate_closure(Closure closure, vec3 shading, vec3 wo, vec3 wi, float least_alpha) {
+    vec3 value = dot(shading, wi) > 0.0 ? closure.diffuse / PI : vec3(0.0);
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (lobe_stores(lobe, least_alpha)) value += evaluate_lobe(lobe, shading, wo, wi);
+    }
+    return value;
+}
+
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    rays[index].maximum_distance = 0.0;
+    shadow_rays[index].maximum_distance = 0.0;
     contributions[index] = vec4(0.0);
-    Importon importon = importons[index];
-    if (!(importon.radius > 0.0)) return;
+    Ray ray = rays[index];
+    Closure closure = closures[index];
+    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_DIRECT_LIGHT, parameters.segment, parameters.first_pixel + index);
     Light light = lights[choose_light(next_random(random))];
     float u_choice = next_random(random);
-    LightSample sampled = sample_light(light, importon.position, u_choice, next_random2(random));
-    if (!(largest(sampled.weight) > 0.0) || sampled.triangle == importon.triangle) return;
-    vec3 geometric = unpack_unit_vector(importon.geometric_normal), shading = unpack_unit_vector(importon.shading_normal);
+    LightSample sampled = sample_light(light, closure.position, u_choice, next_random2(random));
+    if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return;
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
     float side = dot(geometric, sampled.direction), cosine = dot(shading, sampled.direction);
     if (side * cosine <= 0.0) return;
-    vec3 radiance = evaluate_importon(importon, shading, sampled.direction) * sampled.weight
-                  * (abs(cosine) / light.selection_probability);
+    float least_alpha = without_extent(light) ? min(SMOOTHEST_LIT, parameters.specular_alpha) : parameters.specular_alpha;
+    vec3 scattered = evaluate_closure(closure, shading, -ray.direction, sampled.direction, least_alpha);
+    vec3 throughput = camera_paths[index].throughput * segment_transmittance(camera_paths[index].flags, closure);
+    vec3 radiance = throughput * scattered * sampled.weight * (abs(cosine) / light.selection_probability);
     if (!(largest(radiance) > 0.0)) return;
     contributions[index] = vec4(radiance, 0.0);
-    vec3 origin = offset_from_surface(importon.position, side > 0.0 ? geometric : -geometric);
-    // Short of the light, whose own surface must not hide it.
-    rays[index] = Ray(origin, importon.triangle, sampled.direction, sampled.distance * (1.0 - 1e-4));
+    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
+    Ray shadow = Ray(origin, closure.triangle, sampled.direction, INFINITY_DISTANCE);
+    if (sampled.distance < INFINITY_DISTANCE) {
+        // From the moved origin to the light, and just short of it: its own surface must not hide it.
+        vec3 to_light = closure.position + sampled.distance * sampled.direction - origin;
+        float distance = length(to_light);
+        shadow.direction = to_light / distance;
+        shadow.maximum_distance = distance * (1.0 - 1e-4);
+    }
+    shadow_rays[index] = shadow;
 }

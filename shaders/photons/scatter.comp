@@ -18,7 +18,10 @@ layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
 layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
 
-struct Scattering { vec3 direction; vec3 weight; bool transmitted; bool specular; };
+struct Scattering { vec3 direction; vec3 weight; bool transmitted; bool sharp; };
+
+// Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
+const float SHARPEST_ALPHA = 0.05;
 
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout RandomSequence random) {
@@ -49,7 +52,7 @@ Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
     LobeSample sampled = sample_lobe(lobe, shading, arrival, u_direction, u_event, false);
     return Scattering(sampled.direction, sampled.weight * (norm / max(probability, 1e-20)), sampled.transmitted,
-                      lobe_is_specular(lobe, parameters.specular_alpha));
+                      lobe.alpha <= SHARPEST_ALPHA);
 }
 
 // Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
@@ -102,7 +105,7 @@ void main() {
             if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, shading);
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
-            if (!scattering.specular) path_flags |= PHOTON_DIFFUSED;
+            if (!scattering.sharp) path_flags |= PHOTON_DIFFUSED;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             photon_paths[index].flags = path_flags;
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
