@@ -35,7 +35,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.device is not None:
         os.environ["RPPM_DEVICE"] = options.device  # the engine inside Blender reads it too
     try:
-        return options.run(options, bar)
+        status = options.run(options, bar)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:  # the reader, such as head, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except RppmError as error:
         message = str(error)
         status = 1
