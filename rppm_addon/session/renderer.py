@@ -121,6 +121,17 @@ class Renderer:
         as each of the ascending ``snapshots`` (seconds since the call) has passed. Raises the
         errors of scene/errors.py.
         """
+        with self._context.moderngl:  # another context may be current in this thread
+            return self._render(scene, on_progress, should_stop, snapshots, on_snapshot)
+
+    def _render(
+        self,
+        scene: Scene,
+        on_progress: Callable[[Progress, Callable[[], Frame]], None] | None,
+        should_stop: Callable[[], bool] | None,
+        snapshots: Sequence[float],
+        on_snapshot: Callable[[float, Frame], None] | None,
+    ) -> RenderResult:
         start = time.perf_counter()
         settings = scene.settings
         if self._mapper is None:

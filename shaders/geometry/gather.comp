@@ -36,6 +36,11 @@ uint instance_of(uint triangle) {
 
 vec3 three_floats(uint index) { return vec3(positions[3u * index], positions[3u * index + 1u], positions[3u * index + 2u]); }
 
+// By the bits, which no compiler may assume to be those of a number.
+bool reasonable(vec3 p) {
+    return all(lessThan(floatBitsToUint(p) & 0x7fffffffu, uvec3(floatBitsToUint(1e15))));
+}
+
 void main() {
     uint triangle = invocation_index();
     if (triangle >= parameters.triangle_count) return;
@@ -53,7 +58,7 @@ void main() {
     for (uint k = 0u; k < 3u; ++k) {
         corners[k] = instance.mesh_corner + triangle_corners[3u * local + (mirrored && k > 0u ? 3u - k : k)];
         points[k] = linear * three_floats(instance.mesh_vertex + corner_vertices[corners[k]]) + origin;
-        finite = finite && all(lessThan(abs(points[k]), vec3(1e15)));
+        finite = finite && reasonable(points[k]);
     }
     vec3 face = cross(points[1] - points[0], points[2] - points[0]);
     uint normals[3];

@@ -14,6 +14,13 @@ def context():
     context.release()
 
 
+@pytest.fixture(autouse=True)
+def current(context):
+    """Tests that open contexts of their own leave them current: each test starts with the shared one."""
+    with context.moderngl:
+        yield
+
+
 @pytest.fixture(scope="session")
 def library(context):
     library = ProgramLibrary(context)

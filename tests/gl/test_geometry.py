@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Gathering on the GPU against NumPy."""
+
+import numpy as np
+import pytest
+import scenes
+
+from rppm_addon.integrator.geometry import Geometry
+from rppm_addon.integrator.records import TRIANGLE_ATTRIBUTES
+from rppm_addon.scene import Camera, Instance, Scene
+
+
+def unpack(bits: np.ndarray) -> np.ndarray:
+    """Octahedral unit vectors of packed normals, (..., 3)."""
+    x = np.clip((bits & 0xFFFF).astype(np.uint16).view(np.int16) / 32767, -1, 1)
+    y = np.clip((bits >> 16).astype(np.uint16).view(np.int16) / 32767, -1, 1)
+    z = 1 - abs(x) - abs(y)
+    fx, fy = np.where(z < 0, (1 - abs(y)) * np.where(x >= 0, 1, -1), x), np.where(z < 0, (1 - abs(x)) * np.where(y >= 0, 1, -1), y)
+    v = np.stack([fx, fy, z], -1)
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+@pytest.fixture
+def geometry(context, library):
+    geometry = Geometry(context, library)
+    yield geometry
+    geometry.release()
+
+
+def read(geometry):
+    triangles = geometry.triangles.read(np.float32, 12 * geometry.triangle_count).reshape(-1, 3, 4)[..., :3]
+    return triangles, geometry.attributes.read(TRIANGLE_ATTRIBUTES.dtype, geometry.triangle_count)
+
+
+def test_instances_are_gathered_as_numpy_does(geometry):
+    rng = np.random.default_rng(4)
+    ball, sheet = scenes.sphere("ball", 9, 5), scenes.rectangle("sheet", (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+    sheet.corner_uv = rng.random((4, 2), np.float32)
+    ball.triangle_slots = rng.integers(0, 4, ball.triangle_count).astype(np.int32)
+    instances = []
+    for index in range(40):
+        matrix = np.eye(4)
+        matrix[:3] = rng.normal(size=(3, 4))
+        if index % 3 == 0:
+            matrix[:3, 0] *= -1  # mirrored or not: the determinant's sign varies anyway
+        instances.append(Instance(index % 2, matrix, [1, 0, 2] if index % 2 == 0 else [2], object_index=index))
+    scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), [ball, sheet], instances, [scenes.diffuse(1, 1, 1)] * 3)
+    geometry.build(scene, 3)
+    triangles, attributes = read(geometry)
+    assert geometry.triangle_count == scene.triangle_count
+    first = 0
+    for instance in instances:
+        mesh = scene.meshes[instance.mesh]
+        linear = instance.matrix[:3, :3]
+        order = [0, 2, 1] if np.linalg.det(linear) < 0 else [0, 1, 2]
+        corners = mesh.triangle_corners[:, order]
+        world = mesh.positions[mesh.corner_vertices[corners]] @ linear.T + instance.matrix[:3, 3]
+        part = slice(first, first + mesh.triangle_count)
+        np.testing.assert_allclose(triangles[part], world, atol=3e-6)
+        normals = mesh.corner_normals[corners] @ np.linalg.inv(linear)
+        normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+        packed = np.stack([attributes[f"normal{k}"][part] for k in range(3)], 1)
+        assert (unpack(packed) * normals).sum(-1).min() > 1 - 1e-6
+        # the geometric normal stays outside, mirrored or not
+        face = np.cross(triangles[part, 1] - triangles[part, 0], triangles[part, 2] - triangles[part, 0])
+        local = mesh.positions[mesh.corner_vertices[mesh.triangle_corners]]
+        outside = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]) @ np.linalg.inv(linear)
+        assert ((face * outside).sum(-1) > 0).all()
+        slots = np.minimum(mesh.triangle_slots, len(instance.materials) - 1)
+        np.testing.assert_array_equal(attributes["material"][part], np.array(instance.materials)[slots])
+        assert (attributes["object_index"][part] == instance.object_index).all()
+        if mesh.corner_uv is not None:
+            uv = np.stack([attributes[f"uv{k}"][part] for k in range(3)], 1)
+            np.testing.assert_array_equal(uv, mesh.corner_uv[corners])
+        first += mesh.triangle_count
+    assert (triangles.reshape(-1, 3) >= geometry.bounds_low - 1e-5).all()
+    assert (triangles.reshape(-1, 3) <= geometry.bounds_high + 1e-5).all()
+
+
+def test_spoiled_input_leaves_the_rest_whole(geometry):
+    sheet = scenes.rectangle("sheet", (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+    broken = scenes.rectangle("broken", (0, 0, 5), (1, 0, 5), (1, 1, 5), (0, 1, 5))
+    broken.positions[3] = np.nan
+    broken.corner_normals[:] = np.nan
+    singular = np.zeros((4, 4))
+    endless = np.full((4, 4), np.inf)
+    instances = [Instance(0, np.eye(4)), Instance(1, np.eye(4), [7]), Instance(0, singular), Instance(0, endless)]
+    scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), [sheet, broken], instances, [scenes.diffuse(1, 1, 1)])
+    geometry.build(scene, 1)
+    triangles, attributes = read(geometry)
+    assert np.isfinite(triangles).all()
+    np.testing.assert_array_equal(triangles[0], sheet.positions[:3])
+    np.testing.assert_array_equal(triangles[2], broken.positions[:3])  # its own corners are all finite
+    for dead in (3, 4, 5, 6, 7):
+        assert np.ptp(triangles[dead], axis=0).max() == 0
+    assert (attributes["material"] == 1).all()  # no slot and a slot out of range take the default
+    normal = unpack(attributes["normal0"][2:3])[0]
+    np.testing.assert_allclose(normal, [0, 0, 1], atol=1e-4)
+    np.testing.assert_allclose(geometry.bounds_high, [1, 1, 5])
+
+
+def test_an_empty_scene_has_no_triangles(geometry):
+    geometry.build(Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4)), 0)
+    assert geometry.triangle_count == 0 and geometry.radius > 0

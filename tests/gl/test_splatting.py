@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Direct and indirect splatting against all pairs of photons and importons in NumPy."""
+
+import numpy as np
+import pytest
+import scenes
+from test_geometry import unpack
+
+from rppm_addon.integrator import splatting
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.integrator.records import IMPORTON, PHOTON_DIFFUSED, PHOTON_STORED
+from rppm_addon.scene import DirectLight
+
+
+@pytest.fixture
+def mapper(context, library):
+    mapper = ProgressivePhotonMapper(context, library)
+    yield mapper
+    mapper.release()
+
+
+def brute_force(importons, photons, wide):
+    """(n, 3) radiance of diffuse importons: Eq. 1 over all pairs, with the side and plane tests."""
+    stored = photons[(photons["flags"] & PHOTON_STORED) != 0]
+    normals, flux = unpack(stored["geometric_normal"]), stored["flux"].astype(np.float64)
+    diffused = (stored["flags"] & PHOTON_DIFFUSED) != 0
+    result = np.zeros((len(importons), 3))
+    for index, importon in enumerate(importons):
+        if importon["radius"] <= 0:
+            continue
+        offset = (stored["position"] - importon["position"]).astype(np.float64)
+        radius = np.where(diffused, max(importon["radius"], wide), importon["radius"]).astype(np.float64)
+        distance2 = (offset**2).sum(1)
+        geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["shading_normal"][None])[0]
+        near = (distance2 < radius**2) & (normals @ geometric > 0.7) & (abs(offset @ geometric) <= 0.35 * radius)
+        near &= stored["direction"] @ shading > 0
+        cosine = (stored["direction"][near] * normals[near]).sum(1)
+        correction = np.minimum(abs(stored["direction"][near] @ shading) / np.maximum(abs(cosine), 1e-5), 4)
+        kernel = 2 * (1 - distance2[near] / radius[near] ** 2) / (np.pi * radius[near] ** 2)
+        result[index] = importon["diffuse"] * (flux[near] * (kernel * correction)[:, None]).sum(0)
+    return result
+
+
+def diffuse_room(**settings):
+    scene = scenes.room(24, photons=4096, direct_light=DirectLight.PHOTONS, radius_scale=60.0, filter_width=0.0, **settings)
+    scene.instances = scene.instances[:5] + scene.instances[6:]  # the mirror stays
+    return scene
+
+
+def test_direct_splats_are_all_pairs(mapper):
+    mapper.build(diffuse_room(camera_path_length=1))
+    mapper.iterate()
+    count = 24 * 24
+    importons = mapper._importons.importons.read(IMPORTON.dtype, count)
+    expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
+    got = mapper.film.read_radiance().reshape(-1, 4)[:, :3]
+    light = mapper._importons.radiances.read(np.float32, 4 * count).reshape(-1, 4)[:, :3]
+    assert (expected > 0).any(axis=1).mean() > 0.8
+    np.testing.assert_allclose(got - light, expected, rtol=2e-3, atol=2e-4 * expected.max())
+
+
+@pytest.mark.parametrize("resolution", [16, 64])
+@pytest.mark.parametrize("centre", [None, (0.1, 0.999, 0.02), (0.0, 0.0, 0.0), (-0.99999, 0.2, -0.99999)])
+def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
+    """Also with the cubemap's centre on a wall, in a corner and on the planes between its faces."""
+    monkeypatch.setattr(splatting, "_CUBE_RESOLUTION", resolution)
+    mapper.build(diffuse_room(camera_path_length=2))
+    if centre is not None:
+        mapper.centre = np.array(centre)
+    mapper.iterate()
+    count = 24 * 24
+    importons = mapper._importons.importons.read(IMPORTON.dtype, count)  # those seen in the mirror
+    expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
+    got = mapper._splatting.gathered.read(np.float32, 3 * count).reshape(-1, 3)
+    assert (expected > 0).any(axis=1).sum() > 15
+    np.testing.assert_allclose(got, expected, rtol=2e-3, atol=2e-4 * expected.max())
