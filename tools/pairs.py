@@ -73,8 +73,8 @@ def run(command: list[str], seconds: float) -> str:
 def exposure_of(pixels: np.ndarray) -> float:
     """A factor that brings a picture's middle brightness into view, the same for both of a pair."""
     luminance = pixels[..., :3] @ (0.2126, 0.7152, 0.0722)
-    middle = float(np.percentile(luminance[np.isfinite(luminance)], 60))
-    return 0.3 / middle if middle > 0.0 else 1.0
+    lit = luminance[np.isfinite(luminance) & (luminance > 0.0)]
+    return 0.3 / float(np.percentile(lit, 60)) if lit.size else 1.0
 
 
 def as_image(pixels: np.ndarray, exposure: float) -> PIL.Image.Image:
@@ -140,7 +140,7 @@ def main() -> int:
         ours, theirs = pair
         with np.errstate(all="ignore"):
             ratio = ours[..., :3].mean((0, 1)) / theirs[..., :3].mean((0, 1))
-        exposure = exposure_of(theirs)
+        exposure = exposure_of(ours)  # Cycles is short of the light that it cannot find
         images = [as_image(ours, exposure), as_image(theirs, exposure)]
         beside(images, 2, ["RPPM", "Cycles"]).save(folder / f"{name}.png")
         sheet.append(images[0])
