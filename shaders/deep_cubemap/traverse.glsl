@@ -6,6 +6,9 @@
 // borders of cells are planes through the centre, so where the ray leaves a cell is a plain ray and
 // plane distance. Cells are stepped by whole numbers in a direction that is fixed for a face: rounding
 // can neither make the walk loop nor skip a cell.
+//
+// Mesa's llvmpipe ends all loops of a thread after 65535 rounds in all. Steps and tests of a ray stay
+// far below that, unless tens of thousands of triangles crowd into a few cells or around the centre.
 #include "common/constants.glsl"
 #include "common/finite.glsl"
 #include "common/intersection.glsl"
