@@ -9,7 +9,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 
-_CUBE_RESOLUTION = 64
+_CUBE_RESOLUTION, _BLOCK_SIZE = 64, 8
 _JOB_HEADER, _JOB = 16, 16
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
@@ -41,7 +41,7 @@ class Splatting:
         self._heads = GrowingBuffer(context, "splat cubemap")
         self._core = GrowingBuffer(context, "splat core list")
         self.gathered = GrowingBuffer(context, "gathered radiance")
-        self._heads.require(4 * 6 * _CUBE_RESOLUTION**2)
+        self._heads.require(4 * 6 * (_CUBE_RESOLUTION**2 + (_CUBE_RESOLUTION // _BLOCK_SIZE) ** 2))
         self._core.require(4 * (width * rows + 1))
         self.gathered.require(12 * width * rows)
         self.direct_splats = gl.texture((width, rows), 4, dtype="f4")

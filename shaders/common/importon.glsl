@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Importon>
-#include "common/photon.glsl"
+// The includer declares the storage blocks of photons[] and importons[] before.
 #include "common/bsdf/microfacet.glsl"
 
 // BSDF times path throughput of an importon for light from wi.
@@ -19,24 +18,28 @@ const float NORMAL_TOLERANCE = 0.7;
 const float PLANE_TOLERANCE = 0.35;
 
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
-// integral over the unit disk is 1. False when it adds nothing.
-bool density_estimate(Importon importon, Photon photon, float wide_radius, out vec3 radiance) {
+// integral over the unit disk is 1. False when it adds nothing. Most pairs are too far apart: only
+// what decides that is read first.
+bool density_estimate(uint importon_number, uint photon_number, float wide_radius, out vec3 radiance) {
     radiance = vec3(0.0);
-    vec3 offset = photon.position - importon.position;
+    float narrow = importons[importon_number].radius;
+    vec3 offset = photons[photon_number].position - importons[importon_number].position;
+    float radius = photon_radius(photons[photon_number].flags, narrow, wide_radius), radius2 = radius * radius;
     float distance2 = dot(offset, offset);
-    float radius = photon_radius(photon.flags, importon.radius, wide_radius), radius2 = radius * radius;
-    if (!(distance2 < radius2) || !(importon.radius > 0.0)) return false;
-    vec3 geometric = unpack_unit_vector(importon.geometric_normal);
-    vec3 photon_normal = unpack_unit_vector(photon.geometric_normal);
+    if (!(distance2 < radius2) || !(narrow > 0.0)) return false;
+    vec3 geometric = unpack_unit_vector(importons[importon_number].geometric_normal);
+    if (abs(dot(offset, geometric)) > PLANE_TOLERANCE * radius) return false;
+    vec3 photon_normal = unpack_unit_vector(photons[photon_number].geometric_normal);
     float alignment = dot(geometric, photon_normal);
     if (abs(alignment) < NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
-    if (alignment < 0.0 && !lobe_transmits(importon.lobe_kind)) return false;
-    if (abs(dot(offset, geometric)) > PLANE_TOLERANCE * radius) return false;
+    if (alignment < 0.0 && !lobe_transmits(importons[importon_number].lobe_kind)) return false;
+    vec3 direction = photons[photon_number].direction;
+    Importon importon = importons[importon_number];
     vec3 shading = unpack_unit_vector(importon.shading_normal);
     // Flux arrived by the geometric cosine; shading asks for its own.
-    float correction = min(abs(dot(shading, photon.direction)) / max(abs(dot(photon_normal, photon.direction)), 1e-5), 4.0);
+    float correction = min(abs(dot(shading, direction)) / max(abs(dot(photon_normal, direction)), 1e-5), 4.0);
     float kernel = 2.0 * (1.0 - distance2 / radius2) / (PI * radius2);
-    radiance = evaluate_importon(importon, shading, photon.direction) * photon.flux * (kernel * correction);
+    radiance = evaluate_importon(importon, shading, direction) * photons[photon_number].flux * (kernel * correction);
     return largest(radiance) > 0.0;
 }

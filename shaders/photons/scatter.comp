@@ -66,15 +66,15 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     uint slot = parameters.segment * parameters.photon_count + index;
-    Photon photon = Photon(vec3(0.0), 0u, vec3(0.0), 0u, vec3(0.0), NO_TRIANGLE, vec3(0.0), 0u);
     vec3 carried = photon_paths[index].flux;
     Ray ray = rays[index];
     rays[index].maximum_distance = 0.0;
     photon_paths[index].flux = vec3(0.0);
     if (!(largest(carried) > 0.0)) {
-        photons[slot] = photon;
+        photons[slot].flags = 0u;
         return;
     }
+    Photon photon = Photon(vec3(0.0), 0u, vec3(0.0), 0u, vec3(0.0), NO_TRIANGLE, vec3(0.0), 0u);
     Closure closure = closures[index];
     photon.direction = -ray.direction;
     photon.flux = carried;

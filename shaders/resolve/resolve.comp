@@ -30,11 +30,11 @@ void main() {
     if (index >= parameters.count) return;
     Ray ray = rays[index];
     Hit hit = hits[index];
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), 0, 1.0, false, 0.0);
     if (!(ray.maximum_distance > 0.0) || hit.triangle == NO_TRIANGLE) {
-        closures[index] = builder.closure;
+        closures[index].triangle = NO_TRIANGLE;  // the rest of it is never read
         return;
     }
+    ClosureBuilder builder = ClosureBuilder(empty_closure(), 0, 1.0, false, 0.0);
     vec3 v0 = triangle_vertices[3u * hit.triangle].xyz;
     vec3 v1 = triangle_vertices[3u * hit.triangle + 1u].xyz;
     vec3 v2 = triangle_vertices[3u * hit.triangle + 2u].xyz;

@@ -6,23 +6,25 @@ layout(local_size_x = 64) in;
 
 #include <CubeParameters>
 #include "common/invocation.glsl"
-#include "common/importon.glsl"
+#include <Importon>
+#include "common/photon.glsl"
 #include "splatting/gathered.glsl"
 layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
 layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
 layout(std430, binding = 2) readonly buffer Core { uint core_count; uint core_importons[]; };
 layout(std430, binding = 3) readonly buffer Importons { Importon importons[]; };
+#include "common/importon.glsl"
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count || core_count == 0u) return;
-    Photon photon = photons[stored_photons[index]];
-    vec3 p = photon.position - parameters.centre;
+    uint photon = stored_photons[index];
+    vec3 p = photons[photon].position - parameters.centre;
     float reach = 3.001 * max(parameters.radius, parameters.wide_radius);
     if (dot(p, p) > reach * reach) return;
     for (uint k = 0u; k < core_count; ++k) {
         vec3 radiance;
-        if (density_estimate(importons[core_importons[k]], photon, parameters.wide_radius, radiance)) add_gathered(core_importons[k], radiance);
+        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance)) add_gathered(core_importons[k], radiance);
     }
 }

@@ -7,6 +7,12 @@ vec3 to_face(vec3 p, int face) {
     return q;
 }
 
+// Behind the heads of the lists lie flags of occupied blocks of cells.
+const int BLOCK_SIZE = 8;
+
+int first_block(int size) { return 6 * size * size; }
+int block_index(int face, ivec2 block, int size) { return first_block(size) + (face * (size / BLOCK_SIZE) + block.y) * (size / BLOCK_SIZE) + block.x; }
+
 int face_of(vec3 p) {
     vec3 a = abs(p);
     if (a.x >= a.y && a.x >= a.z) return p.x < 0.0 ? 1 : 0;

@@ -20,8 +20,27 @@ layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; u
 layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
 layout(std430, binding = 3) buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
 
-// Small footprints are looked through at once: most photons have no importon near them.
-const int SMALL_AREA = 16;
+// Most photons have no importon near them: a footprint shrinks to the cells, or the blocks of cells,
+// that hold some. False: it holds none.
+const int SMALL_AREA = 64;
+
+bool shrink_to_occupied(int face, int size, inout ivec2 first, inout ivec2 last) {
+    ivec2 extent = last - first;
+    bool by_cell = extent.x * extent.y <= SMALL_AREA;
+    int step = by_cell ? 1 : BLOCK_SIZE;
+    ivec2 low = first / step, high = (last - 1) / step;
+    ivec2 occupied_low = ivec2(size), occupied_high = ivec2(-1);
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+            int place = by_cell ? (face * size + y) * size + x : block_index(face, ivec2(x, y), size);
+            if (heads[place] == 0u) continue;
+            occupied_low = min(occupied_low, ivec2(x, y));
+            occupied_high = max(occupied_high, ivec2(x, y));
+        }
+    first = max(first, occupied_low * step);
+    last = min(last, (occupied_high + 1) * step);
+    return occupied_high.x >= 0;
+}
 
 void main() {
     uint index = invocation_index();
@@ -43,14 +62,7 @@ void main() {
         vec2 high = floor((vec2(across.y, along.y) * 0.5 + 0.5) * float(size) + 1e-2) + 1.0;
         ivec2 first = ivec2(clamp(low, vec2(0.0), vec2(float(size))));
         ivec2 last = ivec2(clamp(high, vec2(0.0), vec2(float(size))));
-        ivec2 extent = last - first;
-        if (extent.x <= 0 || extent.y <= 0) continue;
-        if (extent.x * extent.y <= SMALL_AREA) {
-            uint any = 0u;
-            for (int y = first.y; y < last.y; ++y)
-                for (int x = first.x; x < last.x; ++x) any |= heads[(face * size + y) * size + x];
-            if (any == 0u) continue;
-        }
+        if (any(greaterThanEqual(first, last)) || !shrink_to_occupied(face, size, first, last)) continue;
         ivec2 corner = ivec2(face % 3, face / 3) * size;
         uvec2 from = uvec2(corner + first), to = uvec2(corner + last);
         uint job = atomicAdd(job_vertices, 6u) / 6u;
