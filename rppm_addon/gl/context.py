@@ -61,7 +61,9 @@ class Context:
             options["backend"] = "egl"
             if device:
                 if not device.isdigit():
-                    raise DeviceError(f"device {device!r} is not a number; give the EGL device number, 0 being the first")
+                    raise DeviceError(
+                        f"device {device!r} is not a number; give the EGL device number, 0 being the first"
+                    )
                 options["device_index"] = int(device)
         try:
             gl = moderngl.create_context(standalone=True, require=REQUIRED_VERSION, **options)

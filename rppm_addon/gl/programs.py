@@ -178,7 +178,9 @@ class ProgramLibrary:
 
     def compute(self, path: str, defines: Mapping[str, object] | None = None) -> ComputeProgram:
         """The compute program of a .comp file. Raises ShaderError with file and line."""
-        return self._get((path, tuple(sorted((defines or {}).items()))), lambda: self._compute(path, dict(defines or {})))
+        return self._get(
+            (path, tuple(sorted((defines or {}).items()))), lambda: self._compute(path, dict(defines or {}))
+        )
 
     def draw(
         self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None, geometry: str | None = None

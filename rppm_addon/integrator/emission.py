@@ -207,7 +207,13 @@ class Emission:
         )
 
     def soften(
-        self, rays: moderngl.Buffer, hits: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int
+        self,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        photon_paths: moderngl.Buffer,
+        count: int,
+        seed: int,
+        iteration: int,
     ) -> None:
         """End the photons that a soft light does not send to where they hit first."""
         self._soft_program.run(
@@ -276,7 +282,10 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
 
 def _emissive_triangles(scene: Scene, geometry: Geometry) -> np.ndarray:
     """EMISSIVE_TRIANGLE records of all world triangles whose material emits."""
-    means = [np.asarray(i.pixels, np.float64).reshape(-1, 4).mean(axis=0)[:3] / (255 if i.pixels.dtype == np.uint8 else 1) for i in scene.images]
+    means = [
+        np.asarray(i.pixels, np.float64).reshape(-1, 4).mean(axis=0)[:3] / (255 if i.pixels.dtype == np.uint8 else 1)
+        for i in scene.images
+    ]
     radiance = np.array([emitted_radiance(m, means) for m in scene.materials]).reshape(-1, 3)
     found = []
     for instance, first in geometry.placements:

@@ -30,7 +30,9 @@ class Film:
     def memory_bytes(self) -> dict[str, int]:
         return {buffer.name: buffer.size for buffer in (self._radiance, self._surface)}
 
-    def add_surface(self, camera: moderngl.Buffer, closures: moderngl.Buffer, count: int, first_pixel: int, iteration: int) -> None:
+    def add_surface(
+        self, camera: moderngl.Buffer, closures: moderngl.Buffer, count: int, first_pixel: int, iteration: int
+    ) -> None:
         """Add the band's first surfaces."""
         self._primary.run(
             count,
@@ -38,7 +40,9 @@ class Film:
             {"count": count, "width": self.width, "first_pixel": first_pixel, "iteration": iteration},
         )
 
-    def add(self, radiances: moderngl.Buffer, splatting: Splatting, count: int, first_pixel: int, iteration: int) -> None:
+    def add(
+        self, radiances: moderngl.Buffer, splatting: Splatting, count: int, first_pixel: int, iteration: int
+    ) -> None:
         """Add the band's estimate of an iteration."""
         splatting.direct_splats.use(0)
         self._accumulate.run(

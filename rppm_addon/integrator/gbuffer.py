@@ -30,7 +30,9 @@ def filter_offsets(iteration: int, width: float) -> tuple[float, float]:
     The first iteration looks through the pixels' centres.
     """
     x = np.linspace(-0.5, 0.5, 1025)
-    density = 0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
+    density = (
+        0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
+    )
     cumulated = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
     g = 1.32471795724474602596
     u = (0.5 + (iteration - 1) / g) % 1.0, (0.5 + (iteration - 1) / g**2) % 1.0
@@ -44,14 +46,23 @@ def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, 
     """
     left, right, bottom, top = camera.window
     pixel_width, pixel_height = (right - left) / camera.width, (top - bottom) / camera.height
-    if not (np.isfinite(camera.matrix).all() and math.isfinite(pixel_width * pixel_height) and pixel_width * pixel_height > 0):
+    if not (
+        np.isfinite(camera.matrix).all()
+        and math.isfinite(pixel_width * pixel_height)
+        and pixel_width * pixel_height > 0
+    ):
         raise SceneError("the camera's matrix or lens is not finite or has no extent; reset its transform and lens")
     x_min, y_min, x_max, _ = camera.region
     x0 = left + pixel_width * (x_min + offset[0])
     y0 = bottom + pixel_height * (y_min + first_row + offset[1])
     view = CAMERA_VIEW.zeros(1)
     axes = camera.matrix[:3, :3] / np.linalg.norm(camera.matrix[:3, :3], axis=0)
-    view["position"], view["right"], view["up"], view["forward"] = camera.matrix[:3, 3], axes[:, 0], axes[:, 1], -axes[:, 2]
+    view["position"], view["right"], view["up"], view["forward"] = (
+        camera.matrix[:3, 3],
+        axes[:, 0],
+        axes[:, 1],
+        -axes[:, 2],
+    )
     view["orthographic"] = camera.orthographic
     start = camera.clip_start if camera.orthographic else max(camera.clip_start, 1e-6)
     view["clip_start"], view["clip_end"] = start, max(camera.clip_end, start * (1 + 1e-3) + 1e-6)
@@ -78,7 +89,9 @@ class GBuffer:
     def memory_bytes(self) -> int:
         return 12 * self._visibility.width * self._visibility.height
 
-    def run(self, geometry: Geometry, view: np.ndarray, rays: moderngl.Buffer, hits: moderngl.Buffer, paths: moderngl.Buffer) -> None:
+    def run(
+        self, geometry: Geometry, view: np.ndarray, rays: moderngl.Buffer, hits: moderngl.Buffer, paths: moderngl.Buffer
+    ) -> None:
         """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) describes."""
         self.camera.write(view.tobytes())
         width, rows = int(view["width"][0]), int(view["height"][0])

@@ -50,7 +50,8 @@ class Geometry:
     """World-space triangles of a scene in GPU buffers.
 
     ``triangles`` holds three vec4 a triangle, ``attributes`` a TriangleAttributes each;
-    ``placements`` lists the instances with their first world triangle; ``bounds_low`` and ``bounds_high`` (3,) enclose them, metres.
+    ``placements`` lists the instances with their first world triangle; ``bounds_low`` and
+    ``bounds_high`` (3,) enclose them, metres.
     """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
@@ -60,8 +61,14 @@ class Geometry:
         self._inputs = {
             name: GrowingBuffer(context, f"geometry {name}", remedy)
             for name in (
-                "Instances", "Positions", "CornerVertices", "CornerNormals", "CornerUvs",
-                "TriangleCorners", "TriangleSlots", "SlotMaterials",
+                "Instances",
+                "Positions",
+                "CornerVertices",
+                "CornerNormals",
+                "CornerUvs",
+                "TriangleCorners",
+                "TriangleSlots",
+                "SlotMaterials",
             )
         }
         self.triangles = GrowingBuffer(context, "world triangles", remedy)
@@ -103,7 +110,9 @@ class Geometry:
         triangle_start = starts([mesh.triangle_count for mesh in meshes])
         uv_start = starts([0 if mesh.corner_uv is None else len(mesh.corner_uv) for mesh in meshes])
 
-        instances = [i for i in scene.instances if bounds[place[i.mesh]] is not None and scene.meshes[i.mesh].triangle_count]
+        instances = [
+            i for i in scene.instances if bounds[place[i.mesh]] is not None and scene.meshes[i.mesh].triangle_count
+        ]
         entries = INSTANCE_ENTRY.zeros(len(instances))
         slots: list[int] = []
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -124,7 +133,9 @@ class Geometry:
             if np.isfinite(world).all() and np.abs(world).max() < 1e15:
                 low, high = np.minimum(low, world.min(axis=1)), np.maximum(high, world.max(axis=1))
             else:
-                log.warning("object %s has a matrix that is not finite; its triangles are left out", instance.object_name)
+                log.warning(
+                    "object %s has a matrix that is not finite; its triangles are left out", instance.object_name
+                )
         self.triangle_count = first
         self.placements = list(zip(instances, entries["first_triangle"].tolist(), strict=True))
         if not np.isfinite(low).all():
@@ -132,7 +143,11 @@ class Geometry:
         self.bounds_low, self.bounds_high = low, high
 
         def joined(arrays: list[np.ndarray], dtype: type) -> np.ndarray:
-            return np.concatenate([a.reshape(-1).astype(dtype, copy=False) for a in arrays]) if arrays else np.zeros(1, dtype)
+            return (
+                np.concatenate([a.reshape(-1).astype(dtype, copy=False) for a in arrays])
+                if arrays
+                else np.zeros(1, dtype)
+            )
 
         uploads = {
             "Instances": entries,

@@ -40,8 +40,12 @@ class Importons:
         self.importons = GrowingBuffer(context, "importons", remedy)
         self.radiances = GrowingBuffer(context, "band radiance", remedy)
         for buffer, size in (
-            (self.rays, RAY.size), (self.hits, HIT.size), (self.paths, CAMERA_PATH.size),
-            (self.closures, CLOSURE.size), (self.importons, IMPORTON.size), (self.radiances, 16),
+            (self.rays, RAY.size),
+            (self.hits, HIT.size),
+            (self.paths, CAMERA_PATH.size),
+            (self.closures, CLOSURE.size),
+            (self.importons, IMPORTON.size),
+            (self.radiances, 16),
         ):
             buffer.require(size * pixels)
         self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (pixels, 1)).tobytes()
@@ -62,8 +66,15 @@ class Importons:
     def resolve(self, stages: Stages, count: int, iteration: int, segment: int) -> None:
         """Hits to closures."""
         stages.resolve.run(
-            stages.geometry, stages.materials, self.rays.buffer, self.hits.buffer, self.closures.buffer,
-            count, stages.settings.seed, iteration, segment,
+            stages.geometry,
+            stages.materials,
+            self.rays.buffer,
+            self.hits.buffer,
+            self.closures.buffer,
+            count,
+            stages.settings.seed,
+            iteration,
+            segment,
         )
 
     def scatter(

@@ -35,7 +35,12 @@ class Photons:
         self._hits = GrowingBuffer(context, "photon hits", remedy)
         self._closures = GrowingBuffer(context, "photon closures", remedy)
         self.photons.require(PHOTON.size * photon_count * segments)
-        for buffer, record in ((self._paths, PHOTON_PATH), (self._rays, RAY), (self._hits, HIT), (self._closures, CLOSURE)):
+        for buffer, record in (
+            (self._paths, PHOTON_PATH),
+            (self._rays, RAY),
+            (self._hits, HIT),
+            (self._closures, CLOSURE),
+        ):
             buffer.require(record.size * photon_count)
 
     @property
@@ -54,8 +59,15 @@ class Photons:
                     stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
             with timers.stage("photon resolve"):
                 stages.resolve.run(
-                    stages.geometry, stages.materials, self._rays.buffer, self._hits.buffer, self._closures.buffer,
-                    self.photon_count, settings.seed, iteration, segment,
+                    stages.geometry,
+                    stages.materials,
+                    self._rays.buffer,
+                    self._hits.buffer,
+                    self._closures.buffer,
+                    self.photon_count,
+                    settings.seed,
+                    iteration,
+                    segment,
                 )
             with timers.stage("photon scattering"):
                 self._scatter.run(

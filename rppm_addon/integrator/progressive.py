@@ -61,7 +61,10 @@ class ProgressivePhotonMapper:
         self._geometry.build(scene, self._materials.default_material)
         self._emission.build(scene, self._geometry)
         self.centre = cubemap_centre(scene.camera, self._geometry)
-        reach = max(np.abs(self._geometry.bounds_low - self.centre).max(), np.abs(self._geometry.bounds_high - self.centre).max())
+        reach = max(
+            np.abs(self._geometry.bounds_low - self.centre).max(),
+            np.abs(self._geometry.bounds_high - self.centre).max(),
+        )
         count = self._geometry.triangle_count
         with self.timers.stage("deep cubemap"):
             self._deep_cubemap.build(
@@ -197,8 +200,15 @@ class ProgressivePhotonMapper:
     def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
         with self.timers.stage("camera scattering"):
             self._importons.scatter(
-                self._stages, self._gbuffer.camera, self._count, self._first_pixel,
-                iteration, segment, self._radius_scale, shrink, limits,
+                self._stages,
+                self._gbuffer.camera,
+                self._count,
+                self._first_pixel,
+                iteration,
+                segment,
+                self._radius_scale,
+                shrink,
+                limits,
             )
 
     def _add_direct_light(self, segment: int) -> None:
@@ -212,20 +222,30 @@ class ProgressivePhotonMapper:
     def _direct_splatting(self) -> None:
         with self.timers.stage("direct splatting"):
             self._splatting.direct(
-                self._photons.photons.buffer, self._importons.importons.buffer, self._gbuffer.camera,
-                self.film.width, self._rows, self.splat_radii,
+                self._photons.photons.buffer,
+                self._importons.importons.buffer,
+                self._gbuffer.camera,
+                self.film.width,
+                self._rows,
+                self.splat_radii,
             )
 
     def _indirect_splatting(self) -> None:
         with self.timers.stage("indirect splatting"):
             self._splatting.indirect(
-                self._photons.photons.buffer, self._importons.importons.buffer, self._count, self.centre, self.splat_radii
+                self._photons.photons.buffer,
+                self._importons.importons.buffer,
+                self._count,
+                self.centre,
+                self.splat_radii,
             )
 
     def _update_film(self) -> None:
         """UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)."""
         with self.timers.stage("film"):
-            self.film.add(self._importons.radiances.buffer, self._splatting, self._count, self._first_pixel, self.iteration)
+            self.film.add(
+                self._importons.radiances.buffer, self._splatting, self._count, self._first_pixel, self.iteration
+            )
 
     def _release_views(self) -> None:
         for view in self._views:

@@ -149,7 +149,9 @@ LIGHT = Record(
 """A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
 unit axes, ``selection_end`` the cumulated probability of choosing this or an earlier light."""
 
-EMISSIVE_TRIANGLE = Record("EmissiveTriangle", radiance="vec3", triangle="uint", area="float", cumulated="float", pad0="float", pad1="float")
+EMISSIVE_TRIANGLE = Record(
+    "EmissiveTriangle", radiance="vec3", triangle="uint", area="float", cumulated="float", pad0="float", pad1="float"
+)
 
 CAMERA_VIEW = Record(
     "CameraView",

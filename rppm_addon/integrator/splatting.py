@@ -62,7 +62,9 @@ class Splatting:
         self._stored.require(_STORED_HEADER + 4 * slots)
         self._stored.buffer.write(bytes(_STORED_HEADER))
         self._stored_program.run(
-            count, {"Photons": photons, "StoredPhotons": self._stored.buffer}, {"count": count, "first_slot": first_slot}
+            count,
+            {"Photons": photons, "StoredPhotons": self._stored.buffer},
+            {"count": count, "first_slot": first_slot},
         )
         self.stored_count, self.diffused_count = map(int, self._stored.read(np.uint32, 2))
         self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, self.stored_count))
@@ -77,7 +79,13 @@ class Splatting:
         self._jobs.buffer.write(np.array([0, 1, 0, 0], np.uint32).tobytes())
 
     def direct(
-        self, photons: moderngl.Buffer, importons: moderngl.Buffer, camera: moderngl.Buffer, width: int, rows: int, radii: tuple[float, float]
+        self,
+        photons: moderngl.Buffer,
+        importons: moderngl.Buffer,
+        camera: moderngl.Buffer,
+        width: int,
+        rows: int,
+        radii: tuple[float, float],
     ) -> None:
         """DirectSplatting: photons (narrow and wide radius) onto the importons of the camera's first hits."""
         if not self.stored_count:
@@ -99,7 +107,12 @@ class Splatting:
         )
 
     def indirect(
-        self, photons: moderngl.Buffer, importons: moderngl.Buffer, count: int, centre: np.ndarray, radii: tuple[float, float]
+        self,
+        photons: moderngl.Buffer,
+        importons: moderngl.Buffer,
+        count: int,
+        centre: np.ndarray,
+        radii: tuple[float, float],
     ) -> None:
         """IndirectSplatting: photons onto importons anywhere, by the cubemap's lists."""
         if not self.stored_count:
@@ -134,5 +147,14 @@ class Splatting:
         )
 
     def release(self) -> None:
-        for resource in (self._stored, self._jobs, self._heads, self._core, self.gathered, self._direct_view, self.direct_splats, self._cube_view):
+        for resource in (
+            self._stored,
+            self._jobs,
+            self._heads,
+            self._core,
+            self.gathered,
+            self._direct_view,
+            self.direct_splats,
+            self._cube_view,
+        ):
             resource.release()

@@ -88,6 +88,11 @@ def index_of(z: np.ndarray | float) -> np.ndarray | float:
     return (1 + z2) / (1 - z2)
 
 
+def trapezoid(values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Integral along the last axis; NumPy's own has another name before version 2."""
+    return (0.5 * (values[..., 1:] + values[..., :-1]) * np.diff(at)).sum(axis=-1)
+
+
 def compute(samples: int = SAMPLES) -> dict[str, np.ndarray]:
     """All tables: white (32, 32), white_average (32,), dielectric, glass_entering, glass_leaving (16, 16, 16)."""
     white = np.ones((WHITE_SIZE, WHITE_SIZE))
@@ -96,9 +101,7 @@ def compute(samples: int = SAMPLES) -> dict[str, np.ndarray]:
             alpha = max((r / (WHITE_SIZE - 1)) ** 2, 1e-4)
             white[r, c] = lobe_albedos(alpha, max(c / (WHITE_SIZE - 1), 1e-3), np.array([]), samples)[0]
     cosines = np.linspace(0, 1, WHITE_SIZE)
-    average = np.trapezoid(white * 2 * cosines, cosines, axis=1) if hasattr(np, "trapezoid") else np.trapz(
-        white * 2 * cosines, cosines, axis=1
-    )
+    average = trapezoid(white * 2 * cosines, cosines)
     etas = index_of(np.linspace(0, 1, SIZE))
     tables = {name: np.ones((SIZE, SIZE, SIZE)) for name in ("dielectric", "glass_entering", "glass_leaving")}
     for r in range(SIZE):

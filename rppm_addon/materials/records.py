@@ -5,7 +5,9 @@ from ..gl.records import Record
 
 NO_IMAGE = 0xFFFFFFFF
 
-MATERIAL = Record("Material", absorption="vec3", first_lobe="uint", lobe_count="uint", unused0="uint", unused1="uint", unused2="uint")
+MATERIAL = Record(
+    "Material", absorption="vec3", first_lobe="uint", lobe_count="uint", unused0="uint", unused1="uint", unused2="uint"
+)
 """A material: absorption of its interior in 1/m and its range of lobes."""
 
 MATERIAL_LOBE = Record(

@@ -11,6 +11,19 @@ from .settings import DirectLight, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
-    "Camera", "DirectLight", "Image", "Instance", "Light", "LightKind", "Lobe", "LobeKind",
-    "Material", "Mesh", "RenderSettings", "Scene", "World", "load_scene", "save_scene",
+    "Camera",
+    "DirectLight",
+    "Image",
+    "Instance",
+    "Light",
+    "LightKind",
+    "Lobe",
+    "LobeKind",
+    "Material",
+    "Mesh",
+    "RenderSettings",
+    "Scene",
+    "World",
+    "load_scene",
+    "save_scene",
 ]

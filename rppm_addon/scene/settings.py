@@ -65,8 +65,16 @@ class RenderSettings:
         need("photon_path_length", 1 <= self.photon_path_length <= 64, "1 to 64")
         need("alpha", 0.0 < self.alpha < 1.0, "a value between 0 and 1")
         need("radius_scale", math.isfinite(self.radius_scale) and self.radius_scale > 0.0, "more than 0 pixels")
-        need("radius_minimum", math.isfinite(self.radius_minimum) and self.radius_minimum >= 0.0, "0 (automatic) or metres")
-        need("radius_maximum", math.isfinite(self.radius_maximum) and self.radius_maximum >= 0.0, "0 (automatic) or metres")
+        need(
+            "radius_minimum",
+            math.isfinite(self.radius_minimum) and self.radius_minimum >= 0.0,
+            "0 (automatic) or metres",
+        )
+        need(
+            "radius_maximum",
+            math.isfinite(self.radius_maximum) and self.radius_maximum >= 0.0,
+            "0 (automatic) or metres",
+        )
         if 0.0 < self.radius_maximum < self.radius_minimum:
             raise SettingsError(
                 f"radius_maximum is {self.radius_maximum}, less than radius_minimum {self.radius_minimum}; raise it"

@@ -151,18 +151,21 @@ class Renderer:
         def report() -> None:
             if on_progress is not None:
                 on_progress(
-                    Progress(mapper.iteration, settings.iterations, elapsed(), mapper.photons_emitted, settings.time_limit), frame
+                    Progress(
+                        mapper.iteration, settings.iterations, elapsed(), mapper.photons_emitted, settings.time_limit
+                    ),
+                    frame,
                 )
 
         report()
         while mapper.iteration < settings.iterations:
             mapper.iterate()
             self._context.finish()
+            report()
             while pending and elapsed() >= pending[0]:
                 mark = pending.pop(0)
                 if on_snapshot is not None:
                     on_snapshot(mark, frame())
-            report()
             if settings.time_limit > 0 and elapsed() >= settings.time_limit:
                 break
             if should_stop is not None and mapper.iteration < settings.iterations and should_stop():

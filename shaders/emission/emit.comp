@@ -14,6 +14,20 @@ layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
 layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) writeonly buffer PhotonPaths { PhotonPath photon_paths[]; };
 
+// Rays that start far away lose precision: they start where they enter the scene's sphere. False:
+// they pass it by.
+bool enter_scene(inout vec3 origin, vec3 direction) {
+    vec3 offset = origin - parameters.scene_centre;
+    float along = dot(offset, direction);
+    float outside = dot(offset, offset) - parameters.scene_radius * parameters.scene_radius;
+    if (outside <= 0.0) return true;
+    vec3 nearest = offset - along * direction;
+    float under = parameters.scene_radius * parameters.scene_radius - dot(nearest, nearest);
+    if (under < 0.0 || along > 0.0) return false;
+    origin += max(0.0, 0.999 * (-along - sqrt(under))) * direction;
+    return true;
+}
+
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
@@ -29,5 +43,6 @@ void main() {
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, 0u);
-    rays[index] = Ray(emission.origin, emission.triangle, emission.direction, dark ? 0.0 : INFINITY_DISTANCE);
+    bool traced = !dark && enter_scene(emission.origin, emission.direction);
+    rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);
 }

@@ -75,7 +75,8 @@ def room(size: int = 32, **settings: object) -> Scene:
     ]
     materials = [
         diffuse(0.75, 0.75, 0.75), diffuse(0.7, 0.1, 0.1), diffuse(0.1, 0.6, 0.1),
-        Material("glass", [Lobe(LobeKind.GLASS, ior=1.5)]), Material("mirror", [Lobe(LobeKind.GLOSSY, color=(0.9, 0.9, 0.9))]),
+        Material("glass", [Lobe(LobeKind.GLASS, ior=1.5)]),
+        Material("mirror", [Lobe(LobeKind.GLOSSY, color=(0.9, 0.9, 0.9))]),
     ]  # fmt: skip
     instances = [Instance(index, np.eye(4), [material]) for index, material in enumerate((0, 0, 0, 1, 2))]
     instances += [Instance(5, placed(-0.4, -0.1, -0.6, 0.35), [3]), Instance(5, placed(0.45, 0.3, -0.6, 0.35), [4])]

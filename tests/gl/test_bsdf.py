@@ -24,7 +24,16 @@ def run(context, library, kind, alpha, ior, cosine, radiance=1, weight=(1, 1, 1)
     library.compute(SHADER).run(
         COUNT,
         {"Results": results},
-        {"weight": weight, "count": COUNT, "f0": f0, "kind": kind, "alpha": alpha, "ior": ior, "cosine": cosine, "radiance": radiance},
+        {
+            "weight": weight,
+            "count": COUNT,
+            "f0": f0,
+            "kind": kind,
+            "alpha": alpha,
+            "ior": ior,
+            "cosine": cosine,
+            "radiance": radiance,
+        },
     )
     table = np.frombuffer(results.read(), np.float32).reshape(COUNT, 3, 4).astype(np.float64)
     results.release()
@@ -44,12 +53,16 @@ def assert_equal_means(sampled, evaluated, what):
 @pytest.mark.parametrize("ior", [1.5, 1 / 1.5])
 def test_sampling_has_the_mean_of_evaluation(context, library, kind, alpha, ior):
     for cosine in (0.35, 0.95):
-        sampled, evaluated, _ = run(context, library, kind, alpha, ior, cosine, f0=(0.3, 0.5, 0.9), weight=(0.9, 0.8, 0.7))
+        sampled, evaluated, _ = run(
+            context, library, kind, alpha, ior, cosine, f0=(0.3, 0.5, 0.9), weight=(0.9, 0.8, 0.7)
+        )
         for side in (0.0, 1.0):
             for channel in (0, 2):
                 a = np.where(sampled[:, 3] == side, sampled[:, channel], 0)
                 b = np.where(evaluated[:, 3] == side, evaluated[:, channel], 0)
-                assert_equal_means(a, b, f"kind {kind} alpha {alpha} ior {ior:.2f} cosine {cosine} side {side} channel {channel}")
+                assert_equal_means(
+                    a, b, f"kind {kind} alpha {alpha} ior {ior:.2f} cosine {cosine} side {side} channel {channel}"
+                )
 
 
 @pytest.mark.parametrize("alpha", [0.0, 0.3, 1.0])

@@ -138,7 +138,7 @@ def test_compile_errors_name_our_file_and_line(context, shader_folder):
     with pytest.raises(sources.ShaderError, match=r"part\.glsl:3"):
         ProgramLibrary(context).compute("main.comp")
     (shader_folder / "main.comp").write_text(
-        '#version 430 core\nlayout(local_size_x = 1) in;\n#include <Ray>\n\nvoid main() { wrong(); }\n'
+        "#version 430 core\nlayout(local_size_x = 1) in;\n#include <Ray>\n\nvoid main() { wrong(); }\n"
     )
     with pytest.raises(sources.ShaderError, match=r"main\.comp:5"):
         ProgramLibrary(context).compute("main.comp", {"ANY": 1})

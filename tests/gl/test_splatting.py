@@ -42,7 +42,9 @@ def brute_force(importons, photons, wide):
 
 
 def diffuse_room(**settings):
-    scene = scenes.room(24, photons=4096, direct_light=DirectLight.PHOTONS, radius_scale=60.0, filter_width=0.0, **settings)
+    scene = scenes.room(
+        24, photons=4096, direct_light=DirectLight.PHOTONS, radius_scale=60.0, filter_width=0.0, **settings
+    )
     scene.instances = scene.instances[:5] + scene.instances[6:]  # the mirror stays
     return scene
 

@@ -7,8 +7,21 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import (
-    Camera, DirectLight, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, Mesh, RenderSettings, Scene, World,
-    load_scene, save_scene,
+    Camera,
+    DirectLight,
+    Image,
+    Instance,
+    Light,
+    LightKind,
+    Lobe,
+    LobeKind,
+    Material,
+    Mesh,
+    RenderSettings,
+    Scene,
+    World,
+    load_scene,
+    save_scene,
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
 
@@ -16,8 +29,13 @@ from rppm_addon.scene.errors import SceneError, SettingsError
 def full_scene() -> Scene:
     rng = np.random.default_rng(0)
     mesh = Mesh(
-        "m", rng.random((4, 3), np.float32), np.arange(4, dtype=np.int32), rng.random((4, 3), np.float32),
-        np.array([[0, 1, 2], [0, 2, 3]], np.int32), np.array([0, 1], np.int32), rng.random((4, 2), np.float32),
+        "m",
+        rng.random((4, 3), np.float32),
+        np.arange(4, dtype=np.int32),
+        rng.random((4, 3), np.float32),
+        np.array([[0, 1, 2], [0, 2, 3]], np.int32),
+        np.array([0, 1], np.int32),
+        rng.random((4, 2), np.float32),
     )
     bare = dataclasses.replace(mesh, name="bare", corner_uv=None)
     return Scene(
@@ -83,7 +101,9 @@ def test_default_settings_are_valid():
 
 
 def test_settings_from_text():
-    settings = RenderSettings().with_values(iterations="3", alpha="0.5", direct_light="photons", film_transparent="true")
+    settings = RenderSettings().with_values(
+        iterations="3", alpha="0.5", direct_light="photons", film_transparent="true"
+    )
     assert (settings.iterations, settings.alpha) == (3, 0.5)
     assert settings.direct_light is DirectLight.PHOTONS and settings.film_transparent is True
     with pytest.raises(SettingsError, match="there is no setting nonsense"):
