@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small Blender scenes made in Python, and how to render them with Cycles and with RPPM.
+
+Both engines get the same Blender scene: Cycles through bpy.ops.render.render, RPPM through the
+extension's exporter and a Renderer.
+"""
+
+import math
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+import OpenEXR
+from mathutils import Matrix, Vector
+
+from rppm_addon.blender.export import export_scene
+from rppm_addon.scene import Scene
+from rppm_addon.session.renderer import Renderer, RenderStatistics
+
+RESOLUTION = 64
+DIFFUSE, GLOSSY, GLASS = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfGlass"
+PRINCIPLED, EMISSION = "ShaderNodeBsdfPrincipled", "ShaderNodeEmission"
+
+
+def new_scene(resolution: int = RESOLUTION, world: float = 0.0) -> bpy.types.Scene:
+    """An empty scene whose Cycles settings leave nothing out and clamp nothing."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    cycles = scene.cycles
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.blur_glossy = cycles.sample_clamp_indirect = cycles.sample_clamp_direct = 0.0
+    cycles.light_sampling_threshold = 0.0
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 64
+    cycles.transmission_bounces = cycles.transparent_max_bounces = 64
+    scene.render.resolution_x = scene.render.resolution_y = resolution
+    image = scene.render.image_settings
+    if hasattr(image, "media_type"):  # Blender 5
+        image.media_type = "MULTI_LAYER_IMAGE"
+    image.file_format = "OPEN_EXR_MULTILAYER"
+    image.color_depth = "32"
+    scene.world = bpy.data.worlds.new("World")
+    if scene.world.node_tree is None:
+        scene.world.use_nodes = True
+    background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    background.inputs["Strength"].default_value = world
+    return scene
+
+
+def material(shader: str, distribution: str | None = None, **inputs: float | Sequence[float]) -> bpy.types.Material:
+    """One shader node on the surface output; inputs by socket name with _ for a space."""
+    made = _empty_material()
+    _connect(made, _shader(made, shader, distribution, inputs))
+    return made
+
+
+def glowing_diffuse(albedo: float, radiance: float) -> bpy.types.Material:
+    """Diffuse that emits as well, through Add Shader."""
+    made = _empty_material()
+    add = made.node_tree.nodes.new("ShaderNodeAddShader")
+    reflecting = _shader(made, DIFFUSE, None, {"Color": albedo})
+    shining = _shader(made, EMISSION, None, {"Color": 1.0, "Strength": radiance})
+    for part, socket in zip((reflecting, shining), add.inputs):
+        made.node_tree.links.new(part.outputs[0], socket)
+    _connect(made, add)
+    return made
+
+
+def _empty_material() -> bpy.types.Material:
+    made = bpy.data.materials.new("Material")
+    if made.node_tree is None:
+        made.use_nodes = True
+    made.node_tree.nodes.clear()
+    return made
+
+
+def _shader(made: bpy.types.Material, kind: str, distribution: str | None, inputs: dict) -> bpy.types.Node:
+    node = made.node_tree.nodes.new(kind)
+    if distribution is not None:
+        node.distribution = distribution
+    for name, value in inputs.items():
+        socket = node.inputs[name.replace("_", " ")]
+        if socket.type == "RGBA":
+            value = (value,) * 3 if np.isscalar(value) else tuple(value)
+            value = (*value, 1.0)
+        socket.default_value = value
+    return node
+
+
+def _connect(made: bpy.types.Material, node: bpy.types.Node) -> None:
+    output = made.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    made.node_tree.links.new(node.outputs[0], output.inputs["Surface"])
+
+
+def place(
+    at: Sequence[float] = (0, 0, 0), turn: Sequence[float] = (0, 0, 0), scale: Sequence[float] = (1, 1, 1)
+) -> Matrix:
+    """Object to world: scaled, turned about X, Y, Z in turn (degrees), moved."""
+    rotation = Matrix.Identity(4)
+    for angle, axis in zip(turn, "XYZ"):
+        rotation = Matrix.Rotation(math.radians(angle), 4, axis) @ rotation
+    return Matrix.Translation(Vector(at)) @ rotation @ Matrix.Diagonal((*scale, 1.0))
+
+
+def _mesh(vertices: Sequence, faces: Sequence, surface: bpy.types.Material, matrix: Matrix | None) -> bpy.types.Object:
+    data = bpy.data.meshes.new("Mesh")
+    data.from_pydata(vertices, [], faces)
+    data.materials.append(surface)
+    return _link(data, matrix)
+
+
+def _link(data: bpy.types.ID, matrix: Matrix | None) -> bpy.types.Object:
+    made = bpy.data.objects.new(data.name, data)
+    bpy.context.scene.collection.objects.link(made)
+    if matrix is not None:
+        made.matrix_world = matrix
+    return made
+
+
+def plane(half: float, surface: bpy.types.Material, matrix: Matrix | None = None) -> bpy.types.Object:
+    """A square in XY that faces +Z."""
+    corners = [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)]
+    return _mesh(corners, [(0, 1, 2, 3)], surface, matrix)
+
+
+def box(half: Sequence[float], surface: bpy.types.Material, matrix: Matrix | None = None) -> bpy.types.Object:
+    """A closed box about the origin, normals outward."""
+    x, y, z = half
+    corners = [(i * x, j * y, k * z) for k in (-1, 1) for j in (-1, 1) for i in (-1, 1)]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return _mesh(corners, faces, surface, matrix)
+
+
+def ball(
+    radius: float, surface: bpy.types.Material, matrix: Matrix | None = None, segments: int = 64
+) -> bpy.types.Object:
+    """A smooth sphere of segments x segments / 2 faces."""
+    around, rings = np.arange(segments) * 2 * np.pi / segments, segments // 2
+    vertices = [(0, 0, -radius)]
+    for ring in range(1, rings):
+        height = -math.cos(math.pi * ring / rings)
+        width = math.sin(math.pi * ring / rings)
+        vertices += [(radius * width * math.cos(a), radius * width * math.sin(a), radius * height) for a in around]
+    vertices.append((0, 0, radius))
+    top, faces = len(vertices) - 1, []
+    for i in range(segments):
+        j = (i + 1) % segments
+        faces.append((0, 1 + j, 1 + i))
+        faces.append((top, top - segments + i, top - segments + j))
+        for ring in range(rings - 2):
+            low, high = 1 + ring * segments, 1 + (ring + 1) * segments
+            faces.append((low + i, low + j, high + j, high + i))
+    made = _mesh(vertices, faces, surface, matrix)
+    made.data.shade_smooth()
+    return made
+
+
+def light(kind: str, energy: float, matrix: Matrix, **properties: object) -> bpy.types.Object:
+    """A light object; properties by Blender's names."""
+    data = bpy.data.lights.new("Light", kind)
+    data.energy = energy
+    for name, value in properties.items():
+        setattr(data, name, value)
+    return _link(data, matrix)
+
+
+def camera(at: Sequence[float], towards: Sequence[float], angle: float = 40.0) -> bpy.types.Object:
+    """The scene's camera; ``angle`` is the field of view in degrees."""
+    data = bpy.data.cameras.new("Camera")
+    data.angle = math.radians(angle)
+    data.clip_start, data.clip_end = 0.01, 100.0
+    direction = Vector(towards) - Vector(at)
+    made = _link(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
+    bpy.context.scene.camera = made
+    return made
+
+
+def render_cycles(samples: int, seeds: int = 2) -> np.ndarray:
+    """(seeds, height, width, 3) float64 scene-linear pictures, row 0 at the bottom."""
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = samples
+    pictures = []
+    for seed in range(seeds):
+        scene.cycles.seed = 1000 + seed
+        with tempfile.TemporaryDirectory() as folder:
+            scene.render.filepath = os.path.join(folder, "cycles.exr")
+            bpy.ops.render.render(write_still=True)
+            channels = OpenEXR.File(scene.render.filepath, separate_channels=True).channels()
+            layer = next(name for name in channels if name.endswith("Combined.R")).removesuffix("R")
+            pictures.append(np.stack([channels[layer + c].pixels for c in "RGB"], axis=-1)[::-1].astype(np.float64))
+    return np.array(pictures)
+
+
+def exported_scene() -> Scene:
+    """The current Blender scene as RPPM sees it."""
+    scene = export_scene(bpy.context.evaluated_depsgraph_get())
+    assert scene.warnings == [], scene.warnings
+    return scene
+
+
+@dataclass
+class Rendered:
+    pictures: np.ndarray
+    """(seeds, height, width, 3) float64, row 0 at the bottom."""
+    statistics: RenderStatistics
+    """Of the last seed."""
+
+
+def render_rppm(renderer: Renderer, seeds: int = 3, **settings: object) -> Rendered:
+    """The current Blender scene from independent seeds; settings by the names of RenderSettings."""
+    scene = exported_scene()
+    pictures = []
+    for seed in range(seeds):
+        scene.settings = scene.settings.with_values(seed=seed, **settings)
+        result = renderer.render(scene)
+        pictures.append(result.frame.combined[..., :3].astype(np.float64))
+    return Rendered(np.array(pictures), result.statistics)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Each light on a diffuse plane, direct light by rays and by photons, against Cycles."""
+
+import math
+
+import pytest
+
+from .comparison import CONVERGED, compare
+from .scenes import DIFFUSE, EMISSION, camera, light, material, new_scene, place, plane, render_cycles, render_rppm
+
+UP_TWO = {"at": (0.3, 0.2, 2.0)}
+TILTED = {"at": (0.5, 0.0, 2.0), "turn": (20.0, 30.0, 10.0)}
+
+
+def _lamp(kind, where, energy=100.0, **properties):
+    return lambda: light(kind, energy, place(**where), **properties)
+
+
+def _glowing_square():
+    glow = material(EMISSION, Color=(1.0, 0.6, 0.3), Strength=20.0)
+    plane(0.4, glow, place(at=(0.5, 0.0, 2.0), turn=(80.0, 0.0, 30.0)))
+
+
+LIGHTS = {
+    "point": _lamp("POINT", UP_TWO, shadow_soft_size=0.0),
+    "point_soft": _lamp("POINT", UP_TWO, shadow_soft_size=0.5),
+    "point_sphere": _lamp("POINT", UP_TWO, shadow_soft_size=0.5, use_soft_falloff=False),
+    "point_factors": _lamp(
+        "POINT", UP_TWO, energy=3.0, shadow_soft_size=0.4, normalize=False, exposure=1.5, color=(1.0, 0.7, 0.5),
+        use_temperature=True, temperature=4000.0,
+    ),
+    "spot": _lamp("SPOT", TILTED, shadow_soft_size=0.0, spot_size=math.radians(70.0), spot_blend=0.5),
+    "spot_scaled": _lamp(
+        "SPOT", TILTED | {"scale": (1.0, 1.6, 1.0)}, shadow_soft_size=0.2, spot_size=math.radians(50.0), spot_blend=0.8
+    ),
+    "sun": _lamp("SUN", TILTED, energy=3.0, angle=0.0),
+    "sun_wide": _lamp("SUN", TILTED, energy=3.0, angle=math.radians(40.0)),
+    "area_square": _lamp("AREA", UP_TWO, shape="SQUARE", size=1.0),
+    "area_rectangle": _lamp("AREA", TILTED | {"scale": (2.0, 0.5, 1.0)}, shape="RECTANGLE", size=0.6, size_y=1.4),
+    "area_disk": _lamp("AREA", UP_TWO, shape="DISK", size=1.0),
+    "area_ellipse": _lamp("AREA", TILTED | {"scale": (2.0, 1.0, 3.0)}, shape="ELLIPSE", size=0.5, size_y=0.3),
+    "area_spread": _lamp("AREA", TILTED, shape="SQUARE", size=0.7, spread=math.radians(100.0)),
+    "area_not_normalized": _lamp("AREA", UP_TWO, energy=10.0, shape="DISK", size=1.5, normalize=False),
+    "emissive_mesh": _glowing_square,
+}
+MODES = {
+    "RAYS": {"photons": 1024, "photon_path_length": 2, "iterations": 40},
+    "PHOTONS": {"photons": 65536, "photon_path_length": 2, "iterations": 12},
+}
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("name", LIGHTS)
+def test_light_on_a_diffuse_plane(renderer, name, mode):
+    new_scene()
+    plane(3.0, material(DIFFUSE, Color=(0.8, 0.7, 0.6)))
+    camera((0.0, -1.0, 6.0), (0.0, 0.0, 0.0), 30.0)
+    LIGHTS[name]()
+    reference = render_cycles(samples=256)
+    result = render_rppm(renderer, direct_light=mode, **MODES[mode])
+    compare(f"light_{name}_{mode.lower()}", result.pictures, reference, CONVERGED)
