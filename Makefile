@@ -11,7 +11,7 @@ help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
 
 setup: ## Install what is missing: system packages (Debian, as root) and .venv
-	@tools/set_up.sh
+	@.ci/set_up.sh
 
 render: setup ## Render the sample scene inside Blender with RPPM to out/ (PNG and EXR)
 	$(RPPM) render docs/samples/first_light.blend -o out/first_light.exr -o out/first_light.png --json out/first_light.json
@@ -24,10 +24,10 @@ test: setup ## Run the tests
 
 lint: setup ## Check Python, imports, licence lines and shaders
 	.venv/bin/ruff check .
-	.venv/bin/python tools/lint.py
+	.venv/bin/python tests/lint.py
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
-	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
+	.venv/bin/python tests/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
 
 clean: ## Remove what was made: out/, caches (.venv stays)
 	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info
