@@ -50,7 +50,7 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
 
 def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> None:
     scene = export_scene(depsgraph, engine, observer.should_stop)
-    _report_warnings(engine, scene)
+    _report_warnings(engine, scene.warnings)
     if not observer.on_scene(scene):
         return
     engine.update_stats("", "Preparing the graphics device")
@@ -62,8 +62,8 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
         job.end(cancel=True)
         raise
     job.end(cancel=False)
-    for warning in result.statistics.warnings:
-        engine.report({"WARNING"}, warning)
+    # The statistics repeat the scene's warnings, which have been reported.
+    _report_warnings(engine, [text for text in result.statistics.warnings if text not in scene.warnings])
     observer.on_finish(result, scene)
 
 
@@ -73,10 +73,10 @@ def _fail(engine: bpy.types.RenderEngine, observer: RenderObserver, text: str) -
     observer.on_error(text)
 
 
-def _report_warnings(engine: bpy.types.RenderEngine, scene: Scene) -> None:
-    for warning in scene.warnings[:WARNINGS_SHOWN]:
+def _report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> None:
+    for warning in warnings[:WARNINGS_SHOWN]:
         engine.report({"WARNING"}, warning)
-    more = len(scene.warnings) - WARNINGS_SHOWN
+    more = len(warnings) - WARNINGS_SHOWN
     if more > 0:
         engine.report({"WARNING"}, f"{more} more warnings of this kind are in the log")
 

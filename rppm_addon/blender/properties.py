@@ -114,6 +114,15 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         ],
         default=DEFAULTS.direct_light.name,
     )
+    filter_width: FloatProperty(
+        name="Filter Width",
+        description="Width of the Blackman-Harris pixel filter; 0 looks through the middle of pixels only",
+        default=DEFAULTS.filter_width,
+        min=0.0,
+        max=20.0,
+        soft_max=10.0,
+        subtype="PIXEL",
+    )
     iterations_per_frame: IntProperty(
         name="Iterations per Picture",
         description="Iterations between two pictures shown while rendering",

@@ -84,7 +84,9 @@ class RPPM_PT_film(RppmPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        self.column().prop(context.scene.render, "film_transparent", text="Transparent")
+        column = self.column()
+        column.prop(context.scene.rppm, "filter_width")
+        column.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
 class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
