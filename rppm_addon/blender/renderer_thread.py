@@ -8,7 +8,9 @@ for it and runs the callbacks, which may then talk to Blender.
 """
 
 import atexit
+import contextlib
 import contextvars
+import logging
 import queue
 import threading
 from collections.abc import Callable
@@ -18,6 +20,8 @@ from ..scene import Scene
 
 if TYPE_CHECKING:
     from ..session.renderer import Frame, Progress, RenderResult
+
+logger = logging.getLogger(__name__)
 
 POLL_SECONDS = 0.05
 """How often a waiting caller asks whether to stop, beside every iteration."""
@@ -75,25 +79,32 @@ class _Conversation:
     # In the caller's thread.
 
     def attend(self) -> "RenderResult":
-        """Serve the renderer until it is done; raises what it raised."""
+        """Serve the renderer until it is done; raises what it or a callback raised.
+
+        After an error the renderer is still awaited: it must not be left waiting for an answer.
+        """
+        failure: BaseException | None = None
         while True:
+            question = answer = None
             try:
-                function, arguments = self._questions.get(timeout=POLL_SECONDS)
-            except queue.Empty:
-                self._poll()
+                with contextlib.suppress(queue.Empty):
+                    question = self._questions.get(timeout=POLL_SECONDS)
+                if question is not None and question[0] is not None and failure is None:
+                    function, arguments = question
+                    answer = function(*arguments)
+                if failure is None:
+                    self._poll()
+            except BaseException as raised:  # Ctrl-C as well
+                failure = failure or raised
+                self.stop.set()
+            if question is None:
                 continue
-            if function is None:
-                result, error = arguments
-                if error is not None:
-                    raise error
+            if question[0] is None:
+                result, error = question[1]
+                if failure is not None or error is not None:
+                    raise failure or error
                 return result
-            answer = error = None
-            try:
-                answer = function(*arguments)
-                self._poll()
-            except BaseException as raised:  # goes through the renderer, so that it can clean up
-                error = raised
-            self._answers.put((answer, error))
+            self._answers.put((answer, failure))
 
     def _poll(self) -> None:
         if not self.stop.is_set() and self.job.should_stop():
@@ -170,9 +181,7 @@ def _release_quietly(renderer: Any) -> None:
     try:
         renderer.release()
     except Exception:
-        import logging
-
-        logging.getLogger(__name__).exception("the renderer could not be released")
+        logger.exception("the renderer could not be released")
 
 
 _shared = RendererThread()

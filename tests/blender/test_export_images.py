@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_node, export, export_lobes, link, new_material, to_surface
+from test_export_lights import cycles_radiance
 
 from rppm_addon.scene import LobeKind
 
@@ -161,6 +162,34 @@ def test_placement_by_a_mapping_is_reported(scene):
     link(tree, coordinates.outputs["UV"], tree.nodes["Picture"].inputs["Vector"])
     bpy.data.objects.remove(bpy.data.objects["Mesh"])
     assert export_lobes(scene, material)[1] == []
+
+
+@pytest.mark.parametrize("space", ["sRGB", "Non-Color"])
+@pytest.mark.parametrize("alpha_mode", ["STRAIGHT", "CHANNEL_PACKED", "NONE"])
+@pytest.mark.parametrize("linked", [False, True])
+def test_transparent_colors_are_those_of_cycles(scene, tmp_path, space, alpha_mode, linked):
+    saved = new_image("Saved", np.full((4, 4, 4), (1.0, 0.5, 0.25, 0.5)))
+    saved.filepath_raw, saved.file_format = str(tmp_path / "alpha.png"), "PNG"
+    saved.save()
+    image = bpy.data.images.load(str(tmp_path / "alpha.png"))
+    image.alpha_mode, image.colorspace_settings.name = alpha_mode, space
+    material = textured(image, shader="ShaderNodeEmission")
+    tree = material.node_tree
+    if linked:  # to a strength of 1, whatever the alpha is
+        greater = add_node(tree, "ShaderNodeMath")
+        greater.inputs[1].default_value = 1.0
+        greater.operation = "MAXIMUM"  # what Cycles could do without at once would not count as linked
+        link(tree, tree.nodes["Picture"].outputs["Alpha"], greater.inputs[0])
+        link(tree, greater.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+    quad = add_mesh(scene)
+    quad.data.uv_layers.new()
+    quad.data.materials.append(material)
+    exported = export(scene)
+    (picture,) = exported.images
+    color = picture.pixels[0, 0, :3] / 255.0
+    if picture.encoding == "SRGB":
+        color = np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
+    np.testing.assert_allclose(color, cycles_radiance(scene, tmp_path), atol=3e-3)
 
 
 def test_pixels_that_are_not_finite(scene):

@@ -31,6 +31,13 @@ def test_point_and_spot(scene, kind):
     np.testing.assert_allclose(np.linalg.norm(light.matrix[:3, 0]), 3.0)
 
 
+def test_soft_falloff(scene):
+    added = add_light(scene, "POINT")
+    assert export(scene).lights[0].soft_falloff
+    added.data.use_soft_falloff = False
+    assert not export(scene).lights[0].soft_falloff
+
+
 def test_spot_cone(scene):
     light = exported_light(scene, "SPOT", spot_size=1.2, spot_blend=0.4)
     assert (light.spot_angle, light.spot_blend) == pytest.approx((1.2, 0.4))

@@ -30,12 +30,21 @@ EXPECTED = {
 }
 
 
+def open_file(path):
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+    except RuntimeError as error:
+        if bpy.app.version < (5, 0) and "not a blend file" in str(error):
+            pytest.skip("Blender 5 wrote this file in a way that this one cannot read")
+        raise
+
+
 @pytest.mark.parametrize("name", EXPECTED)
 def test_export_of_a_real_file(registered, name):
     path = SCENES / f"{name}.blend"
     if not path.exists():
         pytest.skip(f"the sample scenes are not here ({SCENES})")
-    bpy.ops.wm.open_mainfile(filepath=str(path))
+    open_file(path)
     exported = export(bpy.context.scene)
     found = (exported.triangle_count, len(exported.materials), len(exported.lights), len(exported.images))
     assert found == EXPECTED[name]

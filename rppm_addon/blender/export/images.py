@@ -24,9 +24,10 @@ class ImageTable:
 
     def index(self, image: bpy.types.Image, node: bpy.types.Node, evaluator: "Evaluator") -> int | None:
         """Index of the image, exported now if it is new; None, with a warning, when it has no pixels."""
-        key = (image.as_pointer(), image.colorspace_settings.name, image.alpha_mode)
+        associated = _is_associated(image, node)
+        key = (image.as_pointer(), associated)
         if key not in self._indices:
-            self._indices[key] = self._export(image, node, evaluator)
+            self._indices[key] = self._export(image, node, evaluator, associated)
         index = self._indices[key]
         if index is None:
             place = image.filepath or "no file"
@@ -57,7 +58,9 @@ class ImageTable:
             evaluator.warn(node, "gives an alpha that varies; its mean is used")
         return mean
 
-    def _export(self, image: bpy.types.Image, node: bpy.types.Node, evaluator: "Evaluator") -> int | None:
+    def _export(
+        self, image: bpy.types.Image, node: bpy.types.Node, evaluator: "Evaluator", associated: bool
+    ) -> int | None:
         pixels = read_pixels(image)
         if pixels is None:
             return None
@@ -65,6 +68,8 @@ class ImageTable:
             evaluator.warn(node, "uses UDIM tiles; only the first tile is rendered")
         space = image.colorspace_settings.name
         encoding = "LINEAR"
+        if associated:
+            pixels[..., :3] *= pixels[..., 3:]
         if not image.is_float:
             pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
             encoding = "SRGB" if space == "sRGB" else "LINEAR"
@@ -75,6 +80,17 @@ class ImageTable:
         return len(self.images) - 1
 
 
+def _is_associated(image: bpy.types.Image, node: bpy.types.Node) -> bool:
+    """Whether a node shows colours times their alpha, while they are still encoded.
+
+    Cycles does so unless the node's alpha is used as well.
+    """
+    alpha = node.outputs.get("Alpha")
+    has_alpha = image.alpha_mode in {"STRAIGHT", "PREMUL"} and image.colorspace_settings.name not in _DATA
+    return has_alpha and not image.is_float and not (alpha is not None and alpha.is_linked)
+
+
+_DATA = {"Non-Color", "Raw"}
 _REMEDY = "find it with File > External Data > Find Missing Files; magenta stands in"
 
 _SRGB_TO_LINEAR = np.arange(256) / 255.0
