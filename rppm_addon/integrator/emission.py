@@ -17,6 +17,7 @@ from ..scene.scene import Scene
 from .environment import Environment
 from .geometry import Geometry
 from .records import EMISSIVE_TRIANGLE, LIGHT
+from .targets import caustic_targets
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 _VISIBLE, _SOFT = 1, 2
@@ -36,7 +37,7 @@ LIGHT_PARAMETERS = {
 }
 """Parameters of every program that includes shaders/emission/lights.glsl."""
 
-Record("EmitParameters", **LIGHT_PARAMETERS)
+Record("EmitParameters", **LIGHT_PARAMETERS, target_count="uint")
 Record("SoftFalloffParameters", **LIGHT_PARAMETERS)
 
 
@@ -104,6 +105,8 @@ class Emission:
         self._soft_program = library.compute("emission/soft_falloff.comp")
         self._lights = GrowingBuffer(context, "lights")
         self._emissive = GrowingBuffer(context, "emissive triangles")
+        self._targets = GrowingBuffer(context, "photon targets")
+        self._target_count = 0
         self.environment = Environment(context)
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
@@ -185,6 +188,9 @@ class Emission:
         table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
         self._lights.upload(table)
         self._emissive.upload(emissive if len(emissive) else EMISSIVE_TRIANGLE.zeros(1))
+        targets = caustic_targets(scene, geometry)
+        self._target_count = len(targets)
+        self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
         rotation = np.eye(4)
         rotation[:3, :3] = scene.world.rotation
@@ -203,7 +209,9 @@ class Emission:
         """Emit ``count`` photons: their first rays and the flux they carry."""
         self.environment.use()
         self._program.run(
-            count, {**self.buffers, "Rays": rays, "PhotonPaths": photon_paths}, self.parameters(seed, iteration, count)
+            count,
+            {**self.buffers, "Rays": rays, "PhotonPaths": photon_paths, "Targets": self._targets.buffer},
+            {**self.parameters(seed, iteration, count), "target_count": self._target_count},
         )
 
     def soften(
@@ -225,6 +233,7 @@ class Emission:
     def release(self) -> None:
         self._lights.release()
         self._emissive.release()
+        self._targets.release()
         self.environment.release()
 
 
@@ -288,7 +297,8 @@ def _emissive_triangles(scene: Scene, geometry: Geometry) -> np.ndarray:
     ]
     radiance = np.array([emitted_radiance(m, means) for m in scene.materials]).reshape(-1, 3)
     found = []
-    for instance, first in geometry.placements:
+    for placement in geometry.placements:
+        instance = placement.instance
         mesh = scene.meshes[instance.mesh]
         slots = [radiance[m] if 0 <= m < len(radiance) else np.zeros(3) for m in instance.materials]
         if not slots or not np.any(slots):
@@ -301,6 +311,6 @@ def _emissive_triangles(scene: Scene, geometry: Geometry) -> np.ndarray:
         good = np.isfinite(area) & (area > 0)
         records = EMISSIVE_TRIANGLE.zeros(int(good.sum()))
         records["radiance"], records["area"] = emitted[which[good]], area[good]
-        records["triangle"] = first + which[good]
+        records["triangle"] = placement.first_triangle + which[good]
         found.append(records)
     return np.concatenate(found) if found else EMISSIVE_TRIANGLE.zeros(0)

@@ -2,6 +2,7 @@
 """Indexed arrays to world-space triangles, gathered on the GPU."""
 
 import logging
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -46,11 +47,21 @@ def finite_bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
     return lowest.astype(np.float64), highest.astype(np.float64)
 
 
+@dataclass
+class Placement:
+    """An instance, its first world triangle, and its world bounds in metres (maybe not finite)."""
+
+    instance: Instance
+    first_triangle: int
+    low: np.ndarray
+    high: np.ndarray
+
+
 class Geometry:
     """World-space triangles of a scene in GPU buffers.
 
     ``triangles`` holds three vec4 a triangle, ``attributes`` a TriangleAttributes each;
-    ``placements`` lists the instances with their first world triangle; ``bounds_low`` and
+    ``placements`` lists the instances that have triangles; ``bounds_low`` and
     ``bounds_high`` (3,) enclose them, metres.
     """
 
@@ -74,7 +85,7 @@ class Geometry:
         self.triangles = GrowingBuffer(context, "world triangles", remedy)
         self.attributes = GrowingBuffer(context, "triangle attributes", remedy)
         self.triangle_count = 0
-        self.placements: list[tuple[Instance, int]] = []
+        self.placements: list[Placement] = []
         self.bounds_low = self.bounds_high = np.zeros(3)
 
     @property
@@ -115,6 +126,7 @@ class Geometry:
         ]
         entries = INSTANCE_ENTRY.zeros(len(instances))
         slots: list[int] = []
+        placements: list[Placement] = []
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         first = 0
         for entry, instance in zip(entries, instances, strict=True):
@@ -130,6 +142,7 @@ class Geometry:
             first += meshes[mesh].triangle_count
             corners = np.array(np.meshgrid(*zip(*bounds[mesh], strict=True))).reshape(3, -1)
             world = instance.matrix[:3, :3] @ corners + instance.matrix[:3, 3:]
+            placements.append(Placement(instance, int(entry["first_triangle"]), world.min(axis=1), world.max(axis=1)))
             if np.isfinite(world).all() and np.abs(world).max() < 1e15:
                 low, high = np.minimum(low, world.min(axis=1)), np.maximum(high, world.max(axis=1))
             else:
@@ -137,7 +150,7 @@ class Geometry:
                     "object %s has a matrix that is not finite; its triangles are left out", instance.object_name
                 )
         self.triangle_count = first
-        self.placements = list(zip(instances, entries["first_triangle"].tolist(), strict=True))
+        self.placements = placements
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
-#include "emission/lights.glsl"
+#include "emission/photons.glsl"
 layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) writeonly buffer PhotonPaths { PhotonPath photon_paths[]; };
 
@@ -33,13 +33,15 @@ void main() {
     if (index >= parameters.count) return;
     uint number = light_of(index);
     Light light = lights[number];
-    uint within = index - light.first_photon;
+    // The light's photons take turns: even ones go anywhere, odd ones are aimed.
+    uint turn = index - light.first_photon, within = turn / 2u;
+    bool aimed = (turn & 1u) != 0u;
     // A fresh scrambled set for every light and iteration, stratified among the light's photons.
-    uvec4 seed = pcg4d(uvec4(number, parameters.iteration, parameters.seed, STAGE_EMISSION));
-    vec2 u_position = scrambled_sobol(within, seed);
-    vec2 u_direction = scrambled_sobol(within, pcg4d(seed));
-    float u_choice = scrambled_sobol(within, pcg4d(seed + 1u)).x;
-    Emission emission = emit_photon(light, u_position, u_direction, u_choice);
+    uvec4 seed = pcg4d(uvec4(2u * number + (aimed ? 1u : 0u), parameters.iteration, parameters.seed, STAGE_EMISSION));
+    vec2 u_parts = scrambled_sobol(within, pcg4d(seed + 1u));
+    EmissionChoice choice = EmissionChoice(scrambled_sobol(within, seed), scrambled_sobol(within, pcg4d(seed)),
+                                           u_parts.x, u_parts.y, aimed);
+    Emission emission = emit_photon(light, choice);
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light sources: photons that leave them, samples of them from a point, and what a ray sees of them.
+// Light sources: samples of them from a point, and what a ray sees of them.
 // Needs the members scene_centre and scene_radius of the parameters.
 
 #include <Light>
@@ -80,67 +80,6 @@ float soft_light_distance(Light light, vec3 origin, vec3 direction) {
     float distance = dot(to_centre, to_centre) / dot(direction, to_centre);
     vec3 place = distance * direction - to_centre;
     return distance > 0.0 && dot(place, place) <= light.radius * light.radius ? distance : 0.0;
-}
-
-// --- photons --------------------------------------------------------------------------------
-
-// flux is that of the whole light divided by the density of this choice; the caller shares it out.
-struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
-
-Emission emit_from_infinity(vec3 direction, vec2 u, vec3 flux_density) {
-    vec3 t, b;
-    tangent_frame(direction, t, b);
-    vec2 disk = parameters.scene_radius * sample_disk(u);
-    vec3 origin = parameters.scene_centre + disk.x * t + disk.y * b - parameters.scene_radius * direction;
-    return Emission(origin, NO_TRIANGLE, direction, flux_density * (PI * parameters.scene_radius * parameters.scene_radius));
-}
-
-Emission emit_photon(Light light, vec2 u_position, vec2 u_direction, float u_choice) {
-    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
-        vec3 direction;
-        float solid_angle = 4.0 * PI;
-        if (light.kind == LIGHT_POINT) direction = sample_sphere(u_direction);
-        else {
-            solid_angle = 2.0 * PI * light.spread_scale;
-            direction = sample_cone(light.normal, light.spread_scale, u_direction);
-        }
-        // A sphere of uniform radiance shows the same disk to every direction.
-        vec3 t, b;
-        tangent_frame(direction, t, b);
-        vec2 disk = sample_disk(u_position);
-        float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
-        vec3 origin = light.position + light.radius * (disk.x * t + disk.y * b + forward * direction);
-        return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) * solid_angle);
-    }
-    if (light.kind == LIGHT_SUN) {
-        vec3 direction = sample_cone(light.normal, 1.0 - light.cosine_cone, u_direction);
-        return emit_from_infinity(direction, u_position, light.strength);
-    }
-    if (light.kind == LIGHT_WORLD) {
-        float density;
-        vec3 towards = sample_world(u_direction, density);
-        return emit_from_infinity(-towards, u_position, world_radiance(towards) / density);
-    }
-    if (light.kind == LIGHT_MESH) {
-        TrianglePoint point = sample_emissive_triangle(u_choice, u_position);
-        // Both sides shine: the lower half of u.x goes to the back.
-        bool back = u_direction.x < 0.5;
-        vec3 normal = back ? -point.normal : point.normal;
-        vec3 direction = sample_cosine_hemisphere(normal, vec2(fract(2.0 * u_direction.x), u_direction.y));
-        return Emission(offset_from_surface(point.position, normal), point.triangle, direction,
-                        point.radiance * (2.0 * PI / point.density));
-    }
-    vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(u_position) : 2.0 * u_position - 1.0;
-    vec3 origin = light.position + place.x * light.axis_u + place.y * light.axis_v;
-    if (light.spread_tangent <= 0.0) {
-        vec3 direction = sample_cosine_hemisphere(light.normal, u_direction);
-        return Emission(origin, NO_TRIANGLE, direction, light.strength * (PI * light.area));
-    }
-    // Narrow beams: uniform in the cone of the spread.
-    vec3 direction = sample_cone(light.normal, 1.0 - light.cosine_cone, u_direction);
-    float cosine = dot(direction, light.normal);
-    return Emission(origin, NO_TRIANGLE, direction,
-                    light.strength * (spread_attenuation(light, cosine) * cosine * light.area * 2.0 * PI * (1.0 - light.cosine_cone)));
 }
 
 // --- direct light ---------------------------------------------------------------------------

@@ -141,3 +141,31 @@ def test_photons_carry_the_power(renderer, name):
         assert balance["emitted"] == pytest.approx(3 * power[name], rel=2e-3)
     assert balance["absorbed"] + balance["escaped"] == pytest.approx(balance["emitted"], rel=1e-4)
     assert abs(balance["lost"]) <= 1e-4 * balance["emitted"]
+
+
+@pytest.mark.parametrize("name", [*LIGHTS, "world", "mesh"])
+def test_aiming_moves_no_energy(renderer, name):
+    """A ball of no refraction changes nothing but where photons are sent."""
+    world = World(np.array([1.0, 2.0, 3.0])) if name == "world" else None
+
+    def scene():
+        made = floor_scene(LIGHTS.get(name), DirectLight.PHOTONS, world)
+        made.settings.photon_path_length = made.settings.camera_path_length = 4
+        if name == "mesh":
+            made.meshes.append(scenes.rectangle("lamp", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2)))
+            made.materials.append(Material("lamp", [Lobe(LobeKind.EMISSION, color=(5, 5, 5))]))
+            made.instances.append(Instance(1, np.eye(4), [1]))
+        return made
+
+    plain = renderer.render(scene()).frame.combined[..., :3].mean()
+    aimed_scene = scene()
+    ball = len(aimed_scene.meshes)
+    aimed_scene.meshes.append(scenes.sphere("ball"))
+    aimed_scene.materials.append(Material("air", [Lobe(LobeKind.REFRACTION, ior=1.0)]))
+    aimed_scene.instances.append(Instance(ball, scenes.placed(0.2, 0.1, 0.5, 0.2), [len(aimed_scene.materials) - 1]))
+    result = renderer.render(aimed_scene)
+    aimed = result.frame.combined[..., :3].mean()
+    print(f"{name}: plain {plain:.5f} aimed {aimed:.5f} ratio {aimed / plain:.4f}")
+    assert aimed == pytest.approx(plain, rel=0.02)
+    balance = result.statistics.flux_watts
+    assert balance["absorbed"] + balance["escaped"] == pytest.approx(balance["emitted"], rel=1e-4)

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Photons that leave the lights. Flux is that of the whole light over the density of the choice;
+// the caller shares it out.
+
+#include "emission/lights.glsl"
+#include "emission/aim.glsl"
+
+struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
+
+// Random numbers of one photon; aimed tells the half that it belongs to.
+struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; };
+
+// Density of both halves together; without a target both are the plain one.
+float mixed_density(float plain, float aimed, bool targets_seen) {
+    return targets_seen ? 0.5 * (plain + aimed) : plain;
+}
+
+Emission emit_from_infinity(vec3 direction, vec3 flux_density, EmissionChoice choice) {
+    vec3 t, b;
+    tangent_frame(direction, t, b);
+    float radius = parameters.scene_radius, shadows = target_shadows();
+    bool seen = shadows > 0.0;
+    vec2 place = choice.aimed && seen ? sample_target_shadow(t, b, shadows, choice.target, choice.place)
+                                      : radius * sample_disk(choice.place);
+    float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
+    float density = mixed_density(plain, seen ? target_shadow_density(t, b, shadows, place) : 0.0, seen);
+    vec3 origin = parameters.scene_centre + place.x * t + place.y * b - radius * direction;
+    return Emission(origin, NO_TRIANGLE, direction, flux_density / density);
+}
+
+// Radiant intensity from the lamp's centre; a sphere of uniform radiance shows the same disk to every
+// direction.
+Emission emit_from_lamp(Light light, EmissionChoice choice) {
+    float cones = target_cones(light.position);
+    bool seen = cones > 0.0, spot = light.kind == LIGHT_SPOT;
+    vec3 direction = choice.aimed && seen ? sample_target_direction(light.position, cones, choice.target, choice.direction)
+                   : spot ? sample_cone(light.normal, light.spread_scale, choice.direction)
+                          : sample_sphere(choice.direction);
+    float plain = 1.0 / (4.0 * PI);
+    if (spot) plain = dot(direction, light.normal) >= 1.0 - light.spread_scale ? 1.0 / (2.0 * PI * light.spread_scale) : 0.0;
+    float aimed = seen ? target_direction_density(light.position, cones, direction) : 0.0;
+    vec3 t, b;
+    tangent_frame(direction, t, b);
+    vec2 disk = sample_disk(choice.place);
+    float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
+    vec3 origin = light.position + light.radius * (disk.x * t + disk.y * b + forward * direction);
+    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / mixed_density(plain, aimed, seen));
+}
+
+// From a point of a surface, with the density per area that the point was chosen by.
+Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle, vec3 radiance, float area_density, EmissionChoice choice) {
+    float cones = target_cones(origin);
+    bool seen = cones > 0.0, both_sides = light.kind == LIGHT_MESH, narrow = light.spread_tangent > 0.0;
+    vec3 direction;
+    if (choice.aimed && seen) direction = sample_target_direction(origin, cones, choice.target, choice.direction);
+    else if (narrow) direction = sample_cone(normal, 1.0 - light.cosine_cone, choice.direction);
+    else {
+        // Both sides shine: the lower half of the first number goes to the back.
+        bool back = both_sides && choice.direction.x < 0.5;
+        vec2 u = both_sides ? vec2(fract(2.0 * choice.direction.x), choice.direction.y) : choice.direction;
+        direction = sample_cosine_hemisphere(back ? -normal : normal, u);
+    }
+    float cosine = dot(direction, normal);
+    if (both_sides) cosine = abs(cosine);
+    Emission none = Emission(origin, triangle, direction, vec3(0.0));
+    if (cosine <= 0.0) return none;
+    float plain = both_sides ? cosine / (2.0 * PI) : cosine / PI;
+    if (narrow) plain = cosine >= light.cosine_cone ? 1.0 / (2.0 * PI * (1.0 - light.cosine_cone)) : 0.0;
+    float density = mixed_density(plain, seen ? target_direction_density(origin, cones, direction) : 0.0, seen);
+    if (!both_sides) radiance *= spread_attenuation(light, cosine);
+    vec3 side = dot(direction, normal) > 0.0 ? normal : -normal;
+    return Emission(both_sides ? offset_from_surface(origin, side) : origin, triangle, direction,
+                    radiance * (cosine / (area_density * density)));
+}
+
+Emission emit_photon(Light light, EmissionChoice choice) {
+    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_lamp(light, choice);
+    if (light.kind == LIGHT_SUN)
+        return emit_from_infinity(sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction), light.strength, choice);
+    if (light.kind == LIGHT_WORLD) {
+        float density;
+        vec3 towards = sample_world(choice.direction, density);
+        return emit_from_infinity(-towards, world_radiance(towards) / density, choice);
+    }
+    if (light.kind == LIGHT_MESH) {
+        TrianglePoint point = sample_emissive_triangle(choice.part, choice.place);
+        return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.density, choice);
+    }
+    vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;
+    vec3 origin = light.position + place.x * light.axis_u + place.y * light.axis_v;
+    return emit_from_surface(light, origin, light.normal, NO_TRIANGLE, light.strength, 1.0 / light.area, choice);
+}
