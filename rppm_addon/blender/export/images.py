@@ -27,7 +27,10 @@ class ImageTable:
         associated = _is_associated(image, node)
         key = (image.as_pointer(), associated)
         if key not in self._indices:
-            self._indices[key] = self._export(image, node, evaluator, associated)
+            exported = self._export(image, node, evaluator, associated)
+            self._indices[key] = exported
+            if exported is not None and _is_opaque(self.images[exported].pixels):
+                self._indices[key[0], not associated] = exported
         index = self._indices[key]
         if index is None:
             place = image.filepath or "no file"
@@ -88,6 +91,10 @@ def _is_associated(image: bpy.types.Image, node: bpy.types.Node) -> bool:
     alpha = node.outputs.get("Alpha")
     has_alpha = image.alpha_mode in {"STRAIGHT", "PREMUL"} and image.colorspace_settings.name not in _DATA
     return has_alpha and not image.is_float and not (alpha is not None and alpha.is_linked)
+
+
+def _is_opaque(pixels: np.ndarray) -> bool:
+    return bool((pixels[..., 3] == (255 if pixels.dtype == np.uint8 else 1.0)).all())
 
 
 _DATA = {"Non-Color", "Raw"}
