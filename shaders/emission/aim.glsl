@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Half of a light's photons are aimed at the objects that make caustics, so that a small glass in a
+// A part of a light's photons is aimed at the objects that make caustics, so that a small glass in a
 // large room gets its share. The density of both ways together divides the flux (balance heuristic,
 // Veach 1997, section 9.2), so aiming moves noise and no energy. Needs the member target_count.
 
 layout(std430, binding = 2) readonly buffer Targets { vec4 targets[]; };  // bounding spheres
+
+// One photon of so many is aimed. The world lights rooms through their windows only: it keeps more
+// photons for that.
+uint aiming_period(Light light) { return light.kind == LIGHT_WORLD ? 4u : 2u; }
 
 // One minus the cosine of the cone under which a sphere is seen; 0 from inside, where it is no target.
 float target_cone(vec4 target, vec3 from) {

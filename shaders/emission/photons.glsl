@@ -7,12 +7,12 @@
 
 struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
 
-// Random numbers of one photon; aimed tells the half that it belongs to.
-struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; };
+// Random numbers of one photon, whether it is aimed, and the share of those that are.
+struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; float aimed_share; };
 
-// Density of both halves together; without a target both are the plain one.
-float mixed_density(float plain, float aimed, bool targets_seen) {
-    return targets_seen ? 0.5 * (plain + aimed) : plain;
+// Density of both ways together; without a target both are the plain one.
+float mixed_density(float plain, float aimed, bool targets_seen, EmissionChoice choice) {
+    return targets_seen ? mix(plain, aimed, choice.aimed_share) : plain;
 }
 
 Emission emit_from_infinity(vec3 direction, vec3 flux_density, EmissionChoice choice) {
@@ -23,7 +23,7 @@ Emission emit_from_infinity(vec3 direction, vec3 flux_density, EmissionChoice ch
     vec2 place = choice.aimed && seen ? sample_target_shadow(t, b, shadows, choice.target, choice.place)
                                       : radius * sample_disk(choice.place);
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
-    float density = mixed_density(plain, seen ? target_shadow_density(t, b, shadows, place) : 0.0, seen);
+    float density = mixed_density(plain, seen ? target_shadow_density(t, b, shadows, place) : 0.0, seen, choice);
     vec3 origin = parameters.scene_centre + place.x * t + place.y * b - radius * direction;
     return Emission(origin, NO_TRIANGLE, direction, flux_density / density);
 }
@@ -44,7 +44,7 @@ Emission emit_from_lamp(Light light, EmissionChoice choice) {
     vec2 disk = sample_disk(choice.place);
     float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
     vec3 origin = light.position + light.radius * (disk.x * t + disk.y * b + forward * direction);
-    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / mixed_density(plain, aimed, seen));
+    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / mixed_density(plain, aimed, seen, choice));
 }
 
 // From a point of a surface, with the density per area that the point was chosen by.
@@ -66,7 +66,7 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
     if (cosine <= 0.0) return none;
     float plain = both_sides ? cosine / (2.0 * PI) : cosine / PI;
     if (narrow) plain = cosine >= light.cosine_cone ? 1.0 / (2.0 * PI * (1.0 - light.cosine_cone)) : 0.0;
-    float density = mixed_density(plain, seen ? target_direction_density(origin, cones, direction) : 0.0, seen);
+    float density = mixed_density(plain, seen ? target_direction_density(origin, cones, direction) : 0.0, seen, choice);
     if (!both_sides) radiance *= spread_attenuation(light, cosine);
     vec3 side = dot(direction, normal) > 0.0 ? normal : -normal;
     return Emission(both_sides ? offset_from_surface(origin, side) : origin, triangle, direction,

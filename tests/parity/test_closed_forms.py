@@ -56,7 +56,7 @@ def test_white_glass_vanishes_in_a_white_sky(renderer, roughness):
     new_scene(world=1.0)
     ball(1.0, material(GLASS, Color=1.0, Roughness=roughness, IOR=1.5))
     camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 30.0)
-    settings = {"camera_path_length": 16, "specular_roughness": 1.0}
+    settings = {"camera_path_length": 32, "specular_roughness": 1.0}
     result = render_rppm(renderer, photons=1024, photon_path_length=1, iterations=24, **settings)
     compare(f"white_glass_{roughness}", result.pictures, WHOLE, CONVERGED)
 
