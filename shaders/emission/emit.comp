@@ -36,12 +36,14 @@ void main() {
     // The light's photons take turns: the last of each period is aimed, the others go anywhere.
     uint turn = index - light.first_photon, period = aiming_period(light);
     bool aimed = turn % period == period - 1u;
+    // The share that this rule gives to just so many photons keeps the estimate exact.
+    float aimed_share = float(light.photon_count / period) / float(max(light.photon_count, 1u));
     uint within = aimed ? turn / period : turn - turn / period;
     // A fresh scrambled set for every light and iteration, stratified among the light's photons.
     uvec4 seed = pcg4d(uvec4(2u * number + (aimed ? 1u : 0u), parameters.iteration, parameters.seed, STAGE_EMISSION));
     vec2 u_parts = scrambled_sobol(within, pcg4d(seed + 1u));
     EmissionChoice choice = EmissionChoice(scrambled_sobol(within, seed), scrambled_sobol(within, pcg4d(seed)),
-                                           u_parts.x, u_parts.y, aimed, 1.0 / float(period));
+                                           u_parts.x, u_parts.y, aimed, aimed_share);
     Emission emission = emit_photon(light, choice);
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
