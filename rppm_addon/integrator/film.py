@@ -8,8 +8,10 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from .importons import Importons
 from .splatting import Splatting
 
+Record("SurfaceParameters", count="uint", first_pixel="uint", iteration="uint", segment="uint")
 Record("FilmParameters", count="uint", width="uint", first_pixel="uint", iteration="uint")
 
 
@@ -17,7 +19,7 @@ class Film:
     """Means over the iterations, 16 bytes of radiance and alpha and 16 of normal and depth a pixel."""
 
     def __init__(self, context: Context, library: ProgramLibrary, width: int, height: int) -> None:
-        self._primary = library.compute("film/primary.comp")
+        self._surface_program = library.compute("film/surface.comp")
         self._accumulate = library.compute("film/accumulate.comp")
         remedy = "lower the resolution"
         self._radiance = GrowingBuffer(context, "film", remedy)
@@ -31,13 +33,19 @@ class Film:
         return {buffer.name: buffer.size for buffer in (self._radiance, self._surface)}
 
     def add_surface(
-        self, camera: moderngl.Buffer, closures: moderngl.Buffer, count: int, first_pixel: int, iteration: int
+        self, camera: moderngl.Buffer, importons: Importons, count: int, first_pixel: int, iteration: int, segment: int
     ) -> None:
-        """Add the band's first surfaces."""
-        self._primary.run(
+        """Add the first surfaces that the camera paths of a band have found in a segment."""
+        self._surface_program.run(
             count,
-            {"Camera": camera, "Closures": closures, "Surfaces": self._surface.buffer},
-            {"count": count, "width": self.width, "first_pixel": first_pixel, "iteration": iteration},
+            {
+                "Camera": camera,
+                "Closures": importons.closures.buffer,
+                "Rays": importons.rays.buffer,
+                "CameraPaths": importons.paths.buffer,
+                "Surfaces": self._surface.buffer,
+            },
+            {"count": count, "first_pixel": first_pixel, "iteration": iteration, "segment": segment},
         )
 
     def add(

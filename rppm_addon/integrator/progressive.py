@@ -192,10 +192,9 @@ class ProgressivePhotonMapper:
                 self._importons.trace(self._stages, self._count)
         with self.timers.stage("camera resolve"):
             self._importons.resolve(self._stages, self._count, self.iteration, segment)
-        if segment == 0:
-            self.film.add_surface(
-                self._gbuffer.camera, self._importons.closures.buffer, self._count, self._first_pixel, self.iteration
-            )
+        self.film.add_surface(
+            self._gbuffer.camera, self._importons, self._count, self._first_pixel, self.iteration, segment
+        )
 
     def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
         with self.timers.stage("camera scattering"):

@@ -1,0 +1,44 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the camera sees first: normals averaged over the iterations, depth of the first that found one. As in
+// Cycles, surfaces that let more than half of the light straight through are passed.
+
+layout(local_size_x = 64) in;
+
+#include <CameraView>
+#include <CameraPath>
+#include <Closure>
+#include <Ray>
+#include <SurfaceParameters>
+#include "common/invocation.glsl"
+#include "common/geometry.glsl"
+layout(std140, binding = 0) uniform Parameters { SurfaceParameters parameters; };
+layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 1) readonly buffer Closures { Closure closures[]; };
+layout(std430, binding = 2) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 3) buffer CameraPaths { CameraPath camera_paths[]; };
+layout(std430, binding = 4) buffer Surfaces { vec4 surfaces[]; };
+
+const float BACKGROUND_DEPTH = 1e10;  // as Cycles writes it
+const float MOSTLY_TRANSPARENT = 0.5;
+const uint PATH_STRAIGHT = 1u, PATH_SURFACE_FOUND = 2u;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint pixel = parameters.first_pixel + index;
+    bool first = parameters.iteration == 1u;
+    if (parameters.segment == 0u && first) surfaces[pixel] = vec4(vec3(0.0), BACKGROUND_DEPTH);
+    uint flags = camera_paths[index].flags;
+    if (!(rays[index].maximum_distance > 0.0) || (flags & PATH_STRAIGHT) == 0u || (flags & PATH_SURFACE_FOUND) != 0u) return;
+    bool hit = closures[index].triangle != NO_TRIANGLE;
+    vec3 transparent = closures[index].transparent;
+    if (hit && (transparent.r + transparent.g + transparent.b) / 3.0 > MOSTLY_TRANSPARENT) return;
+    camera_paths[index].flags = flags | PATH_SURFACE_FOUND;
+    vec3 normal = hit ? unpack_unit_vector(closures[index].shading_normal) : vec3(0.0);
+    vec4 surface = surfaces[pixel];
+    // A path may have ended on its way through: the next that finds a surface tells the depth.
+    if (hit && surface.w == BACKGROUND_DEPTH) surface.w = dot(closures[index].position - camera.position, camera.forward);
+    surface.xyz += (normal - surface.xyz) / float(parameters.iteration);
+    surfaces[pixel] = surface;
+}

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Depth, normal and alpha of surfaces that light passes through."""
+
+import numpy as np
+import pytest
+import scenes
+
+from rppm_addon.scene import (
+    Camera,
+    Instance,
+    Light,
+    LightKind,
+    Lobe,
+    LobeKind,
+    Material,
+    RenderSettings,
+    Scene,
+)
+from rppm_addon.session.renderer import Renderer
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    with Renderer() as renderer:
+        yield renderer
+
+
+def behind_a_pane(material: Material, floor: bool = True) -> Scene:
+    """A camera 3 m above a floor, with a pane of a material 1 m above it."""
+    camera = Camera(scenes.looking((0, 0, 3), (0, 0, 0)), (-0.2, 0.2, -0.2, 0.2), 16, 16)
+    pane = scenes.rectangle("pane", (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1))
+    ground = scenes.polygons("floor", np.array([(-2, -2, -1), (2, -2, 1), (2, 2, 1), (-2, 2, -1)]), [(0, 1, 2, 3)])
+    instances = [Instance(0, np.eye(4), [0])] + ([Instance(1, np.eye(4), [1])] if floor else [])
+    sun = Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
+    settings = RenderSettings(iterations=64, photons=256, filter_width=0.0, film_transparent=not floor)
+    return Scene(camera, [pane, ground], instances, [material, scenes.diffuse(1, 1, 1)], [sun], settings=settings)
+
+
+def see_through(share: float) -> Material:
+    return Material("pane", [Lobe(LobeKind.PRINCIPLED, alpha=1 - share)])
+
+
+@pytest.mark.parametrize(("share", "passed"), [(0.0, False), (0.3, False), (0.7, True), (1.0, True)])
+def test_depth_and_normal_of_the_first_solid_surface(renderer, share, passed):
+    frame = renderer.render(behind_a_pane(see_through(share))).frame
+    x = (np.arange(16) + 0.5) / 16 * 0.4 - 0.2
+    floor_depth = np.broadcast_to(3 / (1 + 0.5 * x), (16, 16))  # the plane z = x / 2
+    np.testing.assert_allclose(frame.depth, floor_depth if passed else 2.0, rtol=1e-4)
+    normal = np.array([-0.5, 0, 1]) / np.sqrt(1.25) if passed else np.array([0, 0, 1.0])
+    np.testing.assert_allclose(frame.normal.mean((0, 1)), normal, atol=0.02)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.7, 1.0])
+def test_alpha_is_what_hides_the_background(renderer, share):
+    frame = renderer.render(behind_a_pane(see_through(share), floor=False)).frame
+    assert frame.combined[..., 3].mean() == pytest.approx(1 - share, abs=0.02)
+
+
+def test_glass_hides_the_background(renderer):
+    material = Material("pane", [Lobe(LobeKind.REFRACTION, ior=1.5)])
+    frame = renderer.render(behind_a_pane(material, floor=False)).frame
+    assert (frame.combined[..., 3] == 1).all()
