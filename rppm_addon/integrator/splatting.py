@@ -9,7 +9,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 
-_CUBE_RESOLUTION, _BLOCK_SIZE = 64, 8
+_CUBE_RESOLUTION, _BLOCK_SIZE = 128, 8
 _JOB_HEADER, _JOB = 16, 16
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
