@@ -10,7 +10,14 @@ from .importons import Importons
 from .records import RAY
 from .stages import Stages
 
-Record("DirectLightParameters", **LIGHT_PARAMETERS, segment="uint", first_pixel="uint", specular_alpha="float")
+Record(
+    "DirectLightParameters",
+    **LIGHT_PARAMETERS,
+    segment="uint",
+    first_pixel="uint",
+    last_segment="uint",
+    specular_alpha="float",
+)
 Record("CountParameters", count="uint")
 
 
@@ -60,6 +67,7 @@ class DirectLight:
             {
                 **parameters,
                 "segment": segment,
+                "last_segment": segment == stages.settings.camera_path_length - 1,
                 "first_pixel": first_pixel,
                 "specular_alpha": stages.settings.specular_roughness**2,
             },

@@ -10,9 +10,9 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..materials.emitted import emitted_radiance, image_means
 from ..scene.errors import SceneError
 from ..scene.lights import Light, LightKind
-from ..scene.materials import Lobe, LobeKind, Material
 from ..scene.scene import Scene
 from .environment import Environment
 from .geometry import Geometry
@@ -31,11 +31,15 @@ LIGHT_PARAMETERS = {
     "environment_width": "uint",
     "environment_height": "uint",
     "emissive_triangle_count": "uint",
+    "mesh_density": "float",
+    "world_selection": "float",
     "seed": "uint",
     "iteration": "uint",
     "count": "uint",
 }
-"""Parameters of every program that includes shaders/emission/lights.glsl."""
+"""Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_density`` times a
+triangle's emitted radiance is the density per area of choosing a point on it for direct light;
+``world_selection`` is the probability of choosing the world."""
 
 Record("EmitParameters", **LIGHT_PARAMETERS, target_count="uint")
 Record("SoftFalloffParameters", **LIGHT_PARAMETERS)
@@ -64,20 +68,6 @@ def _spread_share(tangent: float, scale: float) -> float:
     theta = np.linspace(0.0, math.atan(tangent), 4097)
     values = np.maximum(0.0, (tangent - np.tan(theta)) * scale) * np.cos(theta) * np.sin(theta)
     return float(2 * math.pi * np.mean(values) * math.atan(tangent))
-
-
-def emitted_radiance(material: Material, image_means: list[np.ndarray]) -> np.ndarray:
-    """(3,) radiance that a material emits, W/(m^2 sr); textures count by their mean."""
-
-    def of(lobe: Lobe) -> np.ndarray:
-        if lobe.kind is LobeKind.EMISSION:
-            texture = image_means[lobe.color_image] if lobe.color_image >= 0 else 1.0
-            return lobe.weight * np.asarray(lobe.color) * texture
-        if lobe.kind is LobeKind.PRINCIPLED:
-            return lobe.weight * lobe.alpha * np.asarray(lobe.emission)
-        return np.zeros(3)
-
-    return np.maximum(sum((of(lobe) for lobe in material.lobes), np.zeros(3)), 0.0)
 
 
 def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
@@ -157,10 +147,12 @@ class Emission:
             entry, power = _light_entry(light, radius)
             add(entry, power, light.name, light.photon_share)
         emissive = _emissive_triangles(scene, geometry)
+        mesh_weight = 1.0
         if len(emissive):
             weight = np.mean(emissive["radiance"], axis=1).astype(np.float64) * emissive["area"]
             emissive["cumulated"] = np.cumsum(weight) / weight.sum()
             emissive["cumulated"][-1] = 1.0
+            mesh_weight = float(weight.sum())
             entry = LIGHT.zeros(1)[0]
             entry["kind"] = MESH
             add(entry, 2 * math.pi * (emissive["radiance"].T.astype(np.float64) @ emissive["area"]), "emissive meshes")
@@ -203,6 +195,8 @@ class Emission:
             "environment_width": self.environment.width,
             "environment_height": self.environment.height,
             "emissive_triangle_count": len(emissive),
+            "mesh_density": float(selection[table["kind"] == MESH].sum()) / mesh_weight,
+            "world_selection": float(selection[table["kind"] == WORLD].sum()),
         }
 
     def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
@@ -270,8 +264,10 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
         return entry, strength * spot_share(cosine, light.spot_blend)
     if light.kind is LightKind.SUN:
         entry["kind"] = SUN
-        entry["cosine_cone"] = math.cos(0.5 * min(max(light.sun_angle, 0.0), math.pi))
-        return entry, strength * math.pi * scene_radius**2
+        cosine = math.cos(0.5 * min(max(light.sun_angle, 0.0), math.pi))
+        # The irradiance counts cosines over the disk; GLSL takes radiance times its solid angle.
+        entry["cosine_cone"], entry["strength"] = cosine, strength * 2.0 / (1.0 + cosine)
+        return entry, entry["strength"] * math.pi * scene_radius**2
     width, height = light.size if light.shape in ("RECTANGLE", "ELLIPSE") else (light.size[0], light.size[0])
     entry["axis_u"], entry["axis_v"] = 0.5 * width * axes[:, 0], 0.5 * height * axes[:, 1]
     round_shape = light.shape in ("DISK", "ELLIPSE")
@@ -291,10 +287,7 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
 
 def _emissive_triangles(scene: Scene, geometry: Geometry) -> np.ndarray:
     """EMISSIVE_TRIANGLE records of all world triangles whose material emits."""
-    means = [
-        np.asarray(i.pixels, np.float64).reshape(-1, 4).mean(axis=0)[:3] / (255 if i.pixels.dtype == np.uint8 else 1)
-        for i in scene.images
-    ]
+    means = image_means(scene.images)
     radiance = np.array([emitted_radiance(m, means) for m in scene.materials]).reshape(-1, 3)
     found = []
     for placement in geometry.placements:

@@ -8,6 +8,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..scene.settings import DirectLight
 from .emission import LIGHT_PARAMETERS
 from .records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
 from .stages import Stages
@@ -19,6 +20,7 @@ Record(
     last_segment="uint",
     first_pixel="uint",
     film_transparent="uint",
+    next_event="uint",
     specular_alpha="float",
     radius_scale="float",
     shrinkage="float",
@@ -110,6 +112,7 @@ class Importons:
                 "last_segment": segment == settings.camera_path_length - 1,
                 "first_pixel": first_pixel,
                 "film_transparent": settings.film_transparent,
+                "next_event": settings.direct_light is DirectLight.RAYS,
                 "specular_alpha": settings.specular_roughness**2,
                 "radius_scale": radius_scale,
                 "shrinkage": shrinkage,

@@ -119,23 +119,29 @@ def flux_balance(emitted: np.ndarray, photons: np.ndarray) -> dict[str, float]:
     """Where the flux of an iteration went, W summed over the channels.
 
     ``emitted`` is (paths, 3), the flux each path left its light with; ``photons`` what
-    Photons.read gives. ``lost`` is flux on a ray of which no segment tells: it must be zero.
+    Photons.read gives. ``deposited`` is what the paths still carried to their last vertex, where they
+    are cut off; ``absorbed`` is what the vertices before kept. ``lost`` is flux on a ray of which no
+    segment tells: it must be zero.
     Russian roulette makes single events absorb more or less than their share, the sum being right.
     """
     active = (photons["flags"] & PHOTON_ACTIVE) != 0
     escaped = (photons["flags"] & PHOTON_ESCAPED) != 0
     carried = emitted.astype(np.float64)
-    absorbed = gone = lost = 0.0
+    absorbed = deposited = gone = lost = 0.0
     for segment in range(len(photons)):
         scattered = photons["scattered_flux"][segment].astype(np.float64)
         hit = active[segment] & ~escaped[segment]
         gone += carried[escaped[segment]].sum()
-        absorbed += (carried[hit] - scattered[hit]).sum()
+        if segment == len(photons) - 1:
+            deposited = carried[hit].sum()
+        else:
+            absorbed += (carried[hit] - scattered[hit]).sum()
         lost += carried[~active[segment]].sum()
         carried = np.where(hit[:, None], scattered, 0.0)
     return {
         "emitted": float(emitted.sum(dtype=np.float64)),
         "absorbed": float(absorbed),
+        "deposited": float(deposited),
         "escaped": float(gone),
         "lost": float(lost + carried.sum()),
     }

@@ -129,7 +129,7 @@ class ProgressivePhotonMapper:
         return sizes | {"visibility buffer": self._gbuffer.memory_bytes}
 
     def flux_balance(self) -> dict[str, float]:
-        """Emitted, absorbed, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
+        """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
         photons = self._photons.read()
         return flux_balance(self._photons.read_emitted(self._stages, self.iteration), photons)
 
@@ -179,7 +179,7 @@ class ProgressivePhotonMapper:
 
     def _direct_camera_hits(self, first_row: int, rows: int) -> None:
         """DirectCameraHits of a band of rows."""
-        offset = filter_offsets(self.iteration, self.scene.settings.filter_width)
+        offset = filter_offsets(self.iteration, self.scene.settings.filter_width, self.scene.settings.seed)
         view = camera_view(self.scene.camera, first_row, rows, offset)
         with self.timers.stage("gbuffer"):
             self._importons.begin()

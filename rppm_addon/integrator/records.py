@@ -95,14 +95,15 @@ PHOTON_DIFFUSED = 8
 CAMERA_PATH = Record(
     "CameraPath",
     throughput="vec3",
-    pixel="uint",
+    scatter_density="float",
     total_length="float",
     primary_distance="float",
     primary_radius="float",
     flags="uint",
 )
 """A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4,
-``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit."""
+``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit, ``scatter_density`` that of the
+scattered direction in 1/sr where next-event rays sample the same light, else 0."""
 
 IMPORTON = Record(
     "Importon",

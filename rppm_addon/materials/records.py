@@ -6,9 +6,10 @@ from ..gl.records import Record
 NO_IMAGE = 0xFFFFFFFF
 
 MATERIAL = Record(
-    "Material", absorption="vec3", first_lobe="uint", lobe_count="uint", unused0="uint", unused1="uint", unused2="uint"
+    "Material", absorption="vec3", first_lobe="uint", lobe_count="uint", emitted="float", unused0="uint", unused1="uint"
 )
-"""A material: absorption of its interior in 1/m and its range of lobes."""
+"""A material: absorption of its interior in 1/m, its range of lobes, and the radiance that it emits
+(mean of the channels)."""
 
 MATERIAL_LOBE = Record(
     "MaterialLobe",

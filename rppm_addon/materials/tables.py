@@ -8,6 +8,7 @@ from ..gl.context import Context
 from ..scene.images import Image
 from ..scene.materials import Lobe, LobeKind, Material
 from . import albedo_tables
+from .emitted import emitted_radiance, image_means
 from .records import IMAGE_ENTRY, MATERIAL, MATERIAL_LOBE, NO_IMAGE
 
 DEFAULT_MATERIAL = Material("default", [Lobe(LobeKind.DIFFUSE, color=(0.8, 0.8, 0.8))])
@@ -62,10 +63,12 @@ class MaterialTables:
             texels.append(data)
             first += len(data)
 
+        means = image_means(images)
         material_records = MATERIAL.zeros(len(materials) + 1)
         lobe_records = MATERIAL_LOBE.zeros(max(1, len(lobes)))
         position = 0
         for record, material in zip(material_records, [*materials, DEFAULT_MATERIAL], strict=True):
+            record["emitted"] = emitted_radiance(material, means).mean()
             record["absorption"] = np.maximum(material.absorption, 0.0)
             record["first_lobe"], record["lobe_count"] = position, len(material.lobes)
             for lobe in material.lobes:

@@ -47,7 +47,7 @@ class RenderSettings:
     cubemap_resolution: int = 0
     """Cells along a side of DIRT's cube faces, a power of two; 0 is automatic."""
     filter_width: float = 1.5
-    """Width of the Blackman-Harris pixel filter in pixels (Cycles' default); 0 looks through
+    """Width of the Blackman-Harris pixel filter in pixels, as Cycles counts it; 0 looks through
     pixel centres only."""
     film_transparent: bool = False
 

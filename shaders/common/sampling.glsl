@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/geometry.glsl"
 
+// Power heuristic (Veach 1997, section 9.2.4): share of the first of two ways to sample a direction.
+float first_way_share(float first_density, float second_density) {
+    float ratio = second_density / first_density;
+    return first_density > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 0.0;
+}
+
 // Concentric map of the unit square to the unit disk (Shirley and Chiu 1997).
 vec2 sample_disk(vec2 u) {
     vec2 p = 2.0 * u - 1.0;

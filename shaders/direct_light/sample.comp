@@ -1,8 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Next-event rays from the camera paths' vertices to a sampled light, for all lobes that store photons. Lights
-// without extent cannot be met by the specular rays: those light the specular lobes too, unless
-// they are perfectly smooth.
+// Next-event rays from the camera paths' vertices to a sampled light.
 
 layout(local_size_x = 64) in;
 
@@ -21,8 +19,6 @@ layout(std430, binding = 2) readonly buffer CameraPaths { CameraPath camera_path
 layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 layout(std430, binding = 8) writeonly buffer Contributions { vec4 contributions[]; };
 
-const float SMOOTHEST_LIT = 1e-4;
-
 uint choose_light(float u) {
     uint low = 0u, high = parameters.light_count - 1u;
     while (low < high) {
@@ -33,16 +29,18 @@ uint choose_light(float u) {
     return low;
 }
 
-bool without_extent(Light light) {
-    return (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) && light.radius <= 0.0
-        || light.kind == LIGHT_SUN && light.cosine_cone >= 1.0;
-}
-
-vec3 evaluate_closure(Closure closure, vec3 shading, vec3 wo, vec3 wi, float least_alpha) {
+// Diffuse and rough lobes are lit by these rays alone. Specular lobes are also followed to lights with
+// extent: the power heuristic shares those out between both ways, lobe by lobe.
+vec3 evaluate_closure(Closure closure, vec3 throughput, vec3 shading, vec3 wo, vec3 wi, float light_density) {
     vec3 value = dot(shading, wi) > 0.0 ? closure.diffuse / PI : vec3(0.0);
+    vec4 shares = specular_shares(closure, throughput, clamp(dot(shading, wo), 0.0, 1.0), parameters.specular_alpha);
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (lobe_stores(lobe, least_alpha)) value += evaluate_lobe(lobe, shading, wo, wi);
+        if (!lobe_stores(lobe, min(SMOOTHEST_LIT, parameters.specular_alpha))) continue;
+        float share = 1.0;
+        if (lobe_is_specular(lobe, parameters.specular_alpha) && light_density > 0.0 && parameters.last_segment == 0u)
+            share = first_way_share(light_density, lobe_probability(shares, k) * lobe_density(lobe, shading, wo, wi));
+        value += share * evaluate_lobe(lobe, shading, wo, wi);
     }
     return value;
 }
@@ -63,9 +61,9 @@ void main() {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
     float side = dot(geometric, sampled.direction), cosine = dot(shading, sampled.direction);
     if (side * cosine <= 0.0) return;
-    float least_alpha = without_extent(light) ? min(SMOOTHEST_LIT, parameters.specular_alpha) : parameters.specular_alpha;
-    vec3 scattered = evaluate_closure(closure, shading, -ray.direction, sampled.direction, least_alpha);
     vec3 throughput = camera_paths[index].throughput * segment_transmittance(camera_paths[index].flags, closure);
+    vec3 scattered = evaluate_closure(closure, throughput, shading, -ray.direction, sampled.direction,
+                                      sampled.density * light.selection_probability);
     vec3 radiance = throughput * scattered * sampled.weight * (abs(cosine) / light.selection_probability);
     if (!(largest(radiance) > 0.0)) return;
     contributions[index] = vec4(radiance, 0.0);

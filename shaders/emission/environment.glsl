@@ -38,6 +38,16 @@ float environment_share(uint first, uint index) {
     return environment_distribution[first + index] - (index == 0u ? 0.0 : environment_distribution[first + index - 1u]);
 }
 
+// Density in 1/sr with which sample_world gives a direction.
+float world_density(vec3 direction) {
+    if (parameters.environment_width == 0u) return 1.0 / (4.0 * PI);
+    vec2 uv = direction_to_equirectangular(normalize(mat3(parameters.world_rotation) * direction));
+    uint width = parameters.environment_width, height = parameters.environment_height;
+    uint row = min(uint(uv.y * float(height)), height - 1u), column = min(uint(fract(uv.x) * float(width)), width - 1u);
+    float share = environment_share(0u, row) * environment_share(height + row * width, column);
+    return share * float(width) * float(height) / (2.0 * PI * PI * max(sin(PI * (1.0 - uv.y)), 1e-6));
+}
+
 // A direction towards the world and its density in 1/sr.
 vec3 sample_world(vec2 u, out float density) {
     if (parameters.environment_width == 0u) {

@@ -84,8 +84,9 @@ float soft_light_distance(Light light, vec3 origin, vec3 direction) {
 
 // --- direct light ---------------------------------------------------------------------------
 
-// Light towards a point: radiance divided by the density in 1/sr. weight 0: nothing arrives.
-struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; };
+// Light towards a point: radiance divided by the density in 1/sr, and that density (0 for lights without
+// extent). weight 0: nothing arrives.
+struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; float density; };
 
 // A disk that faces the point.
 LightSample sample_soft_light(Light light, vec3 to_centre, vec2 u) {
@@ -95,22 +96,23 @@ LightSample sample_soft_light(Light light, vec3 to_centre, vec2 u) {
     vec3 to_light = to_centre + disk.x * t + disk.y * b;
     float distance2 = dot(to_light, to_light), distance = sqrt(distance2);
     vec3 direction = to_light / distance;
-    return LightSample(direction, distance, radiant_strength(light, -direction) * (dot(direction, axis) / distance2), NO_TRIANGLE);
+    return LightSample(direction, distance, radiant_strength(light, -direction) * (dot(direction, axis) / distance2), NO_TRIANGLE,
+                       distance2 / (dot(direction, axis) * PI * light.radius * light.radius));
 }
 
 LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
-    LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE);
+    LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
     if (light.kind == LIGHT_WORLD) {
-        float density;
-        result.direction = sample_world(u, density);
+        result.direction = sample_world(u, result.density);
         result.distance = INFINITY_DISTANCE;
-        result.weight = world_radiance(result.direction) / density;
+        result.weight = world_radiance(result.direction) / result.density;
         return result;
     }
     if (light.kind == LIGHT_SUN) {
         result.direction = -sample_cone(light.normal, 1.0 - light.cosine_cone, u);
         result.distance = INFINITY_DISTANCE;
         result.weight = light.strength;
+        if (light.cosine_cone < 1.0) result.density = 1.0 / (2.0 * PI * (1.0 - light.cosine_cone));
         return result;
     }
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
@@ -131,6 +133,7 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
         float along = dot(to_centre, result.direction);
         result.distance = along - sqrt(max(0.0, light.radius * light.radius - (distance2 - along * along)));
         float area = PI * light.radius * light.radius;
+        result.density = 1.0 / (2.0 * PI * one_minus_cosine);
         result.weight = radiant_strength(light, -result.direction) * (2.0 * PI * one_minus_cosine / area);
         return result;
     }
@@ -159,52 +162,74 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
     if (light.kind == LIGHT_MESH) cosine = abs(cosine);
     if (cosine <= 0.0) return result;
     if (light.kind != LIGHT_MESH) radiance *= spread_attenuation(light, cosine);
-    result.weight = radiance * (cosine / (distance2 * density));
+    result.density = density * distance2 / cosine;
+    result.weight = radiance / result.density;
     return result;
 }
 
 // --- lights that a specular path meets ----------------------------------------------------------
 
-// Radiance of the light objects that a ray passes within its length; they hide nothing.
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, bool from_camera) {
+// Share of a light met by scattering, with a density, when next-event rays find it with another.
+// Without a density only scattering finds it.
+float scattered_share(float scatter_density, float light_density) {
+    return scatter_density > 0.0 ? 1.0 - first_way_share(light_density, scatter_density) : 1.0;
+}
+
+// Radiance of a light object that a ray passes within its length, and the density in 1/sr with which
+// sample_light gives the ray's direction.
+vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float density) {
+    density = 0.0;
+    if (light.kind == LIGHT_SUN) {
+        float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
+        if (maximum_distance < INFINITY_DISTANCE || solid_angle <= 0.0 || -dot(direction, light.normal) < light.cosine_cone)
+            return vec3(0.0);
+        density = 1.0 / solid_angle;
+        return light.strength / solid_angle;
+    }
+    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
+        if (light.radius <= 0.0) return vec3(0.0);
+        vec3 to_centre = light.position - origin;
+        float distance2 = dot(to_centre, to_centre), radius2 = light.radius * light.radius, distance = 0.0;
+        if ((light.flags & LIGHT_SOFT) != 0u) {
+            distance = soft_light_distance(light, origin, direction);
+            density = distance * distance / (max(dot(direction, normalize(to_centre)), 1e-6) * PI * radius2);
+        } else {
+            float along = dot(to_centre, direction);
+            vec3 off_axis = to_centre - along * direction;
+            float under = radius2 - dot(off_axis, off_axis);
+            if (under < 0.0 || along <= 0.0) return vec3(0.0);
+            distance = along - sqrt(under);
+            float sine2 = min(radius2 / distance2, 1.0);
+            // sample_light takes smaller lamps for points, which no ray meets
+            density = sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
+        }
+        if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
+        return radiant_strength(light, -direction) / (PI * radius2);
+    }
+    if (light.kind != LIGHT_RECTANGLE && light.kind != LIGHT_ELLIPSE) return vec3(0.0);
+    float cosine = -dot(direction, light.normal);
+    if (cosine <= 0.0) return vec3(0.0);
+    float distance = dot(origin - light.position, light.normal) / cosine;
+    if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
+    vec3 place = origin + distance * direction - light.position;
+    // The axes of a sheared light are not orthogonal: solve for the coordinates along both.
+    float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v), vv = dot(light.axis_v, light.axis_v);
+    float pu = dot(place, light.axis_u), pv = dot(place, light.axis_v);
+    vec2 at = vec2(pu * vv - pv * uv, pv * uu - pu * uv) / (uu * vv - uv * uv);
+    if (light.kind == LIGHT_ELLIPSE ? dot(at, at) > 1.0 : max(abs(at.x), abs(at.y)) > 1.0) return vec3(0.0);
+    density = distance * distance / (cosine * light.area);
+    return light.strength * spread_attenuation(light, cosine);
+}
+
+// Radiance of the light objects that a ray passes; they hide nothing.
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, bool from_camera, float scatter_density) {
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < parameters.light_count; ++index) {
         Light light = lights[index];
         if (from_camera && (light.flags & LIGHT_VISIBLE) == 0u) continue;
-        if (light.kind == LIGHT_SUN) {
-            float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
-            if (maximum_distance >= INFINITY_DISTANCE && solid_angle > 0.0 && -dot(direction, light.normal) >= light.cosine_cone)
-                radiance += light.strength / solid_angle;
-        } else if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
-            if (light.radius <= 0.0) continue;
-            vec3 to_centre = light.position - origin;
-            if ((light.flags & LIGHT_SOFT) != 0u) {
-                float distance = soft_light_distance(light, origin, direction);
-                if (distance > 0.0 && distance < maximum_distance)
-                    radiance += radiant_strength(light, -direction) / (PI * light.radius * light.radius);
-                continue;
-            }
-            float along = dot(to_centre, direction);
-            vec3 off_axis = to_centre - along * direction;
-            float under = light.radius * light.radius - dot(off_axis, off_axis);
-            if (under < 0.0 || along <= 0.0) continue;
-            float distance = along - sqrt(under);
-            if (distance > 0.0 && distance < maximum_distance)
-                radiance += radiant_strength(light, -direction) / (PI * light.radius * light.radius);
-        } else if (light.kind == LIGHT_RECTANGLE || light.kind == LIGHT_ELLIPSE) {
-            float cosine = -dot(direction, light.normal);
-            if (cosine <= 0.0) continue;
-            float distance = dot(origin - light.position, light.normal) / cosine;
-            if (distance <= 0.0 || distance >= maximum_distance) continue;
-            vec3 place = origin + distance * direction - light.position;
-            // The axes of a sheared light are not orthogonal: solve for the coordinates along both.
-            float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v), vv = dot(light.axis_v, light.axis_v);
-            float pu = dot(place, light.axis_u), pv = dot(place, light.axis_v);
-            float determinant = uu * vv - uv * uv;
-            vec2 at = vec2(pu * vv - pv * uv, pv * uu - pu * uv) / determinant;
-            bool inside = light.kind == LIGHT_ELLIPSE ? dot(at, at) <= 1.0 : max(abs(at.x), abs(at.y)) <= 1.0;
-            if (inside) radiance += light.strength * spread_attenuation(light, cosine);
-        }
+        float density;
+        vec3 passed = passed_light(light, origin, direction, maximum_distance, density);
+        radiance += passed * scattered_share(scatter_density, density * light.selection_probability);
     }
     return radiance;
 }

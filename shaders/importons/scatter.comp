@@ -77,21 +77,29 @@ void main() {
     bool straight = (path.flags & PATH_STRAIGHT) != 0u;
     vec4 seen = vec4(0.0);
 
-    vec3 lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, straight);
+    vec3 lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, straight, path.scatter_density);
     seen.rgb += path.throughput * lights_passed;
     if (!hit) {
         bool background = largest(lights_passed) <= 0.0;
         if (straight && background && parameters.film_transparent != 0u)
             seen.a -= (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
-        else seen.rgb += path.throughput * world_radiance(ray.direction);
+        else {
+            float share = scattered_share(path.scatter_density, parameters.world_selection * world_density(ray.direction));
+            seen.rgb += path.throughput * world_radiance(ray.direction) * share;
+        }
         radiances[index] += seen;
         return;
     }
     path.throughput *= segment_transmittance(path.flags, closure);
-    seen.rgb += path.throughput * closure.emission;
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    if (largest(closure.emission) > 0.0) {
+        float facing = max(abs(dot(geometric, ray.direction)), 1e-6);
+        float density = parameters.mesh_density * materials[closure.material].emitted * closure.distance * closure.distance / facing;
+        seen.rgb += path.throughput * closure.emission * scattered_share(path.scatter_density, density);
+    }
     radiances[index] += seen;
 
-    vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
+    vec3 shading = unpack_unit_vector(closure.shading_normal);
     vec3 viewer = -ray.direction;
     path.total_length += closure.distance;
     if (parameters.segment == 0u) {
@@ -107,16 +115,10 @@ void main() {
 
     if (parameters.last_segment != 0u) return;
     float cosine = clamp(dot(shading, viewer), 0.0, 1.0);
-    float share[4];
-    share[0] = largest(path.throughput * closure.transparent);
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
-        share[1 + k] = lobe_is_specular(lobe, parameters.specular_alpha) ? largest(path.throughput * lobe_albedo(lobe, cosine)) : 0.0;
-    }
-    float total = share[0] + share[1] + share[2] + share[3];
+    vec4 shares = specular_shares(closure, path.throughput, cosine, parameters.specular_alpha);
+    float total = shares.x + shares.y + shares.z + shares.w;
     if (total <= 0.0) return;
-    // Roulette once the path's throughput has fallen.
-    float survival = min(1.0, 4.0 * total);
+    float survival = path_survival(shares);
     float u = next_random(random);
     vec2 u_direction = next_random2(random);
     float u_event = next_random(random);
@@ -125,17 +127,21 @@ void main() {
     vec3 direction, weight;
     bool transmitted;
     float probability;
-    if (u < share[0]) {
+    path.scatter_density = 0.0;
+    if (u < shares.x) {
         direction = ray.direction;
         weight = closure.transparent;
         transmitted = true;
-        probability = share[0];
+        probability = shares.x;
     } else {
-        u -= share[0];
-        int chosen = u < share[1] ? 0 : (u < share[1] + share[2] ? 1 : 2);
-        probability = chosen == 0 ? share[1] : (chosen == 1 ? share[2] : share[3]);
+        u -= shares.x;
+        int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
+        probability = shares[1 + chosen];
         if (probability <= 0.0) return;
-        LobeSample sampled = sample_lobe(closure_lobe(closure, chosen), shading, viewer, u_direction, u_event, true);
+        MicrofacetLobe lobe = closure_lobe(closure, chosen);
+        LobeSample sampled = sample_lobe(lobe, shading, viewer, u_direction, u_event, true);
+        if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
+            path.scatter_density = lobe_probability(shares, chosen) * lobe_density(lobe, shading, viewer, sampled.direction);
         direction = sampled.direction;
         weight = sampled.weight;
         transmitted = sampled.transmitted;

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rppm_addon.integrator.emission import _spread_share, emitted_radiance, share_out, spot_share, spread_constants
+from rppm_addon.integrator.emission import _spread_share, share_out, spot_share, spread_constants
 from rppm_addon.integrator.environment import distribution_of
+from rppm_addon.materials.emitted import emitted_radiance
 from rppm_addon.scene import Lobe, LobeKind, Material
 
 

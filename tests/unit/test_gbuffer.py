@@ -19,13 +19,14 @@ def test_bands_cover_every_row_once(size):
 
 
 def test_offsets_have_the_moments_of_the_filter():
-    offsets = np.array([filter_offsets(i, 1.5) for i in range(1, 4001)])
-    assert filter_offsets(1, 1.5) == pytest.approx((0, 0), abs=1e-9)
-    assert np.abs(offsets).max() <= 0.75
+    offsets = np.array([filter_offsets(i, 1.5, 3) for i in range(1, 4001)])
+    assert filter_offsets(1, 1.5, 3) != filter_offsets(1, 1.5, 4)
+    assert filter_offsets(7, 0.0, 3) == (0, 0)
+    assert 1.2 < np.abs(offsets).max() <= 1.5
     np.testing.assert_allclose(offsets.mean(axis=0), 0, atol=2e-3)
     x = np.linspace(-0.5, 0.5, 20001)
     w = 0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
-    np.testing.assert_allclose(offsets.var(axis=0), (w * (1.5 * x) ** 2).sum() / w.sum(), rtol=0.01)
+    np.testing.assert_allclose(offsets.var(axis=0), (w * (3.0 * x) ** 2).sum() / w.sum(), rtol=0.01)
 
 
 def test_windows_of_bands_tile_the_region():
@@ -52,6 +53,6 @@ def test_flux_balance_finds_lost_flux():
     photons["flags"] = [[PHOTON_ACTIVE, PHOTON_ACTIVE | PHOTON_ESCAPED, PHOTON_ACTIVE], [PHOTON_ACTIVE, 0, 0]]
     photons["scattered_flux"][0, 0] = 0.25
     balance = flux_balance(emitted, photons)
-    assert balance == {"emitted": 9.0, "absorbed": 6.0, "escaped": 3.0, "lost": 0.0}
+    assert balance == {"emitted": 9.0, "absorbed": 5.25, "deposited": 0.75, "escaped": 3.0, "lost": 0.0}
     photons["flags"][1, 0] = 0  # a segment that no record tells of
     assert flux_balance(emitted, photons)["lost"] == 0.75

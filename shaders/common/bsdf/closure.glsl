@@ -18,3 +18,25 @@ bool closure_hit(Closure closure) { return closure.triangle != NO_TRIANGLE; }
 // Lobes above the cut-off store photons; the others are traced on. alpha is roughness squared.
 bool lobe_stores(MicrofacetLobe lobe, float specular_alpha) { return lobe.kind != LOBE_NONE && lobe.alpha > specular_alpha; }
 bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) { return lobe.kind != LOBE_NONE && lobe.alpha <= specular_alpha; }
+
+// Smoother lobes cannot be evaluated towards a light, only followed.
+const float SMOOTHEST_LIT = 1e-4;
+
+// How a camera path goes on: the shares of the transparent part and of the three lobes, where they
+// are specular.
+vec4 specular_shares(Closure closure, vec3 throughput, float cosine, float specular_alpha) {
+    vec4 shares = vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0);
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (lobe_is_specular(lobe, specular_alpha)) shares[1 + k] = largest(throughput * lobe_albedo(lobe, cosine));
+    }
+    return shares;
+}
+
+// Roulette sets in once the path's throughput has fallen.
+float path_survival(vec4 shares) { return min(1.0, 4.0 * (shares.x + shares.y + shares.z + shares.w)); }
+
+// Probability of choosing lobe k, survival included.
+float lobe_probability(vec4 shares, int k) {
+    return shares[1 + k] * path_survival(shares) / max(shares.x + shares.y + shares.z + shares.w, 1e-20);
+}

@@ -97,26 +97,49 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
     return result;
 }
 
-// BSDF for radiance that arrives from wi and leaves to wo (unit vectors away from the surface), 1/sr.
-vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+// Of a pair of directions: the microfacet normal that links them and their cosines to it. False when
+// the lobe links none.
+bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, out float oh, out float ih) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
-    if (cosine_o <= 0.0 || cosine_i == 0.0 || lobe.kind == LOBE_NONE) return vec3(0.0);
+    h = n;
+    oh = ih = 0.0;
+    if (cosine_o <= 0.0 || cosine_i == 0.0 || lobe.kind == LOBE_NONE) return false;
     bool transmitted = cosine_i < 0.0;
-    if (transmitted && !lobe_transmits(lobe.kind)) return vec3(0.0);
-    vec3 h = transmitted ? -(lobe.ior * wi + wo) : wi + wo;
+    if (transmitted && !lobe_transmits(lobe.kind)) return false;
+    h = transmitted ? -(lobe.ior * wi + wo) : wi + wo;
     float length_h = length(h);
-    if (length_h < 1e-8) return vec3(0.0);
+    if (length_h < 1e-8) return false;
     h /= length_h;
     if (transmitted && lobe.ior < 1.0) h = -h;
-    float cosine_h = dot(h, n);
-    if (cosine_h <= 0.0) return vec3(0.0);
-    float oh = dot(wo, h), ih = dot(wi, h);
-    if (oh <= 0.0 || (transmitted ? ih >= 0.0 : ih <= 0.0)) return vec3(0.0);
-    float density = ggx_density(cosine_h, lobe.alpha);
+    oh = dot(wo, h);
+    ih = dot(wi, h);
+    return dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
+}
+
+// BSDF for radiance that arrives from wi and leaves to wo (unit vectors away from the surface), 1/sr.
+vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    vec3 h;
+    float oh, ih;
+    if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return vec3(0.0);
+    float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
+    float density = ggx_density(dot(h, n), lobe.alpha);
     float masking = 1.0 / (1.0 + ggx_lambda(cosine_o, lobe.alpha) + ggx_lambda(cosine_i, lobe.alpha));
-    if (!transmitted)
+    if (cosine_i > 0.0)
         return lobe.weight * lobe_reflectance(lobe, oh) * (density * masking / (4.0 * cosine_o * cosine_i));
     float spread = lobe.ior * ih + oh;
     return lobe_transmittance(lobe, oh)
         * (density * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * max(spread * spread, 1e-12)));
+}
+
+// Density with which sample_lobe gives a direction, 1/sr.
+float lobe_density(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    vec3 h;
+    float oh, ih;
+    if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return 0.0;
+    float cosine_o = dot(wo, n);
+    float visible = ggx_density(dot(h, n), lobe.alpha) * oh / (cosine_o * (1.0 + ggx_lambda(cosine_o, lobe.alpha)));
+    float reflected = lobe.kind == LOBE_GLASS ? fresnel_dielectric(oh, lobe.ior) : (lobe.kind == LOBE_REFRACTION ? 0.0 : 1.0);
+    if (dot(wi, n) > 0.0) return visible * reflected / (4.0 * oh);
+    float spread = lobe.ior * ih + oh;
+    return visible * (1.0 - reflected) * lobe.ior * lobe.ior * abs(ih) / max(spread * spread, 1e-12);
 }

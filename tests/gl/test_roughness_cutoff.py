@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a lobe stores photons or is traced, and how it finds its lights, does not change the picture's mean."""
+
+import math
+
+import numpy as np
+import pytest
+import scenes
+
+from rppm_addon.scene import (
+    Camera,
+    DirectLight,
+    Image,
+    Instance,
+    Light,
+    LightKind,
+    Lobe,
+    LobeKind,
+    Material,
+    RenderSettings,
+    Scene,
+    World,
+)
+from rppm_addon.session.renderer import Renderer
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    with Renderer() as renderer:
+        yield renderer
+
+
+def above(x: float, z: float) -> np.ndarray:
+    return scenes.placed(x, 0, z)
+
+
+LIGHTS = {
+    "point": [Light("l", LightKind.POINT, above(1, 1.5), np.full(3, 3.0))],
+    "sphere": [Light("l", LightKind.POINT, above(1, 1.5), np.full(3, 3.0), radius=0.3)],
+    "soft": [Light("l", LightKind.POINT, above(1, 1.5), np.full(3, 3.0), radius=0.3, soft_falloff=True)],
+    "area": [Light("l", LightKind.AREA, above(1, 1.5), np.full(3, 9.0), size=(0.5, 0.5))],
+    "disk": [Light("l", LightKind.AREA, above(1, 1.5), np.full(3, 9.0), shape="DISK", size=(0.5, 0.5), spread=2.0)],
+    "sun": [Light("l", LightKind.SUN, scenes.looking((0, 0, 0), (-1, 0, -1.5)), np.full(3, 2.0), sun_angle=0.4)],
+    "world": [],
+    "image": [],
+    "mesh": [],
+}
+
+
+def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene:
+    floor = scenes.rectangle("floor", (-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0))
+    camera = Camera(scenes.looking((-1.2, 0, 1.4), (0, 0, 0)), (-0.3, 0.3, -0.3, 0.3), 32, 32)
+    settings = RenderSettings(
+        iterations=24, photons=32768, direct_light=mode, photon_path_length=2, camera_path_length=3,
+        radius_minimum=0.08, radius_maximum=0.08, filter_width=0.0, specular_roughness=cut,
+    )  # fmt: skip
+    scene = Scene(
+        camera,
+        [floor],
+        [Instance(0, np.eye(4), [0])],
+        [Material("floor", [lobe])],
+        LIGHTS[light],
+        settings=settings,
+    )
+    if light == "world":
+        scene.world = World(np.array([1.0, 2.0, 3.0]))
+    if light == "image":
+        v, u = np.meshgrid((np.arange(32) + 0.5) / 32, (np.arange(64) + 0.5) / 64, indexing="ij")
+        glow = 0.2 + 20 * np.exp(-((u - 0.5) ** 2 + (v - 0.75) ** 2) / 0.01)
+        scene.images = [Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))]
+        scene.world = World(np.ones(3), 0)
+    if light == "mesh":
+        scene.meshes.append(scenes.rectangle("lamp", (1, -0.3, 1), (1, 0.3, 1), (1.2, 0.3, 1.5), (1.2, -0.3, 1.5)))
+        scene.materials.append(Material("lamp", [Lobe(LobeKind.EMISSION, color=(9, 9, 9))]))
+        scene.instances.append(Instance(1, np.eye(4), [1]))
+    return scene
+
+
+def mean(renderer, *arguments) -> tuple[float, float]:
+    """Mean radiance of a picture and its standard error, from the differences of neighbouring pixels.
+
+    Splats make neighbours alike, so that the error is too small for pictures by photons.
+    """
+    picture = renderer.render(glossy_floor(*arguments)).frame.combined[..., :3].mean(axis=2, dtype=np.float64)
+    return float(picture.mean()), float(np.diff(picture, axis=1).std() / np.sqrt(2 * picture.size))
+
+
+def assert_alike(first: tuple[float, float], second: tuple[float, float]) -> None:
+    """Equal within four standard errors and half a percent."""
+    assert abs(first[0] - second[0]) < 4 * math.hypot(first[1], second[1]) + 0.005 * first[0]
+
+
+@pytest.mark.parametrize("light", LIGHTS)
+@pytest.mark.parametrize("roughness", [0.35, 0.6])
+def test_traced_and_stored_lobes_shine_alike(renderer, light, roughness):
+    lobe = Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=roughness)
+    stored = mean(renderer, light, lobe, 0.0, DirectLight.RAYS)  # next-event rays alone
+    traced = mean(renderer, light, lobe, 1.0, DirectLight.RAYS)  # those and scattering together
+    print(f"{light} roughness {roughness}: stored {stored} traced {traced} ratio {traced[0] / stored[0]:.4f}")
+    assert_alike(traced, stored)
+    if light in ("world", "image"):
+        assert traced[1] < stored[1]  # what scattering is for: lights that fill much of the view
+
+
+@pytest.mark.parametrize("light", ["area", "world", "mesh"])
+def test_photons_alone_shine_alike(renderer, light):
+    lobe = Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=0.6)
+    rays = mean(renderer, light, lobe, 1.0, DirectLight.RAYS)
+    stored = mean(renderer, light, lobe, 0.0, DirectLight.PHOTONS)  # splats evaluate the lobe
+    traced = mean(renderer, light, lobe, 1.0, DirectLight.PHOTONS)  # scattering alone meets the light
+    print(f"{light}: rays {rays} stored photons {stored} scattering {traced}")
+    assert_alike(traced, rays)
+    assert stored[0] == pytest.approx(rays[0], rel=0.03)
+
+
+def test_a_sweep_of_roughness_does_not_jump_at_the_cut(renderer):
+    values = []
+    for roughness in np.linspace(0.44, 0.56, 7):
+        lobe = Lobe(LobeKind.PRINCIPLED, color=(0.5, 0.3, 0.2), roughness=float(roughness))
+        values.append(mean(renderer, "area", lobe, 0.5, DirectLight.RAYS)[0])
+    steps = np.diff(values) / np.mean(values)
+    print("roughness sweep", np.round(values, 5))
+    smooth = np.polyval(np.polyfit(np.arange(7), values, 2), np.arange(7))
+    assert abs(np.array(values) / smooth - 1).max() < 0.01 and abs(steps).max() < 0.05
+
+
+def test_rough_glass_passes_a_point_light(renderer):
+    """Light of a point through rough glass reaches the camera by next-event rays only (LGE)."""
+    scene = glossy_floor("point", Lobe(LobeKind.REFRACTION, roughness=0.4, ior=1.3), 0.5, DirectLight.RAYS)
+    scene.lights = [Light("l", LightKind.POINT, above(0.2, -1.0), np.full(3, 3.0))]
+    picture = renderer.render(scene).frame.combined[..., :3]
+    assert math.isfinite(picture.mean()) and picture.mean() > 0.01
