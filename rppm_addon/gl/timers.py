@@ -19,6 +19,7 @@ class StageTimers:
         self._context = context
         self._seconds: dict[str, float] = {}
         self._pending: list[tuple[str, object]] = []
+        self._idle: list[object] = []
 
     @contextmanager
     def stage(self, name: str):
@@ -29,7 +30,7 @@ class StageTimers:
             self._context.finish()
             self._seconds[name] = self._seconds.get(name, 0.0) + time.perf_counter() - start
             return
-        query = self._context.moderngl.query(time=True)
+        query = self._idle.pop() if self._idle else self._context.moderngl.query(time=True)
         with query:
             yield
         self._pending.append((name, query))
@@ -39,6 +40,7 @@ class StageTimers:
     def _collect(self) -> None:
         for name, query in self._pending:
             self._seconds[name] = self._seconds.get(name, 0.0) + query.elapsed * 1e-9
+            self._idle.append(query)  # moderngl cannot delete queries: they are used again
         self._pending.clear()
 
     @property

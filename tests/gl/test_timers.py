@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stage timers on software and, with a stand-in for the device's kind, by GL queries."""
+
+import time
+
+import pytest
+
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.timers import StageTimers
+
+
+def test_software_stages_are_timed_by_the_clock(context):
+    if not context.is_software:
+        pytest.skip("the device is no software driver")
+    timers = StageTimers(context)
+    for _ in range(2):
+        with timers.stage("wait"):
+            time.sleep(0.02)
+    assert 0.04 <= timers.seconds["wait"] < 1.0
+    timers.reset()
+    assert timers.seconds == {}
+
+
+def test_queries_are_used_again(context, monkeypatch):
+    monkeypatch.setattr(Context, "is_software", property(lambda self: False))
+    timers = StageTimers(context)
+    for _ in range(3):
+        for name in ("first", "second"):
+            with timers.stage(name):
+                context.moderngl.finish()
+        assert set(timers.seconds) == {"first", "second"}
+    assert len(timers._idle) == 2
+    assert all(seconds >= 0.0 for seconds in timers.seconds.values())
