@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rppm_addon.integrator.emission import _spread_share, share_out, spot_share, spread_constants
@@ -14,6 +14,7 @@ from rppm_addon.materials.emitted import emitted_radiance
 from rppm_addon.scene import Lobe, LobeKind, Material
 
 
+@settings(deadline=None, derandomize=True)
 @given(st.lists(st.floats(0, 1e6), min_size=1, max_size=20), st.integers(1, 100000))
 def test_shares_add_up(weights, photons):
     weights = np.array(weights)
