@@ -43,6 +43,14 @@ float next_random(inout RandomSequence sequence) {
     return unit_float(bits);
 }
 
+// Four numbers that fill the unit cube evenly as the iterations of a pixel go by: Roberts' R4 sequence
+// (2018) from a random start; the constants are 2^32 g^-k, g^5 = g + 1.
+vec4 progressive_random(uint seed, uint iteration, uint stage, uint segment, uint index) {
+    uvec4 start = pcg4d(uvec4(index, 0u, seed, (stage << 24u) | (segment << 12u)));
+    uvec4 bits = start + iteration * uvec4(3679390609u, 3152041523u, 2700274805u, 2313257605u);
+    return vec4(unit_float(bits.x), unit_float(bits.y), unit_float(bits.z), unit_float(bits.w));
+}
+
 vec2 next_random2(inout RandomSequence sequence) {
     float first = next_random(sequence);
     return vec2(first, next_random(sequence));

@@ -53,10 +53,9 @@ void main() {
     Ray ray = rays[index];
     Closure closure = closures[index];
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_DIRECT_LIGHT, parameters.segment, parameters.first_pixel + index);
-    Light light = lights[choose_light(next_random(random))];
-    float u_choice = next_random(random);
-    LightSample sampled = sample_light(light, closure.position, u_choice, next_random2(random));
+    vec4 u = progressive_random(parameters.seed, parameters.iteration, STAGE_DIRECT_LIGHT, parameters.segment, parameters.first_pixel + index);
+    Light light = lights[choose_light(u.x)];
+    LightSample sampled = sample_light(light, closure.position, u.y, u.zw);
     if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
     float side = dot(geometric, sampled.direction), cosine = dot(shading, sampled.direction);

@@ -1,21 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender as a module, with RPPM registered once and taken out again before the process ends.
-
-A RenderEngine that is still registered when Python exits crashes or hangs some Blender versions.
-"""
+"""Blender as a module, with RPPM registered."""
 
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="the tests of the Blender floor need the bpy wheel")
 
-import rppm_addon  # noqa: E402
-
 
 @pytest.fixture(scope="session", autouse=True)
-def registered():
-    rppm_addon.register()
-    yield
-    rppm_addon.unregister()
+def in_blender(registered):
+    """All tests here need the registered extension."""
 
 
 @pytest.fixture
