@@ -23,7 +23,8 @@ def expected_radiance(x, y):
 
 def test_a_saved_scene_renders_to_exr_png_and_json(tmp_path, rppm, saved_scene):
     exr, png, report = tmp_path / "new" / "out.exr", tmp_path / "new" / "out.png", tmp_path / "log" / "out.json"
-    status, output, errors = rppm("render", saved_scene, "-o", exr, "-o", png, "--json", report, "--set", "rppm.filter_width=0")
+    centres = ("--set", "rppm.filter_width=0")
+    status, output, errors = rppm("render", saved_scene, "-o", exr, "-o", png, "--json", report, *centres)
     assert (status, "Traceback" in errors) == (0, False), errors
     assert "3 iterations" in output
     assert "3.07 k photons" in output
