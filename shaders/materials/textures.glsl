@@ -15,7 +15,8 @@ vec3 srgb_to_linear(vec3 c) {
 
 vec4 image_texel(ImageEntry image, ivec2 at) {
     ivec2 size = ivec2(image.width, image.height);
-    at = ((at % size) + size) % size;
+    at -= size * ivec2(floor(vec2(at) / vec2(size)));  // GLSL leaves % of negative numbers undefined
+    at = clamp(at, ivec2(0), size - 1);
     uint index = uint(at.y * size.x + at.x);
     if (image.format == FORMAT_HALF) {
         index = image.first_texel + 2u * index;
