@@ -10,7 +10,6 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
-from ..materials.emitted import emitted_radiance, image_means
 from ..scene.errors import SceneError
 from ..scene.lights import Light, LightKind
 from ..scene.scene import Scene
@@ -100,7 +99,6 @@ class Emission:
         self.environment = Environment(context)
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
-        self.photon_counts: dict[str, int] = {}
         self.has_soft_lights = False
 
     @property
@@ -118,6 +116,7 @@ class Emission:
         return {
             "lights": self._lights.size,
             "emissive triangles": self._emissive.size,
+            "photon targets": self._targets.size,
             "environment": self.environment.memory_bytes,
         }
 
@@ -125,8 +124,10 @@ class Emission:
         """Values of LIGHT_PARAMETERS."""
         return {**self._parameters, "seed": seed, "iteration": iteration, "count": count}
 
-    def build(self, scene: Scene, geometry: Geometry) -> None:
+    def build(self, scene: Scene, geometry: Geometry, emitted: np.ndarray) -> None:
         """Lay out all lights and share the photons of an iteration among them.
+
+        ``emitted`` (materials, 3) is the radiance of each material, W/(m^2 sr).
 
         Raises SceneError when nothing in the scene emits light.
         """
@@ -134,19 +135,17 @@ class Emission:
         entries: list[np.ndarray] = []
         powers: list[float] = []
         weights: list[float] = []
-        names: list[str] = []
 
-        def add(entry: np.ndarray, power: np.ndarray, name: str, share: float = 1.0) -> None:
+        def add(entry: np.ndarray, power: np.ndarray, share: float = 1.0) -> None:
             if np.isfinite(power).all() and np.max(power) > 0:
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(share, 0.0))
-                names.append(name)
 
         for light in scene.lights:
             entry, power = _light_entry(light, radius)
-            add(entry, power, light.name, light.photon_share)
-        emissive = _emissive_triangles(scene, geometry)
+            add(entry, power, light.photon_share)
+        emissive = _emissive_triangles(scene, geometry, emitted)
         mesh_weight = 1.0
         if len(emissive):
             weight = np.mean(emissive["radiance"], axis=1).astype(np.float64) * emissive["area"]
@@ -155,11 +154,11 @@ class Emission:
             mesh_weight = float(weight.sum())
             entry = LIGHT.zeros(1)[0]
             entry["kind"] = MESH
-            add(entry, 2 * math.pi * (emissive["radiance"].T.astype(np.float64) @ emissive["area"]), "emissive meshes")
+            add(entry, 2 * math.pi * (emissive["radiance"].T.astype(np.float64) @ emissive["area"]))
         self.environment.build(scene)
         entry = LIGHT.zeros(1)[0]
         entry["kind"] = WORLD
-        add(entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance, "world")
+        add(entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
         if not entries:
             raise SceneError(
                 "nothing in the scene emits light; add a light, give a material an emission, or give the world a colour"
@@ -168,7 +167,6 @@ class Emission:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
         counts = share_out(np.array(weights), scene.settings.photons)
-        self.photon_counts = dict(zip(names, map(int, counts), strict=True))
         # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
         selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
         table = np.array(entries, LIGHT.dtype)
@@ -285,10 +283,8 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     return entry, strength * area * _spread_share(tangent, scale)
 
 
-def _emissive_triangles(scene: Scene, geometry: Geometry) -> np.ndarray:
+def _emissive_triangles(scene: Scene, geometry: Geometry, radiance: np.ndarray) -> np.ndarray:
     """EMISSIVE_TRIANGLE records of all world triangles whose material emits."""
-    means = image_means(scene.images)
-    radiance = np.array([emitted_radiance(m, means) for m in scene.materials]).reshape(-1, 3)
     found = []
     for placement in geometry.placements:
         instance = placement.instance

@@ -69,7 +69,7 @@ def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, 
     view["clip_start"], view["clip_end"] = start, max(camera.clip_end, start * (1 + 1e-3) + 1e-6)
     view["pixel_solid_angle"] = pixel_width * pixel_height
     view["window"] = x0, x0 + pixel_width * (x_max - x_min), y0, y0 + pixel_height * rows
-    view["width"], view["height"], view["first_row"] = x_max - x_min, rows, first_row
+    view["width"], view["height"] = x_max - x_min, rows
     return view
 
 

@@ -59,7 +59,7 @@ class ProgressivePhotonMapper:
         self.scene = scene
         self._materials.build(scene.materials, scene.images)
         self._geometry.build(scene, self._materials.default_material)
-        self._emission.build(scene, self._geometry)
+        self._emission.build(scene, self._geometry, self._materials.emitted)
         self.centre = cubemap_centre(scene.camera, self._geometry)
         reach = max(
             np.abs(self._geometry.bounds_low - self.centre).max(),

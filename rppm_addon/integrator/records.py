@@ -118,9 +118,9 @@ IMPORTON = Record(
     lobe_f0="vec3",
     lobe_alpha="float",
     lobe_ior="float",
-    triangle="uint",
     next="uint",
-    unused="uint",
+    unused0="uint",
+    unused1="uint",
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
 the path's throughput. ``direction`` points back to the viewer; ``next`` links lists of the splat
@@ -167,8 +167,8 @@ CAMERA_VIEW = Record(
     window="vec4",
     width="uint",
     height="uint",
-    first_row="uint",
-    unused="uint",
+    unused0="uint",
+    unused1="uint",
 )
 """The band of the frame being rendered: ``window`` is left, right, bottom, top of the band with the
 iteration's jitter; ``pixel_solid_angle`` is a pixel's area on the plane at distance 1 (m^2 for

@@ -35,6 +35,7 @@ class MaterialTables:
         }
         self._buffers["AlbedoTables"].upload(albedo_tables.load())
         self.default_material = 0
+        self.emitted = np.zeros((1, 3))
 
     @property
     def buffers(self) -> dict:
@@ -48,7 +49,8 @@ class MaterialTables:
     def build(self, materials: list[Material], images: list[Image]) -> None:
         """Upload the materials, and the images that their lobes use.
 
-        ``default_material`` is afterwards the index of the material for faces without one.
+        ``default_material`` is afterwards the index of the material for faces without one, and
+        ``emitted`` (materials + 1, 3) the radiance of each, W/(m^2 sr).
         """
         self.default_material = len(materials)
         lobes = [lobe for material in [*materials, DEFAULT_MATERIAL] for lobe in material.lobes]
@@ -64,11 +66,12 @@ class MaterialTables:
             first += len(data)
 
         means = image_means(images)
+        self.emitted = np.array([emitted_radiance(material, means) for material in [*materials, DEFAULT_MATERIAL]])
         material_records = MATERIAL.zeros(len(materials) + 1)
         lobe_records = MATERIAL_LOBE.zeros(max(1, len(lobes)))
+        material_records["emitted"] = self.emitted.mean(axis=1)
         position = 0
         for record, material in zip(material_records, [*materials, DEFAULT_MATERIAL], strict=True):
-            record["emitted"] = emitted_radiance(material, means).mean()
             record["absorption"] = np.maximum(material.absorption, 0.0)
             record["first_lobe"], record["lobe_count"] = position, len(material.lobes)
             for lobe in material.lobes:

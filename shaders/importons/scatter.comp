@@ -39,7 +39,7 @@ float first_radius(vec3 direction, float distance, vec3 normal) {
 Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.shading_normal,
-                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, closure.triangle, 0u, 0u);
+                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, 0u, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
     float cosine = clamp(dot(unpack_unit_vector(closure.shading_normal), viewer), 0.0, 1.0);
     float total = 0.0;

@@ -5,6 +5,7 @@ import pytest
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.session.renderer import Renderer
 
 
 @pytest.fixture(scope="session")
@@ -26,3 +27,9 @@ def library(context):
     library = ProgramLibrary(context)
     yield library
     library.release()
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    with Renderer() as renderer:
+        yield renderer

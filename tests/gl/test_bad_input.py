@@ -7,13 +7,6 @@ import scenes
 
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Mesh, Scene, World
 from rppm_addon.scene.errors import SceneError, SettingsError
-from rppm_addon.session.renderer import Renderer
-
-
-@pytest.fixture(scope="module")
-def renderer():
-    with Renderer() as renderer:
-        yield renderer
 
 
 def small_room(**settings):

@@ -10,7 +10,6 @@ import scenes
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import IMPORTON
 from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, RenderSettings, Scene
-from rppm_addon.session.renderer import Renderer
 
 SIZE = 24
 TANGENT = 0.4  # of half the vertical aperture
@@ -94,7 +93,7 @@ def texture(kind: str) -> tuple[Image, np.ndarray]:
 
 
 @pytest.mark.parametrize("kind", ["sRGB", "bytes", "half"])
-def test_image_textures_are_bilinear_and_repeat(kind):
+def test_image_textures_are_bilinear_and_repeat(renderer, kind):
     image, linear = texture(kind)
     sheet = scenes.rectangle("sheet", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
     sheet.corner_uv = np.array([(-0.5, -0.25), (1.5, -0.25), (1.5, 1.75), (-0.5, 1.75)], np.float32)
@@ -103,8 +102,7 @@ def test_image_textures_are_bilinear_and_repeat(kind):
     glow = Material("glow", [Lobe(LobeKind.EMISSION, color=(1, 2, 3), color_image=0)])
     settings = RenderSettings(iterations=1, photons=64, filter_width=0.0)
     scene = Scene(camera, [sheet], [Instance(0, np.eye(4), [0])], [glow], images=[image], settings=settings)
-    with Renderer() as renderer:
-        got = renderer.render(scene).frame.combined[..., :3]
+    got = renderer.render(scene).frame.combined[..., :3]
     at = (np.arange(40) + 0.5) / 40 * 2
     u, v = (at - 0.5) * 7 - 0.5, (at - 0.25) * 5 - 0.5
     column, row = np.floor(u).astype(int), np.floor(v).astype(int)

@@ -21,7 +21,6 @@ from rppm_addon.scene import (
     Scene,
     World,
 )
-from rppm_addon.session.renderer import Renderer
 
 
 def down(z: float) -> np.ndarray:
@@ -67,12 +66,6 @@ def floor_scene(light, mode, world=None, albedo=0.5, size=32, h=2.0, window=0.6)
 def assert_balanced(flux):
     assert flux["absorbed"] + flux["deposited"] + flux["escaped"] == pytest.approx(flux["emitted"], rel=1e-4)
     assert abs(flux["lost"]) <= 1e-4 * flux["emitted"]
-
-
-@pytest.fixture(scope="module")
-def renderer():
-    with Renderer() as renderer:
-        yield renderer
 
 
 @pytest.mark.parametrize("name", LIGHTS)

@@ -16,13 +16,6 @@ from rppm_addon.scene import (
     RenderSettings,
     Scene,
 )
-from rppm_addon.session.renderer import Renderer
-
-
-@pytest.fixture(scope="module")
-def renderer():
-    with Renderer() as renderer:
-        yield renderer
 
 
 def behind_a_pane(material: Material, floor: bool = True) -> Scene:

@@ -21,13 +21,6 @@ from rppm_addon.scene import (
     Scene,
     World,
 )
-from rppm_addon.session.renderer import Renderer
-
-
-@pytest.fixture(scope="module")
-def renderer():
-    with Renderer() as renderer:
-        yield renderer
 
 
 def above(x: float, z: float) -> np.ndarray:
