@@ -139,12 +139,21 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
     cubemap_resolution: IntProperty(
         name="Cubemap Resolution",
         description=(
-            "Cells along a side of the deep cubemap's faces, a power of two from 16 to 1024: "
-            "more cells trace faster and take longer to fill; 0 is automatic"
+            "The most cells along a side of the deep cubemap's faces, a power of two from 16 to 16384. "
+            "They are that fine only where many triangles crowd; fewer take less memory, and rays take "
+            "longer; 0 is automatic"
         ),
         default=DEFAULTS.cubemap_resolution,
         min=0,
-        max=1024,
+        max=16384,
+    )
+    cubemap_centre_object: PointerProperty(
+        name="Cubemap Centre",
+        description=(
+            "The deep cubemap's centre goes where this object is, for instance into the middle of what most "
+            "light reaches; without one it goes to the camera"
+        ),
+        type=bpy.types.Object,
     )
 
 

@@ -84,6 +84,8 @@ class Geometry:
         }
         self.triangles = GrowingBuffer(context, "world triangles", remedy)
         self.attributes = GrowingBuffer(context, "triangle attributes", remedy)
+        self._meshes: list[Mesh] = []
+        self._mesh_bounds: list[tuple[np.ndarray, np.ndarray] | None] = []
         self.triangle_count = 0
         self.placements: list[Placement] = []
         self.bounds_low = self.bounds_high = np.zeros(3)
@@ -106,12 +108,15 @@ class Geometry:
     def build(self, scene: Scene, default_material: int) -> None:
         """Upload the meshes and gather all instances. ``default_material`` serves empty slots.
 
+        Meshes that are the very objects of the last build are not uploaded again: moving instances
+        uploads the instances only. Whoever changes a mesh gives a new one.
         Raises DeviceError when the device cannot hold them.
         """
         used = sorted({instance.mesh for instance in scene.instances})
         meshes = [scene.meshes[index] for index in used]
         place = {index: position for position, index in enumerate(used)}
-        bounds = [finite_bounds(mesh) for mesh in meshes]
+        unchanged = len(meshes) == len(self._meshes) and all(new is old for new, old in zip(meshes, self._meshes))
+        bounds = self._mesh_bounds if unchanged else [finite_bounds(mesh) for mesh in meshes]
 
         def starts(lengths: list[int]) -> np.ndarray:
             return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
@@ -164,16 +169,21 @@ class Geometry:
 
         uploads = {
             "Instances": entries,
-            "Positions": joined([m.positions for m in meshes], np.float32),
-            "CornerVertices": joined([m.corner_vertices for m in meshes], np.uint32),
-            "CornerNormals": joined([m.corner_normals for m in meshes], np.float32),
-            "CornerUvs": joined([m.corner_uv for m in meshes if m.corner_uv is not None], np.float32),
-            "TriangleCorners": joined([m.triangle_corners for m in meshes], np.uint32),
-            "TriangleSlots": joined([m.triangle_slots for m in meshes], np.uint32),
             "SlotMaterials": np.array(slots or [default_material], np.uint32),
         }
+        if not unchanged:
+            uploads |= {
+                "Positions": joined([m.positions for m in meshes], np.float32),
+                "CornerVertices": joined([m.corner_vertices for m in meshes], np.uint32),
+                "CornerNormals": joined([m.corner_normals for m in meshes], np.float32),
+                "CornerUvs": joined([m.corner_uv for m in meshes if m.corner_uv is not None], np.float32),
+                "TriangleCorners": joined([m.triangle_corners for m in meshes], np.uint32),
+                "TriangleSlots": joined([m.triangle_slots for m in meshes], np.uint32),
+            }
+        self._meshes = []  # should an upload fail
         for name, array in uploads.items():
             self._inputs[name].upload(array)
+        self._meshes, self._mesh_bounds = meshes, bounds
         self.triangles.require(48 * max(1, self.triangle_count))
         self.attributes.require(TRIANGLE_ATTRIBUTES.size * max(1, self.triangle_count))
         buffers = {name: buffer.buffer for name, buffer in self._inputs.items()}

@@ -1,22 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the deep cubemap's centre goes."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from ..scene.camera import Camera
+from ..scene.scene import Scene
 from .geometry import Geometry
 
-_MARGIN = 0.1
+FAR = 4.0
+"""Times the scene's radius: from farther off, the margins of cells would outgrow small triangles."""
+
 _NUDGE = np.array([0.00307, -0.00251, 0.00193])
 """Shares of the scene's radius, unlikely to put the centre on a surface or a plane of symmetry."""
 
 
-def cubemap_centre(camera: Camera, geometry: Geometry) -> np.ndarray:
-    """(3,) the point within the scene's bounds, less a margin, that is nearest to the camera.
+def cubemap_centres(scene: Scene, geometry: Geometry) -> Iterator[np.ndarray]:
+    """(3,) points, metres, the best first: the scene's own choice if it has one, else the camera.
 
-    Rays that start near the centre are the fastest (camera rays then), and a centre outside of
-    the geometry would see it in a few cells only.
+    From the camera what is seen is cut as finely as it is looked at, camera rays stay in the cell that they
+    start in, and the measured cost of all other rays is about that of any other place. A camera far outside
+    of the scene is brought nearer. The points that follow are for where the centre lies in a surface.
     """
-    margin = _MARGIN * (geometry.bounds_high - geometry.bounds_low)
-    point = np.clip(camera.matrix[:3, 3], geometry.bounds_low + margin, geometry.bounds_high - margin)
-    return point + _NUDGE * geometry.radius
+    wanted = scene.camera.matrix[:3, 3] if scene.cubemap_centre is None else np.asarray(scene.cubemap_centre, float)
+    offset = wanted - geometry.centre
+    distance = float(np.linalg.norm(offset))
+    if not np.isfinite(distance):
+        offset, distance = np.zeros(3), 0.0
+    point = geometry.centre + offset * min(1.0, FAR * geometry.radius / max(distance, 1e-30))
+    yield point
+    for share in (0.1, 0.5, 2.0):
+        yield point + share * _NUDGE * geometry.radius

@@ -13,7 +13,7 @@ from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
 from .bandwidth import radius_in_pixels, radius_limits, shrinkage, wide_radius
-from .deep_cubemap import DeepCubemap, choose_resolution
+from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
@@ -21,12 +21,14 @@ from .gbuffer import GBuffer, bands_of, camera_view, filter_offsets
 from .geometry import Geometry
 from .importons import Importons
 from .photons import Photons, flux_balance
-from .placement import cubemap_centre
+from .placement import cubemap_centres
 from .resolve import Resolve
 from .splatting import Splatting
 from .stages import Stages
 
 log = logging.getLogger(__name__)
+
+_MOST_CORE_TRIANGLES = 64
 
 
 class ProgressivePhotonMapper:
@@ -60,20 +62,8 @@ class ProgressivePhotonMapper:
         self._materials.build(scene.materials, scene.images)
         self._geometry.build(scene, self._materials.default_material)
         self._emission.build(scene, self._geometry, self._materials.emitted)
-        self.centre = cubemap_centre(scene.camera, self._geometry)
-        reach = max(
-            np.abs(self._geometry.bounds_low - self.centre).max(),
-            np.abs(self._geometry.bounds_high - self.centre).max(),
-        )
-        count = self._geometry.triangle_count
         with self.timers.stage("deep cubemap"):
-            self._deep_cubemap.build(
-                self._geometry.triangles.buffer,
-                count,
-                self.centre,
-                float(np.sqrt(3.0) * max(reach, 1e-9)),
-                settings.cubemap_resolution or choose_resolution(count),
-            )
+            self._build_deep_cubemap()
         width, height = scene.camera.resolution
         self._bands = bands_of(width, height)
         rows = self._bands[0][1]
@@ -90,6 +80,21 @@ class ProgressivePhotonMapper:
         self._radius_scale = radius_in_pixels(settings, scene.camera)
         self._limits = self._first_limits()
         self.build_seconds = time.perf_counter() - start
+
+    def _build_deep_cubemap(self) -> None:
+        """Where few triangles touch the centre: those are tested by every ray that passes it."""
+        for centre in cubemap_centres(self.scene, self._geometry):
+            self.centre = centre
+            reach = np.maximum(centre - self._geometry.bounds_low, self._geometry.bounds_high - centre)
+            self._deep_cubemap.build(
+                self._geometry.triangles.buffer,
+                self._geometry.triangle_count,
+                centre,
+                float(np.linalg.norm(reach)),
+                self.scene.settings.cubemap_resolution,
+            )
+            if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
+                return
 
     def iterate(self) -> None:
         """One iteration of Algorithm 1."""

@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from .camera import Camera
 from .images import Image
 from .lights import Light, World
@@ -25,6 +27,8 @@ class Scene:
     settings: RenderSettings = field(default_factory=RenderSettings)
     exposure: float = 1.0
     """Factor on every radiance of the film (Cycles' film exposure)."""
+    cubemap_centre: np.ndarray | None = None
+    """(3,) metres where the deep cubemap's centre goes; None is automatic."""
     warnings: list[str] = field(default_factory=list)
     """What was exported only in part, a line each, naming object or material and node."""
 

@@ -45,7 +45,7 @@ class RenderSettings:
     """N_ipf: iterations between two pictures shown."""
     seed: int = 0
     cubemap_resolution: int = 0
-    """Cells along a side of DIRT's cube faces, a power of two; 0 is automatic."""
+    """The most cells along a side of DIRT's cube faces, a power of two; 0 is automatic."""
     filter_width: float = 1.5
     """Width of the Blackman-Harris pixel filter in pixels, as Cycles counts it; 0 looks through
     pixel centres only."""
@@ -86,8 +86,8 @@ class RenderSettings:
         resolution = self.cubemap_resolution
         need(
             "cubemap_resolution",
-            resolution == 0 or (16 <= resolution <= 1024 and resolution & (resolution - 1) == 0),
-            "0 (automatic) or a power of two from 16 to 1024",
+            resolution == 0 or (16 <= resolution <= 16384 and resolution & (resolution - 1) == 0),
+            "0 (automatic) or a power of two from 16 to 16384",
         )
 
     def with_values(self, **values: object) -> "RenderSettings":

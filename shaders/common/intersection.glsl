@@ -40,6 +40,8 @@ void intersect_triangle(
     precise vec2 a2 = a.xy - ray.shear.xy * a.z;
     precise vec2 b2 = b.xy - ray.shear.xy * b.z;
     precise vec2 c2 = c.xy - ray.shear.xy * c.z;
+    // Rounding can zero the areas of a triangle that is tiny as seen from far away, wherever the ray passes.
+    if (any(greaterThan(min(min(a2, b2), c2), vec2(0.0))) || any(lessThan(max(max(a2, b2), c2), vec2(0.0)))) return;
     // twice the areas that the ray's point makes with each edge; zero counts as inside on both sides
     precise float area0 = c2.x * b2.y - c2.y * b2.x;
     precise float area1 = a2.x * c2.y - a2.y * c2.x;

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth bins. A cell's depth range is cut into 2^k equal bins by how much it holds. The cell's lists
-// lie behind each other in bin_ends: list_start, end of bin 0 (= start of bin 1), end of bin 1, ...
-// An entry is (triangle | continued, nearest depth | farthest depth), the depths as 16-bit fractions
-// of the cell's range, rounded outwards. `continued` marks entries of a triangle that is already in
-// the bin before: a walk over several bins tests it only once.
-
-const uint CONTINUED = 0x80000000u;
+// Depth bins of the cells that hold much and cannot be divided with gain. The slices of such a cell that
+// anything touches are numbered, and 2^k of them make a bin, or each makes 2^k bins, by how much the cell
+// holds. What lies between slices in use gets no bins.
+// The lists lie behind each other in bin_ends: list_start, end of bin 0 (= start of bin 1), end of bin 1, ...
 
 #ifdef DEEP_CUBEMAP_BUILD
 #define DEPTH_BINS_ACCESS
@@ -15,22 +12,25 @@ const uint CONTINUED = 0x80000000u;
 
 layout(std430, binding = 11) DEPTH_BINS_ACCESS buffer DepthBins { uint bin_ends[]; };
 
-// A cell's `bins` field: where its list begins in bin_ends, and the exponent of its bin count.
-uint pack_bins(uint start, uint exponent) { return (start << 4) | exponent; }
-uint bins_start(uint bins) { return bins >> 4; }
-uint bins_count(uint bins) { return 1u << (bins & 15u); }
+// The cell's content tells how many bins: 2^cut a slice, or one for 2^join slices.
+const int JOIN_MOST = 5;
+int bins_cut(CubemapCell cell) { return max(int(content_count(cell.content)) - JOIN_MOST, 0); }
+int bins_join(CubemapCell cell) { return max(JOIN_MOST - int(content_count(cell.content)), 0); }
 
-// First and last bin of a depth interval; (near, scale) map the cell's depths to [0, bin count].
-uvec2 bins_between(vec2 interval, float near, float scale, uint count) {
-    return uvec2(clamp((interval - near) * scale, vec2(0.0), vec2(float(count - 1u))));
+int bins_total(CubemapCell cell) {
+    return ((bitCount(cell.slices) << bins_cut(cell)) - 1 >> bins_join(cell)) + 1;
 }
 
-float bin_scale(float near, float far, uint count) {
-    return float(count) / max(far - near, 1e-30);
+// The bin of a part (depth_parts of 32 << cut); between slices in use the bin behind, or the one before.
+int bin_of_part(int part, CubemapCell cell, bool before) {
+    int cut = bins_cut(cell), slice = part >> cut;
+    int first = bitCount(cell.slices & ((1u << slice) - 1u)) << cut;
+    bool in_use = (cell.slices >> slice & 1u) != 0u;
+    return first + (in_use ? part & ((1 << cut) - 1) : (before ? -1 : 0)) >> bins_join(cell);
 }
 
-// Outward 16-bit fractions of a depth interval; one step of slack on both sides covers rounding.
-uvec2 quantise_interval(vec2 interval, float near, float far) {
-    vec2 fractions = (interval - near) * (65535.0 / max(far - near, 1e-30));
-    return uvec2(clamp(vec2(floor(fractions.x) - 1.0, ceil(fractions.y) + 1.0), vec2(0.0), vec2(65535.0)));
+// First and last bin of a depth interval that touches a slice in use, by its codes.
+ivec2 bins_between(uvec2 codes, CubemapCell cell) {
+    ivec2 parts = depth_parts(codes, cell, (32 << bins_cut(cell)) - 1);
+    return ivec2(bin_of_part(parts.x, cell, false), bin_of_part(parts.y, cell, true));
 }

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cells, and above them blocks of 4 x 4, of 16 x 16 cells and so on: which depths hold triangles.
-// All fields are such that zero means empty, and building only ever raises them:
-//   near_complement  ~bits of the least depth (bits of positive floats sort as the floats do)
-//   far              bits of the greatest depth
-//   slices           which of 32 slices of the scene's depth are touched
-//   bins             fragments in the cell while building; then see bins.glsl (cells only)
+// The tree of cells. Level 0 are the roots: root_side x root_side cells a face. A cell is divided into
+// a tile of 4 x 4 cells where it holds much; down to the base level all are. Tile t holds the cells
+// from root_count + 16 t on, row by row, and down to the base level tile t divides cell t.
+// Of a cell are known:
+//   near_complement  ~code of the least depth
+//   far              code of the greatest depth
+//   slices           which of 32 slices of the cell's own depth range are touched
+//   content          0 if empty; else by its two upper bits
+//                    CELL_LIST    a few triangles: where its entries begin << 4 | how many there are
+//                    CELL_BINS    many: where its depth bins begin << 4 | log2 of the bins of a slice (bins.glsl)
+//                    CELL_TILE    the first cell of its tile
+// A depth's code are the bits of the float: they sort as the floats do and grow about as the logarithm,
+// so that near things get finer slices than what lies far behind them.
+// Zero means empty in all of them, and building only ever raises the first two.
+// While a level is being built, `content` is the fragments in a cell and `slices` the cells of the
+// next level that they might touch.
 #include <CubemapCell>
 
 #ifdef DEEP_CUBEMAP_BUILD
@@ -15,23 +25,44 @@
 
 layout(std430, binding = 10) CUBEMAP_CELLS_ACCESS buffer CubemapCells { CubemapCell cubemap_cells[]; };
 
-// Level 0 are the cells; a level up, four times as many cells make a block's side.
-// Levels above 0 each get room for as many blocks as the first of them has: that wastes little, and
-// finding a level's start takes no division.
-uint cell_index(int face, ivec2 block, int level, uint resolution) {
-    uint side = resolution >> (2 * level);
-    uint level_blocks = 6u * (resolution >> 2) * (resolution >> 2);
-    uint level_start = level == 0 ? 0u : uint(15 + level) * level_blocks;
-    return level_start + (uint(face) * side + uint(block.y)) * side + uint(block.x);
+const uint CELL_LIST = 0u;
+const uint CELL_BINS = 1u;
+const uint CELL_TILE = 2u;
+const uint MOST_LISTED = 6u;
+
+uint content_kind(uint content) { return content >> 30; }
+uint content_start(uint content) { return (content & 0x3fffffffu) >> 4; }
+uint content_count(uint content) { return content & 15u; }
+uint content_tile(uint content) { return content & 0x3fffffffu; }
+uint pack_content(uint kind, uint start, uint count) { return kind << 30 | start << 4 | count; }
+
+// A cell's place within its tile.
+uint tile_offset(ivec2 cell) { return uint((cell.y & 3) << 2 | (cell.x & 3)); }
+
+// Where a root, or a cell of a level that is divided everywhere, is stored.
+uint dense_cell_index(int face, ivec2 cell, int level, int root_side) {
+    int shift = 2 * level;
+    uint root_count = uint(6 * root_side * root_side);
+    uint index = uint((face * root_side + (cell.y >> shift)) * root_side + (cell.x >> shift));
+    for (shift -= 2; shift >= 0; shift -= 2) index = root_count + 16u * index + tile_offset(cell >> shift);
+    return index;
 }
 
-float nearest_depth(CubemapCell cell) { return uintBitsToFloat(~cell.near_complement); }
-float farthest_depth(CubemapCell cell) { return uintBitsToFloat(cell.far); }
+// Depths less than half of the core's radius are never walked; to tell them apart would waste slices.
+uvec2 depth_codes(vec2 interval, DeepCubemapState cubemap) {
+    return floatBitsToUint(max(interval, vec2(0.5 * cubemap.core_radius)));
+}
 
-// The depth slices that [near, far] touches, a bit each. Monotone, so two intervals that overlap
-// always share a bit.
-uint depth_slices(float near, float far, float slices_per_metre) {
-    uint first = uint(clamp(near * slices_per_metre, 0.0, 31.0));
-    uint last = uint(clamp(far * slices_per_metre, 0.0, 31.0));
-    return (0xffffffffu << first) & (0xffffffffu >> (31u - last));
+// Where codes lie in a cell's depth range, as whole numbers from 0 to `last`. Monotone, so two intervals
+// that overlap share a number. Codes are positive as int too, whose conversions are the faster ones.
+ivec2 depth_parts(uvec2 codes, CubemapCell cell, int last) {
+    int near = int(~cell.near_complement), far = int(cell.far);
+    float scale = float(last + 1) / float(max(far - near, 1));
+    return min(ivec2(vec2(clamp(ivec2(codes), near, far) - near) * scale), last);
+}
+
+// The slices of a cell's depth range that an interval touches, a bit each.
+uint depth_slices(uvec2 codes, CubemapCell cell) {
+    ivec2 slices = depth_parts(codes, cell, 31);
+    return (0xffffffffu << slices.x) & (0xffffffffu >> (31 - slices.y));
 }

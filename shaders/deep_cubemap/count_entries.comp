@@ -5,13 +5,13 @@ layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
 #include "deep_cubemap/state.glsl"
-#include "deep_cubemap/fragment_bins.glsl"
+#include "deep_cubemap/binned_fragments.glsl"
 
 void main() {
     uint index = invocation_index();
-    if (index >= deep_cubemap.fragment_count) return;
-    OverlapFragment fragment = overlap_fragments[index];
+    if (index >= deep_cubemap.binned_fragment_count) return;
+    BinnedFragment fragment = binned_fragments[index];
     CubemapCell cell = cubemap_cells[fragment.cell];
-    uvec2 bins = fragment_bins(fragment, cell);
-    for (uint bin = bins.x; bin <= bins.y; ++bin) atomicAdd(bin_ends[bins_start(cell.bins) + 1u + bin], 1u);
+    ivec2 bins = fragment_bins(fragment, cell);
+    for (int bin = bins.x; bin <= bins.y; ++bin) atomicAdd(bin_ends[content_start(cell.content) + 1u + uint(bin)], 1u);
 }

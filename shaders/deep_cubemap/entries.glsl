@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lists themselves; bins.glsl explains the entries.
+// The lists themselves. An entry is (triangle | marks, nearest depth | farthest depth), the depths as
+// 16-bit fractions of the cell's range, rounded outwards. The marks tell of a triangle that is in the
+// depth bin before or behind too: a walk over several bins tests it only once.
 
 #ifdef DEEP_CUBEMAP_BUILD
 #define CELL_ENTRIES_ACCESS writeonly
@@ -8,3 +10,13 @@
 #endif
 
 layout(std430, binding = 12) CELL_ENTRIES_ACCESS buffer CellEntries { uvec2 cell_entries[]; };
+
+const uint ENTRY_IN_BIN_BEFORE = 0x80000000u;
+const uint ENTRY_IN_BIN_BEHIND = 0x40000000u;
+const uint ENTRY_TRIANGLE = 0x3fffffffu;
+
+// Outward 16-bit fractions of a depth interval, by its codes; monotone, one step of slack on both sides
+// covers rounding.
+uvec2 quantise_interval(uvec2 codes, CubemapCell cell) {
+    return uvec2(clamp(depth_parts(codes, cell, 65535) + ivec2(-1, 1), 0, 65535));
+}

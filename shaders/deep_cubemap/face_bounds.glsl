@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rectangle of cells that a triangle may touch on a face.
+// The rectangle that a triangle may touch on a face.
 #include "deep_cubemap/cone_overlap.glsl"
+#include "deep_cubemap/extents.glsl"
 
 // Nearer than this many margins, dividing by the depth no longer says where a point is.
 const float LEAST_MARGINS = 16.0;
@@ -20,8 +21,8 @@ void widen_by_edge(vec3 a, vec3 b, vec4 inside_a, vec4 inside_b, float margin, i
     widen_by_point(mix(a, b, to), margin, extent);
 }
 
-// First and last cell of the rectangle; false if the triangle is not seen through this face.
-bool face_cells(vec3 a, vec3 b, vec3 c, float margin, uint resolution, out ivec2 first, out ivec2 last) {
+// The triangle's extent on a face; false if it is not seen through this face.
+bool face_extent(vec3 a, vec3 b, vec3 c, float margin, out uvec2 packed_extent) {
     const vec4 face = vec4(-1.0, 1.0, -1.0, 1.0);
     vec4 inside_a = inside_cone(a, face, margin);
     vec4 inside_b = inside_cone(b, face, margin);
@@ -46,11 +47,8 @@ bool face_cells(vec3 a, vec3 b, vec3 c, float margin, uint resolution, out ivec2
         }
         if (touches_tip(triangle, b, c, LEAST_MARGINS * margin)) extent = vec4(-1.0, -1.0, 1.0, 1.0);
     }
-    // the float error of the division and of this line is far below a thousandth of a cell
-    vec4 cells = (extent * 0.5 + 0.5) * float(resolution) + vec4(-1e-3, -1e-3, 1e-3, 1e-3);
-    if (any(lessThan(cells.zw, vec2(0.0))) || any(greaterThanEqual(cells.xy, vec2(resolution)))) return false;
-    cells = clamp(cells, vec4(0.0), vec4(float(resolution - 1u)));
-    first = ivec2(cells.xy);
-    last = ivec2(cells.zw);
+    extent = extent * 0.5 + 0.5;
+    if (any(lessThan(extent.zw, vec2(-1e-5))) || any(greaterThan(extent.xy, vec2(1.0 + 1e-5)))) return false;
+    packed_extent = pack_extent(extent.xy, extent.zw);
     return true;
 }

@@ -10,8 +10,11 @@ vec3 to_face(vec3 v, int face) {
     return turned;
 }
 
-// Where the borders of cells lie on the plane z = 1. The size 2 / resolution is a power of two, so
-// that this is exact and a border is the same number seen from both its sides.
+// Of cells of which 2^side_exponent make a face's side: a power of two.
+float cell_size(int side_exponent) { return uintBitsToFloat(uint(128 - side_exponent) << 23); }
+
+// Where the borders of cells lie on the plane z = 1. The size is a power of two, so that this is exact
+// and a border is the same number seen from both its sides and on all levels.
 vec2 cell_border(ivec2 border, float cell_size) {
     return vec2(border) * cell_size - 1.0;
 }

@@ -1,8 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rectangles of cells that a triangle may touch on a face: (triangle, face, first cell, last cell),
-// a cell as x | y << 16. No side is longer than deep_cubemap.job_size.
+// Triangles to be found in the cells of a tile: (triangle, tile << 8 | rectangle, extent).
+// The rectangle is of cells within the tile, two bits each for first x, first y, last x, last y.
 
-layout(std430, binding = 15) buffer OverlapJobs { uvec4 overlap_jobs[]; };
+layout(std430, binding = 2) buffer OverlapJobs { uvec4 overlap_jobs[]; };
 
-ivec2 unpack_cell(uint cell) { return ivec2(cell & 0xffffu, cell >> 16); }
-uint pack_cell(ivec2 cell) { return uint(cell.x) | uint(cell.y) << 16; }
+uint job_tile(uvec4 job) { return job.y >> 8; }
+
+ivec4 job_rectangle(uvec4 job) {
+    return ivec4(job.y & 3u, (job.y >> 2) & 3u, (job.y >> 4) & 3u, (job.y >> 6) & 3u);
+}
+
+// Counted past the capacity as well, so that the host learns how much is needed.
+void add_job(uint triangle, uint tile, ivec4 rectangle, uvec2 extent) {
+    uint slot = atomicAdd(deep_cubemap.job_count, 1u);
+    if (slot >= deep_cubemap.job_capacity) return;
+    uvec4 r = uvec4(rectangle);
+    overlap_jobs[slot] = uvec4(triangle, tile << 8 | r.x | r.y << 2 | r.z << 4 | r.w << 6, extent);
+}

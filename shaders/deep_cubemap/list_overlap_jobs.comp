@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A thread a triangle: culls it against the six faces, lists a rectangle of cells for each face that
-// it may be seen through. A triangle that comes near the centre is listed among the core triangles;
+// A thread a triangle: culls it against the six faces, and lists it for those tiles of the base level
+// that it may be seen through. A triangle that comes near the centre is listed among the core triangles;
 // if all of it is there, only there, for cells near the centre are never walked.
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
@@ -10,15 +10,20 @@ layout(local_size_x = 64) in;
 #include "deep_cubemap/triangles.glsl"
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/core.glsl"
+#include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/jobs.glsl"
 #include "deep_cubemap/faces.glsl"
 #include "deep_cubemap/face_bounds.glsl"
 
-void raise_greatest_depth(vec3 a, vec3 b, vec3 c) {
-    vec3 farthest = max(max(abs(a), abs(b)), abs(c));
-    uint bits = floatBitsToUint(max(max(farthest.x, farthest.y), farthest.z));
-    // most threads find that the depth has been reached already and need no atomic operation
-    if (bits > deep_cubemap.greatest_depth_bits) atomicMax(deep_cubemap.greatest_depth_bits, bits);
+void widen_box(vec3 a, vec3 b, vec3 c) {
+    uvec3 low = ~sortable_bits(min(min(a, b), c)), high = sortable_bits(max(max(a, b), c));
+    // most threads find that the box reaches as far already and need no atomic operation
+    if (low.x > deep_cubemap.low_complement.x) atomicMax(deep_cubemap.low_complement.x, low.x);
+    if (low.y > deep_cubemap.low_complement.y) atomicMax(deep_cubemap.low_complement.y, low.y);
+    if (low.z > deep_cubemap.low_complement.z) atomicMax(deep_cubemap.low_complement.z, low.z);
+    if (high.x > deep_cubemap.high.x) atomicMax(deep_cubemap.high.x, high.x);
+    if (high.y > deep_cubemap.high.y) atomicMax(deep_cubemap.high.y, high.y);
+    if (high.z > deep_cubemap.high.z) atomicMax(deep_cubemap.high.z, high.z);
 }
 
 void list_core_triangle(uint triangle, vec3 a, vec3 b, vec3 c) {
@@ -29,17 +34,14 @@ void list_core_triangle(uint triangle, vec3 a, vec3 b, vec3 c) {
     if (index < deep_cubemap.core_capacity) core_triangles[index] = triangle;
 }
 
-// In rectangles of a limited size. Jobs are counted past the capacity as well, so that the host
-// learns how much is needed.
-void list_jobs(uint triangle, int face, ivec2 first, ivec2 last) {
-    int size = int(deep_cubemap.job_size);
-    ivec2 tiles = (last - first) / size + 1;
-    uint index = atomicAdd(deep_cubemap.job_count, uint(tiles.x * tiles.y));
-    for (ivec2 tile = ivec2(0); tile.y < tiles.y; ++tile.y) {
-        for (tile.x = 0; tile.x < tiles.x; ++tile.x, ++index) {
-            if (index >= deep_cubemap.job_capacity) return;
-            ivec2 start = first + tile * size;
-            overlap_jobs[index] = uvec4(triangle, face, pack_cell(start), pack_cell(min(start + size - 1, last)));
+void list_jobs(uint triangle, int face, uvec2 extent) {
+    int side_exponent = int(deep_cubemap.root_exponent) + 2 * int(deep_cubemap.base_level);
+    ivec4 cells = extent_cells(extent, side_exponent);
+    ivec4 tiles = cells >> 2;
+    for (ivec2 divided = tiles.xy; divided.y <= tiles.w; ++divided.y) {
+        for (divided.x = tiles.x; divided.x <= tiles.z; ++divided.x) {
+            uint tile = dense_cell_index(face, divided, int(deep_cubemap.base_level) - 1, 1 << deep_cubemap.root_exponent);
+            add_job(triangle, tile, extent_in_tile(extent, divided, side_exponent), extent);
         }
     }
 }
@@ -51,16 +53,14 @@ void main() {
     vec3 b = triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.centre;
     vec3 c = triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.centre;
     if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return;
-    raise_greatest_depth(a, b, c);
+    widen_box(a, b, c);
     list_core_triangle(triangle, a, b, c);
     float farthest = max(max(dot(a, a), dot(b, b)), dot(c, c));
     float core_inside = 0.98 * deep_cubemap.core_radius;
     if (farthest < core_inside * core_inside) return;
     for (int face = 0; face < 6; ++face) {
-        ivec2 first, last;
-        bool seen = face_cells(
-            to_face(a, face), to_face(b, face), to_face(c, face),
-            deep_cubemap.margin, deep_cubemap.resolution, first, last);
-        if (seen) list_jobs(triangle, face, first, last);
+        uvec2 extent;
+        bool seen = face_extent(to_face(a, face), to_face(b, face), to_face(c, face), deep_cubemap.margin, extent);
+        if (seen) list_jobs(triangle, face, extent);
     }
 }

@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include <OverlapDraw>
 layout(std140, binding = 0) uniform Parameters { OverlapDraw parameters; };
-#include "deep_cubemap/jobs.glsl"
 #include "deep_cubemap/classify.glsl"
 
 const uint JOBS = 64u;
@@ -27,9 +26,8 @@ void main() {
     uint group_start = parameters.first_job + invocation_index() - thread;
     uint cells = 0u;
     if (group_start + thread < parameters.end_job) {
-        uvec4 job = overlap_jobs[group_start + thread];
-        ivec2 size = unpack_cell(job.w) - unpack_cell(job.z) + 1;
-        cells = uint(size.x * size.y);
+        ivec4 rectangle = job_rectangle(overlap_jobs[group_start + thread]);
+        cells = uint((rectangle.z - rectangle.x + 1) * (rectangle.w - rectangle.y + 1));
     }
     cells_up_to[thread] = cells;
     barrier();
@@ -41,8 +39,8 @@ void main() {
         uint index = job_of_cell(number);
         uvec4 job = overlap_jobs[group_start + index];
         uint within = number - (index == 0u ? 0u : cells_up_to[index - 1u]);
-        ivec2 first = unpack_cell(job.z);
-        uint width = uint(unpack_cell(job.w).x - first.x + 1);
-        classify_cell(job.x, int(job.y), first + ivec2(within % width, within / width));
+        ivec4 rectangle = job_rectangle(job);
+        uint width = uint(rectangle.z - rectangle.x + 1);
+        classify_cell(job, rectangle.xy + ivec2(within % width, within / width));
     }
 }

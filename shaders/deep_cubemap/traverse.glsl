@@ -34,35 +34,67 @@ bool is_done(CubemapWalk walk, Hit best, float distance) {
     return best.distance <= distance || (walk.any_hit && best.triangle != NO_TRIANGLE);
 }
 
+#ifdef DEEP_CUBEMAP_COUNT
+uvec3 walk_counts = uvec3(0u); // steps, triangle tests, entries
+#endif
+
 void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
+#ifdef DEEP_CUBEMAP_COUNT
+    ++walk_counts.y;
+#endif
     intersect_triangle(
         walk.test, triangle, triangle_vertices[3u * triangle].xyz, triangle_vertices[3u * triangle + 1u].xyz,
         triangle_vertices[3u * triangle + 2u].xyz, best);
 }
 
-// Tests what a cell holds between two depths. The bins between them are one stretch of the list.
-void test_cell(CubemapWalk walk, CubemapCell cell, vec2 depths, inout Hit best) {
-    float near = nearest_depth(cell), far = farthest_depth(cell);
-    uint start = bins_start(cell.bins), count = bins_count(cell.bins);
-    uvec2 bins = bins_between(depths, near, bin_scale(near, far, count), count);
-    uint first = bin_ends[start + bins.x];
-    uint first_bin_end = bin_ends[start + bins.x + 1u];
-    uint end = bins.y == bins.x ? first_bin_end : bin_ends[start + bins.y + 1u];
-    uvec2 wanted = quantise_interval(depths, near, far);
-    for (uint place = first; place < end; ++place) {
-        uvec2 entry = cell_entries[place];
-        if ((entry.y >> 16) < wanted.x || (entry.y & 0xffffu) > wanted.y) continue;
-        if (place >= first_bin_end && (entry.x & CONTINUED) != 0u) continue;
-        test_triangle(walk, entry.x & ~CONTINUED, best);
-        if (walk.any_hit && best.triangle != NO_TRIANGLE) return;
+// Tests what a cell holds between two depths; cells with depth bins in the ray's order.
+// `depth`: at the ray's origin, and its slope.
+void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, inout Hit best) {
+    uint start = content_start(cell.content), first = start, end = start + content_count(cell.content);
+    uvec2 wanted = quantise_interval(depths, cell);
+    bool outwards = depth.y >= 0.0;
+    ivec2 bins = ivec2(0);
+    int bin = 0;
+    uint seen = 0u;
+    if (content_kind(cell.content) == CELL_BINS) {
+        bins = bins_between(depths, cell);
+        bin = outwards ? bins.x : bins.y;
+        first = bin_ends[start + uint(bin)];
+        end = bin_ends[start + uint(bin) + 1u];
+    }
+    for (int remaining = bins.y - bins.x; ; --remaining) {
+        for (uint place = first; place < end; ++place) {
+#ifdef DEEP_CUBEMAP_COUNT
+            ++walk_counts.z;
+#endif
+            uvec2 entry = cell_entries[place];
+            if ((entry.y >> 16) < wanted.x || (entry.y & 0xffffu) > wanted.y || (entry.x & seen) != 0u) continue;
+            test_triangle(walk, entry.x & ENTRY_TRIANGLE, best);
+        }
+        if (remaining <= 0) return;
+        if (best.triangle != NO_TRIANGLE) {
+            if (walk.any_hit) return;
+            // a hit ends the ray before the bins that lie behind it
+            float hit_depth = depth.x + best.distance * depth.y;
+            ivec2 hit_bins = bins_between(
+                depth_codes(hit_depth + vec2(-1.0, 1.0) * walk.cubemap.margin, walk.cubemap), cell);
+            if (outwards ? hit_bins.y <= bin : hit_bins.x >= bin) return;
+        }
+        seen = outwards ? ENTRY_IN_BIN_BEFORE : ENTRY_IN_BIN_BEHIND;
+        bin += outwards ? 1 : -1;
+        first = bin_ends[start + uint(bin)];
+        end = bin_ends[start + uint(bin) + 1u];
     }
 }
 
-ivec2 cell_at(vec3 origin, vec3 direction, float distance, float resolution) {
-    vec3 point = origin + distance * direction;
-    vec2 position = (point.xy / max(point.z, 1e-30) * 0.5 + 0.5) * resolution;
-    return ivec2(clamp(position, vec2(0.0), vec2(resolution - 1.0)));
+// The cell at a distance along the ray, which may differ by axis. Where rounding might put it in either
+// of two, the one that the ray comes to first: a walk can catch up, but not go back.
+ivec2 cell_at(vec3 origin, vec3 direction, vec2 distances, ivec2 steps, float resolution) {
+    vec2 depths = max(origin.z + distances * direction.z, vec2(1e-30));
+    vec2 error = 3e-7 * (abs(origin.x) + abs(origin.y) + abs(origin.z)) / depths + 2e-7;
+    vec2 position = ((origin.xy + distances * direction.xy) / depths - vec2(steps) * error) * 0.5 + 0.5;
+    return ivec2(clamp(position * resolution, vec2(0.0), vec2(resolution - 1.0)));
 }
 
 // Which way the ray moves across the face along x and y: -1, 0 or 1; 0 where it runs along a plane
@@ -79,24 +111,55 @@ int move_on(int cell, int computed, int step_direction, int first, int last) {
     return step_direction > 0 ? clamp(computed, cell, last) : clamp(computed, first, cell);
 }
 
-// Walks the cells of a face from one distance to another. The place is always a cell; `level` says
-// how much around it is looked at together: blocks of 4 x 4 cells and larger are left at once if they
-// hold nothing at the ray's depths.
+const int START_LEVEL = 1;
+
+// findMSB for numbers below 2^24, which not all devices have an instruction for.
+int highest_bit(int number) { return (floatBitsToInt(float(number)) >> 23) - 127; }
+
+// First cells of the tiles that were entered, by level from 1 on. No array: those with a variable index lie in memory.
+struct TileStack { uint at1, at2, at3, at4, at5, at6; };
+
+void push_tile(inout TileStack tiles, int level, uint tile) {
+    tiles.at1 = level == 1 ? tile : tiles.at1;
+    tiles.at2 = level == 2 ? tile : tiles.at2;
+    tiles.at3 = level == 3 ? tile : tiles.at3;
+    tiles.at4 = level == 4 ? tile : tiles.at4;
+    tiles.at5 = level == 5 ? tile : tiles.at5;
+    tiles.at6 = level == 6 ? tile : tiles.at6;
+}
+
+uint tile_at(TileStack tiles, int level) {
+    uint low = level == 1 ? tiles.at1 : (level == 2 ? tiles.at2 : tiles.at3);
+    uint high = level == 4 ? tiles.at4 : (level == 5 ? tiles.at5 : tiles.at6);
+    return level <= 3 ? low : high;
+}
+
+// Walks the cells of a face from one distance to another. The place is always one of the finest cells;
+// `level` says how much around it is looked at together: a cell that is divided, or that holds nothing
+// at the ray's depths, is left at once.
 void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit best) {
     vec3 origin = to_face(walk.origin, face), direction = to_face(walk.direction, face);
-    float resolution = float(walk.cubemap.resolution);
+    int root_exponent = int(walk.cubemap.root_exponent);
+    int finest = root_exponent + 2 * int(walk.cubemap.last_level);
+    float resolution = float(1 << finest);
     ivec2 steps = step_directions(origin, direction);
-    // A ray that stays in one cell may touch the face's border at its ends: look at its middle.
-    float start = steps == ivec2(0) ? 0.5 * (enter + leave) : enter;
-    ivec2 cell = cell_at(origin, direction, start, resolution);
+    // A ray that stays in one row is nowhere more exact than where it is farthest from the centre.
+    vec2 starts = mix(vec2(enter), vec2(direction.z > 0.0 ? leave : enter), equal(steps, ivec2(0)));
+    ivec2 cell = cell_at(origin, direction, starts, steps, resolution);
     float here = enter;
-    int level = int(min(walk.cubemap.top_level, 1u));
+    TileStack tiles; uint tile;
+    int level = START_LEVEL;
+    tile = dense_cell_index(face, cell >> (finest - root_exponent - 2 * START_LEVEL), START_LEVEL, 1 << root_exponent) - tile_offset(cell >> (finest - root_exponent - 2 * START_LEVEL));
     // Never reached: a walk crosses 2 * resolution cells at most and changes level for few of them.
-    int most_steps = 8 * int(walk.cubemap.resolution);
+    int most_steps = 60000;
     for (int count = 0; count < most_steps; ++count) {
-        int shift = 2 * level;
+#ifdef DEEP_CUBEMAP_COUNT
+        ++walk_counts.x;
+#endif
+        int shift = finest - root_exponent - 2 * level;
         ivec2 block = cell >> shift;
-        vec2 border = cell_border((block + ivec2(greaterThan(steps, ivec2(0)))) << shift, walk.cubemap.cell_size);
+        float size = cell_size(root_exponent + 2 * level);
+        vec2 border = cell_border(block + ivec2(greaterThan(steps, ivec2(0))), size);
         vec2 approach = direction.xy - border * direction.z;
         vec2 crossing = max((border * origin.z - origin.xy) / approach, vec2(here));
         // A border counts only if the ray moves towards it; else the ray tends to a vanishing point
@@ -105,25 +168,28 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
         float exit = min(min(crossing.x, crossing.y), leave);
 
         vec2 ends = vec2(origin.z + here * direction.z, origin.z + exit * direction.z);
-        vec2 depths = vec2(min(ends.x, ends.y) - walk.cubemap.margin, max(ends.x, ends.y) + walk.cubemap.margin);
-        CubemapCell content = cubemap_cells[cell_index(face, block, level, walk.cubemap.resolution)];
-        bool occupied = (content.slices & depth_slices(depths.x, depths.y, walk.cubemap.slices_per_metre)) != 0u
-            && depths.x <= farthest_depth(content) && depths.y >= nearest_depth(content);
-        if (occupied && level > 0) {
-            --level;
-            continue;
-        }
+        uvec2 depths = depth_codes(
+            vec2(min(ends.x, ends.y) - walk.cubemap.margin, max(ends.x, ends.y) + walk.cubemap.margin), walk.cubemap);
+        CubemapCell content = cubemap_cells[tile + tile_offset(block)];
+        bool occupied = depths.x <= content.far && depths.y >= ~content.near_complement
+            && (content.slices & depth_slices(depths, content)) != 0u;
         if (occupied) {
-            test_cell(walk, content, depths, best);
+            if (content_kind(content.content) == CELL_TILE) {
+                push_tile(tiles, level, tile);
+                ++level;
+                tile = content_tile(content.content);
+                continue;
+            }
+            test_cell(walk, content, depths, vec2(origin.z, direction.z), best);
             if (is_done(walk, best, exit)) return;
         }
         if (exit >= leave) return;
 
         ivec2 previous = cell;
         ivec2 first = block << shift, last = first + (1 << shift) - 1;
-        if (level > 0) {
+        if (shift > 0) {
             // Along the axis that is not crossed the ray has moved on within the block, forwards only.
-            ivec2 moved = cell_at(origin, direction, exit, resolution);
+            ivec2 moved = cell_at(origin, direction, vec2(exit), steps, resolution);
             cell.x = move_on(cell.x, moved.x, steps.x, first.x, last.x);
             cell.y = move_on(cell.y, moved.y, steps.y, first.y, last.y);
         }
@@ -132,52 +198,87 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
         } else {
             cell.y = steps.y > 0 ? last.y + 1 : first.y - 1;
         }
-        if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(walk.cubemap.resolution)))) return;
+        if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(1 << finest)))) return;
         here = exit;
-        if (level < int(walk.cubemap.top_level) && previous >> (shift + 2) != cell >> (shift + 2)) ++level;
+        // up to the level whose tile the ray is still in
+        int changed = highest_bit((previous.x ^ cell.x) | (previous.y ^ cell.y));
+        int tile_level = (finest - root_exponent + 1 - changed) >> 1;
+        if (level > tile_level) {
+            level = tile_level;
+            tile = tile_at(tiles, level);
+        }
+        if (level <= START_LEVEL) {
+            level = START_LEVEL;
+            tile = dense_cell_index(face, cell >> (finest - root_exponent - 2 * START_LEVEL), START_LEVEL, 1 << root_exponent) - tile_offset(cell >> (finest - root_exponent - 2 * START_LEVEL));
+        }
     }
 }
 
-// Part of [from, to] in which the ray is seen through a face. Neighbouring faces compute their common
-// border from the same numbers, so that the parts of a ray leave no gap.
-bool clip_to_face(vec3 origin, vec3 direction, inout float from, inout float to) {
-    vec4 inside = vec4(origin.z - origin.x, origin.z + origin.x, origin.z - origin.y, origin.z + origin.y);
-    vec4 slope = vec4(
-        direction.z - direction.x, direction.z + direction.x, direction.z - direction.y, direction.z + direction.y);
-    vec4 crossing = -inside / slope;
-    vec4 entering = mix(vec4(from), crossing, greaterThan(slope, vec4(0.0)));
-    vec4 leaving = mix(vec4(to), crossing, lessThan(slope, vec4(0.0)));
-    from = max(from, max(max(entering.x, entering.y), max(entering.z, entering.w)));
-    to = min(to, min(min(leaving.x, leaving.y), min(leaving.z, leaving.w)));
-    // parallel to a border, on its wrong side; not() and bvec logic do not exist, hence products
-    vec4 wrong = vec4(equal(slope, vec4(0.0))) * vec4(lessThan(inside, vec4(0.0)));
-    return from <= to && wrong == vec4(0.0);
+// The parts of a ray seen through the faces: enter and leave of those along +x, +y, +z and along -x, -y, -z.
+// The faces meet in six planes through the centre, and neighbours take their common border from the same
+// number, so that the parts leave no gap.
+struct FaceParts { vec3 enter_positive, leave_positive, enter_negative, leave_negative; };
+
+FaceParts clip_to_faces(vec3 origin, vec3 direction, float from, float to) {
+    // x - y, y - z, z - x and their sums
+    vec3 difference = origin - origin.yzx, difference_slope = direction - direction.yzx;
+    vec3 sum = origin + origin.yzx, sum_slope = direction + direction.yzx;
+    vec3 difference_zero = -difference / difference_slope, sum_zero = -sum / sum_slope;
+    vec3 never = vec3(INFINITY_DISTANCE), always = vec3(-INFINITY_DISTANCE);
+    // from where on the difference is positive, or negative; a constant one is so always or never
+    vec3 rise = mix(
+        mix(always, difference_zero, greaterThan(difference_slope, vec3(0.0))), never,
+        bvec3(vec3(equal(difference_slope, vec3(0.0))) * vec3(lessThan(difference, vec3(0.0)))));
+    vec3 fall = mix(
+        mix(always, difference_zero, lessThan(difference_slope, vec3(0.0))), never,
+        bvec3(vec3(equal(difference_slope, vec3(0.0))) * vec3(greaterThan(difference, vec3(0.0)))));
+    vec3 sum_rise = mix(
+        mix(always, sum_zero, greaterThan(sum_slope, vec3(0.0))), never,
+        bvec3(vec3(equal(sum_slope, vec3(0.0))) * vec3(lessThan(sum, vec3(0.0)))));
+    vec3 sum_fall = mix(
+        mix(always, sum_zero, lessThan(sum_slope, vec3(0.0))), never,
+        bvec3(vec3(equal(sum_slope, vec3(0.0))) * vec3(greaterThan(sum, vec3(0.0)))));
+    // until where: as long as the opposite has not begun
+    vec3 rise_end = mix(never, difference_zero, lessThan(difference_slope, vec3(0.0)));
+    vec3 fall_end = mix(never, difference_zero, greaterThan(difference_slope, vec3(0.0)));
+    vec3 sum_rise_end = mix(never, sum_zero, lessThan(sum_slope, vec3(0.0)));
+    vec3 sum_fall_end = mix(never, sum_zero, greaterThan(sum_slope, vec3(0.0)));
+    FaceParts parts;
+    parts.enter_positive = max(max(max(rise, fall.zxy), max(sum_rise, sum_rise.zxy)), vec3(from));
+    parts.leave_positive = min(min(min(rise_end, fall_end.zxy), min(sum_rise_end, sum_rise_end.zxy)), vec3(to));
+    parts.enter_negative = max(max(max(fall, rise.zxy), max(sum_fall, sum_fall.zxy)), vec3(from));
+    parts.leave_negative = min(min(min(fall_end, rise_end.zxy), min(sum_fall_end, sum_fall_end.zxy)), vec3(to));
+    // faces that are not seen come last
+    parts.enter_positive = mix(parts.enter_positive, never, greaterThan(parts.enter_positive, parts.leave_positive));
+    parts.enter_negative = mix(parts.enter_negative, never, greaterThan(parts.enter_negative, parts.leave_negative));
+    return parts;
+}
+
+// Takes the face that the ray sees next out of the parts: (enter, leave); -1 if there is none.
+int take_next_face(inout FaceParts parts, out vec2 part) {
+    vec3 nearest = min(parts.enter_positive, parts.enter_negative);
+    float enter = min(nearest.x, min(nearest.y, nearest.z));
+    if (enter >= INFINITY_DISTANCE) return -1;
+    int axis = nearest.x == enter ? 0 : (nearest.y == enter ? 1 : 2);
+    bvec3 chosen = equal(ivec3(axis), ivec3(0, 1, 2));
+    bool positive = parts.enter_positive[axis] == enter;
+    part = vec2(enter, positive ? parts.leave_positive[axis] : parts.leave_negative[axis]);
+    if (positive) {
+        parts.enter_positive = mix(parts.enter_positive, vec3(INFINITY_DISTANCE), chosen);
+    } else {
+        parts.enter_negative = mix(parts.enter_negative, vec3(INFINITY_DISTANCE), chosen);
+    }
+    return 2 * axis + (positive ? 0 : 1);
 }
 
 // Walks the faces between two distances, nearest first.
 void walk_faces(CubemapWalk walk, float from, float to, inout Hit best) {
-    float enter[6], leave[6];
-    for (int face = 0; face < 6; ++face) {
-        enter[face] = from;
-        leave[face] = to;
-        bool seen = clip_to_face(to_face(walk.origin, face), to_face(walk.direction, face), enter[face], leave[face]);
-        if (!seen) enter[face] = INFINITY_DISTANCE;
-    }
+    FaceParts parts = clip_to_faces(walk.origin, walk.direction, from, to);
     for (int visit = 0; visit < 6; ++visit) {
-        int next = -1;
-        float nearest = INFINITY_DISTANCE, end = 0.0;
-        for (int face = 0; face < 6; ++face) {
-            if (enter[face] < nearest) {
-                nearest = enter[face];
-                end = leave[face];
-                next = face;
-            }
-        }
-        if (next < 0 || is_done(walk, best, nearest)) return;
-        for (int face = 0; face < 6; ++face) {
-            if (face == next) enter[face] = INFINITY_DISTANCE;
-        }
-        walk_face(walk, next, nearest, end, best);
+        vec2 part;
+        int face = take_next_face(parts, part);
+        if (face < 0 || is_done(walk, best, part.x)) return;
+        walk_face(walk, face, part.x, part.y, best);
     }
 }
 
@@ -187,6 +288,18 @@ bool clip_to_ball(float closest, float squared_miss, float squared_length, float
     float half_chord = sqrt(max(room, 0.0) / squared_length);
     between = vec2(closest - half_chord, closest + half_chord);
     return room > 0.0;
+}
+
+// Part of [from, to] within the box around all triangles. Axes along which the ray does not move
+// yield infinities or NaN, which min and max here leave aside.
+void clip_to_box(CubemapWalk walk, inout float from, inout float to) {
+    vec3 low = from_sortable_bits(~walk.cubemap.low_complement) - walk.cubemap.margin;
+    vec3 high = from_sortable_bits(walk.cubemap.high) + walk.cubemap.margin;
+    bvec3 moves = greaterThan(abs(walk.direction), vec3(1e-20));
+    vec3 a = (low - walk.origin) / walk.direction, b = (high - walk.origin) / walk.direction;
+    vec3 enter = mix(vec3(from), min(a, b), moves), leave = mix(vec3(to), max(a, b), moves);
+    from = max(from, max(enter.x, max(enter.y, enter.z)) );
+    to = min(to, min(leave.x, min(leave.y, leave.z)));
 }
 
 Hit trace_deep_cubemap(Ray ray, bool any_hit) {
@@ -207,6 +320,7 @@ Hit trace_deep_cubemap(Ray ray, bool any_hit) {
     vec2 scene, core;
     if (!clip_to_ball(closest, squared_miss, squared_length, scene_radius, scene)) return best;
     float from = max(scene.x, 0.0), to = min(scene.y, best.distance);
+    clip_to_box(walk, from, to);
     if (!(from < to)) return best;
 
     // Near the centre the ray tests the core list, and walks cells only before and after that.

@@ -14,7 +14,12 @@ ELSEWHERE = {"film_transparent"}  # a property that Blender itself has
 
 def test_properties_are_the_settings_with_their_defaults(scene):
     names = {field.name for field in dataclasses.fields(RenderSettings)}
-    properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
+    # an object of Blender's, exported as a point
+    properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {
+        "rna_type",
+        "name",
+        "cubemap_centre_object",
+    }
     assert properties == names - ELSEWHERE
     found, expected = export(scene).settings, RenderSettings()
     for name in names:
@@ -56,3 +61,15 @@ def test_the_ranges_of_the_properties_are_valid_settings(scene):
                 if item.identifier == "radius_minimum":
                     settings.radius_maximum = 0.0
                 settings.validate()
+
+
+def test_the_cubemap_centre_follows_its_object(scene):
+    assert export(scene).cubemap_centre is None
+    parent, empty = bpy.data.objects.new("parent", None), bpy.data.objects.new("empty", None)
+    for thing in (parent, empty):
+        scene.collection.objects.link(thing)
+    empty.parent = parent
+    parent.location, empty.location = (1, 2, 3), (0.5, 0, 0)
+    scene.rppm.cubemap_centre_object = empty
+    bpy.context.view_layer.update()
+    assert export(scene).cubemap_centre == pytest.approx([1.5, 2, 3])

@@ -22,7 +22,7 @@ class Scene:
     """Triangles on the device and their cubemap; a context manager."""
 
     def __init__(
-        self, context, library, triangles: np.ndarray, centre, resolution: int = 64, rasterize: bool = True
+        self, context, library, triangles: np.ndarray, centre, resolution: int = 64, rasterize: bool | None = True
     ) -> None:
         self.context, self.library = context, library
         self.host_triangles = np.asarray(triangles, np.float32)

@@ -54,6 +54,8 @@ def _intersect(origin, axis, shear, vertices):
     by = (vertices[1, y] - origin[y]) - shear[1] * bz
     cx = (vertices[2, x] - origin[x]) - shear[0] * cz
     cy = (vertices[2, y] - origin[y]) - shear[1] * cz
+    if min(ax, bx, cx) > 0 or min(ay, by, cy) > 0 or max(ax, bx, cx) < 0 or max(ay, by, cy) < 0:
+        return np.float32(-1), np.float32(0), np.float32(0)
     area0, area1, area2 = cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax
     zero = np.float32(0)
     miss = np.float32(-1)

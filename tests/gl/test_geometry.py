@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import scenes
 
+from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.geometry import Geometry
 from rppm_addon.integrator.records import TRIANGLE_ATTRIBUTES
 from rppm_addon.scene import Camera, Instance, Scene
@@ -105,3 +106,24 @@ def test_spoiled_input_leaves_the_rest_whole(geometry):
 def test_an_empty_scene_has_no_triangles(geometry):
     geometry.build(Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4)), 0)
     assert geometry.triangle_count == 0 and geometry.radius > 0
+
+
+def test_moving_instances_uploads_no_mesh(geometry, monkeypatch):
+    mesh = scenes.sphere("ball", 9, 5)
+    scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), [mesh], [Instance(0, np.eye(4), [0])], [])
+    uploaded = []
+    plain = GrowingBuffer.upload
+    monkeypatch.setattr(GrowingBuffer, "upload", lambda self, array: (uploaded.append(self.name), plain(self, array)))
+    geometry.build(scene, 0)
+    before, _ = read(geometry)
+    assert "geometry Positions" in uploaded
+    uploaded.clear()
+    scene.instances = [Instance(0, scenes.placed(1, 2, 3), [0])]
+    geometry.build(scene, 0)
+    after, _ = read(geometry)
+    assert uploaded == ["geometry Instances", "geometry SlotMaterials"]
+    np.testing.assert_allclose(after, before + np.float32([1, 2, 3]), atol=1e-6)
+    np.testing.assert_allclose([geometry.bounds_low, geometry.bounds_high], [[0, 1, 2], [2, 3, 4]], atol=0.2)
+    scene.meshes = [scenes.sphere("ball", 9, 7)]
+    geometry.build(scene, 0)
+    assert "geometry Positions" in uploaded and geometry.triangle_count == scene.triangle_count

@@ -11,7 +11,7 @@ from .camera import export_camera
 from .images import ImageTable
 from .objects import ObjectExporter
 from .report import ExportStopped, Report
-from .settings import export_settings
+from .settings import export_cubemap_centre, export_settings
 from .world import export_world
 
 __all__ = ["ExportStopped", "SceneError", "export_scene"]
@@ -42,6 +42,7 @@ def export_scene(
     scene = Scene(camera=export_camera(source, depsgraph, report))
     scene.settings = export_settings(source)
     scene.settings.validate()
+    scene.cubemap_centre = export_cubemap_centre(depsgraph)
     if hasattr(source, "cycles"):
         scene.exposure = source.cycles.film_exposure
     ObjectExporter(scene, report, images).export(depsgraph)

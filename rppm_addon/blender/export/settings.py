@@ -4,6 +4,7 @@
 import dataclasses
 
 import bpy
+import numpy as np
 
 from ...scene import DirectLight, RenderSettings
 
@@ -18,3 +19,10 @@ def export_settings(scene: bpy.types.Scene) -> RenderSettings:
                 setattr(settings, field.name, getattr(stored, field.name))
         settings.direct_light = DirectLight[stored.direct_light]
     return settings
+
+
+def export_cubemap_centre(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
+    """(3,) metres where the chosen object is in this frame; None where none is chosen."""
+    stored = getattr(depsgraph.scene, "rppm", None)
+    chosen = None if stored is None else stored.cubemap_centre_object
+    return None if chosen is None else np.array(chosen.evaluated_get(depsgraph).matrix_world.translation, float)

@@ -77,6 +77,7 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         column = self.column()
         column.prop(settings, "seed")
         column.prop(settings, "cubemap_resolution")
+        column.prop(settings, "cubemap_centre_object")
 
 
 class RPPM_PT_film(RppmPanel, bpy.types.Panel):
