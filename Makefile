@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample test lint pairs clean
+.PHONY: help setup render sample test lint pairs bench clean
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
@@ -28,6 +28,11 @@ lint: setup ## Check Python, imports, licence lines and shaders
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tests/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
+
+bench: setup ## Measure the deep cubemap for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
+	@.venv/bin/python -c 'import matplotlib' 2>/dev/null || .venv/bin/python -m pip install --quiet \
+		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
+	.venv/bin/python tests/benchmarks/run.py --scene-folder $(SCENES) $(BENCH)
 
 clean: ## Remove what was made: out/, caches (.venv stays)
 	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info

@@ -20,6 +20,7 @@ from .commands.recorder import RenderRecorder, RenderRequest, apply_settings
 from .pictures import PictureError, make_folder
 from .scene import RenderSettings
 from .scene.errors import RppmError, SettingsError
+from .scene.settings import CUBEMAP_COSTS
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it."""
@@ -123,6 +124,32 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE.npz")
     export.set_defaults(run=_export)
 
+    inspect = commands.add_parser(
+        "inspect",
+        parents=[scene, common],
+        help="picture what the camera's rays cost in the deep cubemap",
+        description="Build the deep cubemap of a scene, trace a ray through each pixel's centre, and picture its cost.",
+    )
+    inspect.add_argument("file", type=Path, metavar="FILE", help="a .blend file or a .npz of rppm export")
+    inspect.add_argument(
+        "-o",
+        "--output",
+        type=_picture_path,
+        action="append",
+        required=True,
+        metavar="PICTURE",
+        help=".png of one quantity in false colours, or .exr of all as they are; may be repeated",
+    )
+    inspect.add_argument(
+        "--quantity",
+        choices=CUBEMAP_COSTS,
+        default=CUBEMAP_COSTS[0],
+        help="what the .png shows: steps (cells and blocks looked at), tests (of triangles), list (entries in the cell "
+        "that is hit), entries (read along the ray); default: steps",
+    )
+    inspect.add_argument("--json", type=Path, metavar="FILE", help="write counts and bytes by buffer as JSON")
+    inspect.set_defaults(run=_inspect)
+
     info = commands.add_parser("info", parents=[common], help="show the device, its driver and limits, what is missing")
     info.set_defaults(run=_info)
     return parser
@@ -189,6 +216,39 @@ def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
     bar.clear()
     counts = f"{scene.triangle_count} triangles, {len(scene.lights)} lights, {len(scene.materials)} materials"
     print(f"{counts}: {options.output}")
+    return 0
+
+
+def _inspect(options: argparse.Namespace, bar: ProgressBar) -> int:
+    from .commands.inspection import inspection_lines, write_inspection
+    from .commands.saved_scene import camera_at_resolution
+    from .scene import load_scene
+    from .session.renderer import Renderer
+
+    settings, data_values = _split_values(options.values)
+    apply_settings(RenderSettings(), settings)
+    for path in options.output:
+        make_folder(path)
+    if _is_blend(options.file):
+        from .commands import blend_file
+
+        request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
+        scene = blend_file.export_blend_file(request, show_output=options.debug)
+    else:
+        _refuse_blend_options(options, data_values)
+        scene = load_scene(options.file)
+        if options.resolution is not None:
+            scene.camera = camera_at_resolution(scene.camera, *options.resolution)
+    scene.settings = apply_settings(scene.settings, settings)
+    with Renderer() as renderer:
+        costs, counts, memory = renderer.inspect(scene)
+    for path in options.output:
+        greatest = write_inspection(path, costs, options.quantity, scene)
+        if path.suffix == ".png":
+            print(f"{path}: {options.quantity} from 0 (dark blue) to {greatest:g} (yellow)")
+    if options.json is not None:
+        _write_json(options.json, {"scene": str(options.file), "counts": counts, "memory_bytes": memory})
+    print("\n".join(inspection_lines(costs, counts, memory)))
     return 0
 
 

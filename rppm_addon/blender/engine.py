@@ -5,7 +5,7 @@ import logging
 
 import bpy
 
-from .final import render_final
+from .final import DEEP_CUBEMAP_PASS, render_final
 
 logger = logging.getLogger(__name__)
 
@@ -31,6 +31,8 @@ class RppmRenderEngine(bpy.types.RenderEngine):
             self.register_pass(scene, renderlayer, "Depth", 1, "Z", "VALUE")
         if renderlayer.use_pass_normal:
             self.register_pass(scene, renderlayer, "Normal", 3, "XYZ", "VECTOR")
+        if scene.rppm.deep_cubemap_pass:
+            self.register_pass(scene, renderlayer, DEEP_CUBEMAP_PASS, 3, "XYZ", "VECTOR")
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:
         render_final(self, depsgraph)

@@ -81,6 +81,9 @@ def _report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> Non
         engine.report({"WARNING"}, f"{more} more warnings of this kind are in the log")
 
 
+DEEP_CUBEMAP_PASS = "Deep Cubemap"
+
+
 class _FinalJob(renderer_thread.RenderJob):
     """Shows a render in the engine's result and tells the observer."""
 
@@ -127,6 +130,7 @@ class _FinalJob(renderer_thread.RenderJob):
             width, height = self._scene.camera.resolution
             self._result = self._engine.begin_result(0, 0, width, height, layer=self._layer)
         pictures = {"Combined": frame.combined, "Depth": frame.depth, "Normal": frame.normal}
+        pictures[DEEP_CUBEMAP_PASS] = frame.deep_cubemap
         for render_pass in self._result.layers[0].passes:
             picture = pictures.get(render_pass.name)
             if picture is not None:

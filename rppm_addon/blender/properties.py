@@ -2,7 +2,7 @@
 """scene.rppm and light.rppm; the scene's names and defaults are those of RenderSettings."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ..scene import RenderSettings
 
@@ -146,6 +146,14 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         default=DEFAULTS.cubemap_resolution,
         min=0,
         max=16384,
+    )
+    deep_cubemap_pass: BoolProperty(
+        name="Deep Cubemap",
+        description=(
+            "A pass that shows what the camera's rays cost: cells looked at, triangles tested, and entries "
+            "listed in the cell that is hit, as X, Y and Z"
+        ),
+        default=DEFAULTS.deep_cubemap_pass,
     )
     cubemap_centre_object: PointerProperty(
         name="Cubemap Centre",

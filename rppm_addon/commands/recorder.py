@@ -183,10 +183,13 @@ def count_text(count: int) -> str:
 
 def _write_frame(path: Path, frame: "Frame", camera: Camera, metadata: Mapping[str, object]) -> None:
     x, y, _, _ = camera.region
+    layers = {"Depth": frame.depth, "Normal": frame.normal}
+    if frame.deep_cubemap is not None:
+        layers["Deep Cubemap"] = frame.deep_cubemap
     write_exr(
         path,
         frame.combined,
-        {"Depth": frame.depth, "Normal": frame.normal},
+        layers,
         metadata,
         Placement(camera.width, camera.height, x, y),
     )

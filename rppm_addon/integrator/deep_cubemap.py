@@ -84,6 +84,7 @@ FRAGMENT = Record(
     extent_high="uint",
 )
 BINNED_FRAGMENT = Record("BinnedFragment", cell="uint", triangle="uint", depths="uint")
+BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
 Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
 Record("DivideLevel", first_tile="uint", end_tile="uint", level="uint", side_exponent="uint", fragment_count="uint")
 Record("MergeLevel", first_cell="uint", end_cell="uint")
@@ -160,7 +161,7 @@ class DeepCubemap:
             "job": (buffer("jobs"), _JOB_SIZE),
             "fragment": (buffer("fragments"), FRAGMENT.size),
             "entry": (buffer("entries"), _ENTRY_SIZE),
-            "binned_cell": (buffer("binned cells"), 4),
+            "binned_cell": (buffer("binned cells"), BINNED_CELL.size),
             "binned_fragment": (buffer("binned fragments"), BINNED_FRAGMENT.size),
             "core": (buffer("core list"), 4),
         }

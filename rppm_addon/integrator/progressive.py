@@ -20,6 +20,7 @@ from .film import Film
 from .gbuffer import GBuffer, bands_of, camera_view, filter_offsets
 from .geometry import Geometry
 from .importons import Importons
+from .inspection import inspect_deep_cubemap
 from .photons import Photons, flux_balance
 from .placement import cubemap_centres
 from .resolve import Resolve
@@ -55,12 +56,7 @@ class ProgressivePhotonMapper:
         """
         start = time.perf_counter()
         settings = scene.settings
-        settings.validate()
-        self._release_views()
-        self.iteration = 0
-        self.scene = scene
-        self._materials.build(scene.materials, scene.images)
-        self._geometry.build(scene, self._materials.default_material)
+        self._gather(scene)
         self._emission.build(scene, self._geometry, self._materials.emitted)
         with self.timers.stage("deep cubemap"):
             self._build_deep_cubemap()
@@ -80,6 +76,14 @@ class ProgressivePhotonMapper:
         self._radius_scale = radius_in_pixels(settings, scene.camera)
         self._limits = self._first_limits()
         self.build_seconds = time.perf_counter() - start
+
+    def _gather(self, scene: Scene) -> None:
+        scene.settings.validate()
+        self._release_views()
+        self.iteration = 0
+        self.scene = scene
+        self._materials.build(scene.materials, scene.images)
+        self._geometry.build(scene, self._materials.default_material)
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
@@ -137,6 +141,19 @@ class ProgressivePhotonMapper:
         """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
         photons = self._photons.read()
         return flux_balance(self._photons.read_emitted(self._stages, self.iteration), photons)
+
+    @property
+    def deep_cubemap(self) -> DeepCubemap:
+        return self._deep_cubemap
+
+    def build_deep_cubemap(self, scene: Scene) -> None:
+        """Take a scene and build what rays need, to be looked at: nothing can be rendered. Raises as build does."""
+        self._gather(scene)
+        self._build_deep_cubemap()
+
+    def inspect_deep_cubemap(self) -> np.ndarray:
+        """(height, width, 4) float32 of CUBEMAP_COSTS."""
+        return inspect_deep_cubemap(self.context, self._library, self._deep_cubemap, self.scene.camera)
 
     def read_photons(self) -> np.ndarray:
         """(segments, photons) PHOTON records of the last iteration."""

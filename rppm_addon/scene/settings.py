@@ -8,6 +8,10 @@ from dataclasses import dataclass
 
 from .errors import SettingsError
 
+CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
+"""What a ray costs in the deep cubemap: cells looked at; triangles tested; entries in the cell of the hit, 0 where
+nothing is hit; entries read."""
+
 
 class DirectLight(enum.Enum):
     """How light that comes straight from a source is estimated; never both."""
@@ -50,6 +54,8 @@ class RenderSettings:
     """Width of the Blackman-Harris pixel filter in pixels, as Cycles counts it; 0 looks through
     pixel centres only."""
     film_transparent: bool = False
+    deep_cubemap_pass: bool = False
+    """Whether frames tell what the camera's rays cost in the deep cubemap (Frame.deep_cubemap)."""
 
     def validate(self) -> None:
         """Raise SettingsError naming the first setting that cannot be used, and its range."""

@@ -28,6 +28,9 @@ class Frame:
     """(height, width) float32, metres along the view axis; 1e10 where nothing is hit."""
     normal: np.ndarray
     """(height, width, 3) float32 world-space shading normals; 0 where nothing is hit."""
+    deep_cubemap: np.ndarray | None = None
+    """(height, width, 3) float32: steps, triangle tests and list (scene.settings.CUBEMAP_COSTS); None
+    unless the setting deep_cubemap_pass asks for it."""
 
 
 @dataclass
@@ -77,13 +80,13 @@ class RenderResult:
     """Whether should_stop ended it before its iterations or time limit did."""
 
 
-def read_frame(film: Film, exposure: float) -> Frame:
+def read_frame(film: Film, exposure: float, deep_cubemap: np.ndarray | None = None) -> Frame:
     """The film's current picture."""
     combined = film.read_radiance()
     combined[..., :3] *= exposure
     combined[..., 3] = np.clip(combined[..., 3], 0.0, 1.0)
     normal, depth = film.read_surface()
-    return Frame(combined, depth, normal)
+    return Frame(combined, depth, normal, deep_cubemap)
 
 
 class Renderer:
@@ -139,11 +142,12 @@ class Renderer:
         mapper = self._mapper
         mapper.timers.reset()
         mapper.build(scene)
+        inspection = mapper.inspect_deep_cubemap()[..., :3] if settings.deep_cubemap_pass else None
         pending = list(snapshots)
         stopped = False
 
         def frame() -> Frame:
-            return read_frame(mapper.film, scene.exposure)
+            return read_frame(mapper.film, scene.exposure, inspection)
 
         def elapsed() -> float:
             return time.perf_counter() - start
@@ -191,6 +195,20 @@ class Renderer:
             warnings=warnings,
         )
         return RenderResult(frame(), statistics, stopped)
+
+    def inspect(self, scene: Scene) -> tuple[np.ndarray, dict[str, int], dict[str, int]]:
+        """What the camera's rays cost in the scene's deep cubemap, without rendering.
+
+        Returns (height, width, 4) float32 of CUBEMAP_COSTS, the counts of the structure, and
+        its bytes by buffer. Raises the errors of scene/errors.py.
+        """
+        with self._context.moderngl:
+            if self._mapper is None:
+                self._mapper = ProgressivePhotonMapper(self._context, self._library)
+            self._mapper.build_deep_cubemap(scene)
+            cubemap = self._mapper.deep_cubemap
+            counts = cubemap.counts | {"resolution": cubemap.resolution}
+            return self._mapper.inspect_deep_cubemap(), counts, cubemap.memory_bytes
 
     def release(self) -> None:
         """Free the device; the renderer cannot be used afterwards."""

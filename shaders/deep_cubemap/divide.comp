@@ -12,8 +12,7 @@ layout(std140, binding = 0) uniform Parameters { DivideLevel parameters; };
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/tiles.glsl"
 #include "deep_cubemap/faces.glsl"
-
-layout(std430, binding = 4) restrict writeonly buffer BinnedCells { uint binned_cells[]; };
+#include "deep_cubemap/binned_cells.glsl"
 
 // Dividing pays off where the cells of the tile hold so many fewer triangles each that this outweighs the
 // steps from one to the next; and where all of them together do not hold too much more.
@@ -34,8 +33,8 @@ bool has_room(CubemapCell cell) {
 uint add_binned_cell(uint index, uint count) {
     uint number = atomicAdd(deep_cubemap.binned_cell_count, 1u);
     atomicAdd(deep_cubemap.binned_fragment_count, count);
-    if (number < deep_cubemap.binned_cell_capacity) binned_cells[number] = index;
-    return CELL_BINS << 30 | count;
+    if (number < deep_cubemap.binned_cell_capacity) binned_cells[number] = BinnedCell(index, count, 0u);
+    return CELL_BINS << 30 | number;
 }
 
 uint add_tile(uint tile, ivec2 cell, int face) {

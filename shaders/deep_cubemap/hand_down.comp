@@ -11,6 +11,7 @@ layout(std140, binding = 0) uniform Parameters { DivideLevel parameters; };
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/tiles.glsl"
+#include "deep_cubemap/binned_cells.glsl"
 #include "deep_cubemap/entries.glsl"
 #include "deep_cubemap/jobs.glsl"
 #include "deep_cubemap/fragments.glsl"
@@ -40,7 +41,8 @@ void main() {
     uvec2 depths = uvec2(fragment.near, fragment.far);
     uvec2 fractions = quantise_interval(depths, cell);
     uint quantised_depths = fractions.x | fractions.y << 16;
-    atomicOr(cubemap_cells[fragment.cell].slices, depth_slices(depths, cell));
+    uint slices = depth_slices(depths, cell);
+    atomicOr(cubemap_cells[fragment.cell].slices, slices);
     if (content_kind(cell.content) == CELL_TILE) {
         divide_fragment(fragment, tile_of_cell(content_tile(cell.content)));
     } else if (content_kind(cell.content) == CELL_LIST) {
@@ -50,6 +52,8 @@ void main() {
             cell_entries[place] = uvec2(fragment.triangle, quantised_depths);
         }
     } else {
+        uint number = binned_cell_number(cell.content);
+        if (number < deep_cubemap.binned_cell_capacity) atomicAdd(binned_cells[number].slices, uint(bitCount(slices)));
         uint place = atomicAdd(deep_cubemap.handed_binned_count, 1u);
         if (place < deep_cubemap.binned_fragment_capacity) {
             binned_fragments[place] = BinnedFragment(fragment.cell, fragment.triangle, quantised_depths);

@@ -8,13 +8,12 @@ layout(local_size_x = 64) in;
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/bins.glsl"
-
-layout(std430, binding = 4) restrict readonly buffer BinnedCells { uint binned_cells[]; };
+#include "deep_cubemap/binned_cells.glsl"
 
 void main() {
     uint index = invocation_index();
     if (index >= deep_cubemap.binned_cell_count) return;
-    CubemapCell cell = cubemap_cells[binned_cells[index]];
+    CubemapCell cell = cubemap_cells[binned_cells[index].cell];
     uint start = content_start(cell.content), count = uint(bins_total(cell));
     uint total = 0u;
     for (uint bin = 1u; bin <= count; ++bin) total += bin_ends[start + bin];

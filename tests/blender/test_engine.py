@@ -73,6 +73,15 @@ def test_only_the_passes_asked_for(lit, tmp_path):
     assert set(render_exr(lit, tmp_path)) == {"ViewLayer.Combined"}
 
 
+def test_the_deep_cubemap_pass(lit, tmp_path):
+    """Steps, triangle tests and listed triangles of the ray through each pixel."""
+    lit.rppm.deep_cubemap_pass = True
+    costs = render_exr(lit, tmp_path)["ViewLayer.Deep Cubemap"]
+    assert costs.shape == (32, 32, 3) and np.all(costs >= 0) and np.all(costs == np.floor(costs))
+    assert np.all(costs[16, 16] >= 1)  # sees the surface
+    assert costs[2, 2, 2] == 0  # sees nothing
+
+
 def test_png(lit, tmp_path):
     lit.render.image_settings.file_format = "PNG"
     lit.render.filepath = str(tmp_path / "picture.png")

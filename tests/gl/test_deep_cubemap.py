@@ -234,21 +234,23 @@ def test_a_crowd_at_the_centre(context, library):
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
 
 
-def test_a_list_that_the_device_cannot_hold_makes_coarser_cells(context, library, meshes, monkeypatch, caplog):
-    """And the same hits, with a warning that says what is missing."""
+def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshes, monkeypatch, caplog):
+    """And the same hits; with a warning where more than the fragments is too long."""
     rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=19))
     with Scene(context, library, meshes, PLAIN, 0) as scene:
-        expected, finest = scene.trace(rays), scene.cubemap.resolution
-        full = {name: size for name, size in scene.cubemap.memory_bytes.items() if size}
-    limit = 1 << 19
-    assert max(full.values()) > limit
-    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
-    with Scene(context, library, meshes, PLAIN, 0) as scene:
-        assert max(scene.cubemap.memory_bytes.values()) <= limit
-        assert scene.cubemap.resolution < finest
-        np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
-    assert "allows 0 MiB" in caplog.text or "allows 1 MiB" in caplog.text
-    assert "for now cells stay at a resolution" in caplog.text
+        expected, tiles, finest = scene.trace(rays), scene.cubemap.counts["tile"], scene.cubemap.resolution
+        assert max(scene.cubemap.memory_bytes.values()) > 1 << 19
+    for limit in (1 << 19, 360_000):
+        caplog.clear()
+        monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
+        with Scene(context, library, meshes, PLAIN, 0) as scene:
+            assert max(scene.cubemap.memory_bytes.values()) <= limit
+            assert scene.cubemap.counts["tile"] < tiles
+            np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
+            scene.build(0)  # again, starting with what was learnt
+            np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
+    assert scene.cubemap.resolution < finest
+    assert "allows 0 MiB in one buffer" in caplog.text and "for now cells stay at a resolution" in caplog.text
 
 
 def test_triangles_that_the_device_cannot_hold_are_an_error(context, library, meshes, monkeypatch):

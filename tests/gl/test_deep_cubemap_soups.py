@@ -50,3 +50,55 @@ def test_soups_about_any_grid_point(context, library, triangles, centre, origins
 )
 def test_soups_about_any_point(context, library, triangles, centre, origins, targets, resolution):
     check(context, library, triangles, centre, origins, targets, resolution)
+
+
+@st.composite
+def hard_triangles(draw):
+    """Slivers, huge triangles, needles through the centre, duplicates, degenerate ones; and the centre."""
+    seed = draw(st.integers(0, 2**32 - 1))
+    kinds = draw(
+        st.lists(
+            st.sampled_from(["sliver", "huge", "needle", "duplicate", "point", "line", "plain"]),
+            min_size=1,
+            max_size=14,
+        )
+    )
+    place = draw(st.sampled_from(["anywhere", "vertex", "edge", "plane"]))
+    rng = np.random.default_rng(seed)
+    centre = rng.uniform(-0.5, 0.5, 3).astype(np.float32)
+    triangles = []
+    for kind in kinds:
+        corners = rng.uniform(-1, 1, (3, 3))
+        if kind == "sliver":
+            corners[2] = corners[0] + (corners[1] - corners[0]) * rng.random() + rng.normal(size=3) * 1e-6
+        elif kind == "huge":
+            corners *= 1e4
+        elif kind == "needle":
+            corners[1] = 2 * centre.astype(float) - corners[0]
+            corners[2] = corners[1] + rng.normal(size=3) * 1e-6
+        elif kind == "duplicate" and triangles:
+            corners = triangles[rng.integers(0, len(triangles))][rng.permutation(3)]
+        elif kind == "point":
+            corners[:] = corners[0]
+        elif kind == "line":
+            corners[2] = corners[rng.integers(0, 2)]
+        triangles.append(corners)
+    triangles = np.array(triangles, np.float32)
+    if place != "anywhere":
+        weights = {"vertex": (1, 0, 0), "edge": (0.5, 0.5, 0), "plane": (2, -3, 2)}[place]
+        centre = (np.array(weights) @ triangles[rng.integers(0, len(triangles))]).astype(np.float32)
+    return triangles, centre, rng
+
+
+@settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(hard_triangles(), st.sampled_from([0, 4, 64, 1024]))
+def test_soups_of_hard_triangles(context, library, scene, resolution):
+    triangles, centre, rng = scene
+    corners = triangles[rng.integers(0, len(triangles), 64)].astype(float)
+    weights = rng.dirichlet((0.5, 0.5, 0.5), 64)
+    weights[:16] = np.eye(3)[rng.integers(0, 3, 16)]
+    targets = np.einsum("nk,nkx->nx", weights, corners)
+    targets[32:40] = centre
+    origins = rng.uniform(-1.5, 1.5, (64, 3)).astype(np.float32)
+    origins[40:48] = centre
+    check(context, library, triangles, centre, origins, targets, resolution)

@@ -39,4 +39,4 @@ def test_the_points_to_fall_back_to_are_near():
     first, *others = centres((3.0, 4.0, 5.0))
     distances = [np.linalg.norm(other - first) for other in others]
     assert len(others) >= 2 and distances == sorted(distances)
-    assert 0.0 < distances[0] and distances[-1] < 0.02 * GEOMETRY.radius
+    assert distances[0] > 0.0 and distances[-1] < 0.02 * GEOMETRY.radius

@@ -99,6 +99,7 @@ class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
         column.prop(context.view_layer, "use_pass_combined")
         column.prop(context.view_layer, "use_pass_z")
         column.prop(context.view_layer, "use_pass_normal")
+        column.prop(context.scene.rppm, "deep_cubemap_pass")
 
 
 CLASSES = (

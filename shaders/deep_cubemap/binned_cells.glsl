@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cells that get depth bins, kept while building: which, how many fragments they hold, and how many
+// slices all these touch together. Until its bins are allocated, such a cell's content is its number here.
+#include <BinnedCell>
+
+layout(std430, binding = 6) buffer BinnedCells { BinnedCell binned_cells[]; };
+
+uint binned_cell_number(uint content) { return content & 0x3fffffffu; }

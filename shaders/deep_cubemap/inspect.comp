@@ -1,0 +1,47 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint: DEEP_CUBEMAP_COUNT=1
+// What the rays through the pixels cost: (steps, triangle tests, entries in the cell of the hit, entries read).
+layout(local_size_x = 64) in;
+#include "common/invocation.glsl"
+#include <CameraView>
+#include "deep_cubemap/traverse.glsl"
+
+layout(std430, binding = 0) restrict readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 1) restrict writeonly buffer Inspections { vec4 inspections[]; };
+
+// Triangles listed in the leaf that a point lies in; those in several depth bins count as often.
+uint listed_at(vec3 point) {
+    vec3 size = abs(point);
+    int axis = size.x >= max(size.y, size.z) ? 0 : (size.y >= size.z ? 1 : 2);
+    int face = 2 * axis + (point[axis] < 0.0 ? 1 : 0);
+    vec3 seen = to_face(point, face);
+    int root_exponent = int(deep_cubemap.root_exponent), levels = int(deep_cubemap.last_level);
+    float resolution = float(1 << (root_exponent + 2 * levels));
+    ivec2 finest = ivec2(clamp((seen.xy / max(seen.z, 1e-30) * 0.5 + 0.5) * resolution, 0.0, resolution - 1.0));
+    uint index = dense_cell_index(face, finest >> (2 * levels), 0, 1 << root_exponent);
+    for (int level = 1; level <= levels; ++level) {
+        uint content = cubemap_cells[index].content;
+        if (content_kind(content) != CELL_TILE) break;
+        index = content_tile(content) + tile_offset(finest >> (2 * (levels - level)));
+    }
+    CubemapCell cell = cubemap_cells[index];
+    uint start = content_start(cell.content);
+    return content_kind(cell.content) == CELL_BINS
+        ? bin_ends[start + uint(bins_total(cell))] - bin_ends[start] : content_count(cell.content);
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= camera.width * camera.height) return;
+    vec2 fraction = (vec2(index % camera.width, index / camera.width) + 0.5) / vec2(camera.width, camera.height);
+    vec2 at = mix(camera.window.xz, camera.window.yw, fraction);
+    vec3 aside = at.x * camera.right + at.y * camera.up;
+    Ray ray = camera.orthographic != 0u
+        ? Ray(camera.position + aside, NO_TRIANGLE, camera.forward, camera.clip_end)
+        : Ray(camera.position, NO_TRIANGLE, normalize(camera.forward + aside), INFINITY_DISTANCE);
+    Hit hit = deep_cubemap_hit(ray);
+    uint listed = hit.triangle == NO_TRIANGLE
+        ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.centre);
+    inspections[index] = vec4(walk_counts.xy, listed, walk_counts.z);
+}

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What rays cost in the deep cubemap, as pictures."""
+
+import numpy as np
+import pytest
+import scenes
+
+from rppm_addon.scene import Camera, Instance, RenderSettings, Scene
+
+
+def looking_down(meshes, orthographic=False, width=40, height=30):
+    """At the plane z = 0 from 2 m above, 4 x 3 m of it."""
+    window = (-2.0, 2.0, -1.5, 1.5) if orthographic else (-1.0, 1.0, -0.75, 0.75)
+    camera = Camera(scenes.placed(0, 0, 2), window, width, height, orthographic)
+    instances = [Instance(index, np.eye(4), [0]) for index in range(len(meshes))]
+    return Scene(camera, meshes, instances, [scenes.diffuse(1, 1, 1)], settings=RenderSettings())
+
+
+SQUARE = scenes.rectangle("square", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
+
+
+@pytest.mark.parametrize("orthographic", [False, True])
+def test_costs_lie_where_the_geometry_is(renderer, orthographic):
+    costs, counts, memory = renderer.inspect(looking_down([SQUARE], orthographic))
+    assert costs.shape == (30, 40, 4) and np.isfinite(costs).all()
+    steps, tests, listed, entries = np.moveaxis(costs, -1, 0)
+    x, y = (np.arange(40) + 0.5) / 10 - 2, (np.arange(30) + 0.5) / 10 - 1.5
+    on_square = (np.abs(x)[None, :] < 1) & (np.abs(y)[:, None] < 1)
+    assert np.all((listed > 0) == on_square)
+    assert listed.max() == 2  # along the diagonal
+    assert np.all(tests[on_square] >= 1) and np.all(entries >= tests)
+    assert np.all(steps[on_square] >= 1)
+    assert counts["triangle"] == 2 and counts["entry"] > 0
+    assert sum(memory.values()) > 0 and all("deep cubemap" in name for name in memory)
+
+
+def test_nothing_costs_nothing(renderer):
+    costs, counts, _ = renderer.inspect(looking_down([]))
+    assert not costs.any() and counts["triangle"] == 0
+
+
+def test_crowds_have_long_lists_or_fine_cells(renderer):
+    """A ball of 20 000 triangles beside the square: cells get finer, lists stay short."""
+    ball = scenes.sphere("ball", 200, 100)
+    costs, counts, _ = renderer.inspect(looking_down([SQUARE, ball]))
+    plain = renderer.inspect(looking_down([SQUARE]))[1]
+    assert counts["resolution"] > plain["resolution"]
+    assert np.median(costs[..., 2][costs[..., 2] > 0]) < 100
+
+
+def test_the_pass_comes_with_the_frame_if_asked_for(renderer):
+    scene = looking_down([SQUARE])
+    scene.world.radiance = np.ones(3)
+    scene.settings.iterations, scene.settings.photons = 1, 16
+    assert renderer.render(scene).frame.deep_cubemap is None
+    scene.settings.deep_cubemap_pass = True
+    found = renderer.render(scene).frame.deep_cubemap
+    np.testing.assert_array_equal(found, renderer.inspect(scene)[0][..., :3])
