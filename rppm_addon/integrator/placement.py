@@ -31,3 +31,8 @@ def cubemap_centres(scene: Scene, geometry: Geometry) -> Iterator[np.ndarray]:
     yield point
     for share in (0.1, 0.5, 2.0):
         yield point + share * _NUDGE * geometry.radius
+
+
+def radius_about(centre: np.ndarray, geometry: Geometry) -> float:
+    """The greatest distance from a point to the scene's bounds, metres: no triangle lies farther out."""
+    return float(np.linalg.norm(np.maximum(centre - geometry.bounds_low, geometry.bounds_high - centre)))

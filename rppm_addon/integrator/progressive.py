@@ -22,7 +22,7 @@ from .geometry import Geometry
 from .importons import Importons
 from .inspection import inspect_deep_cubemap
 from .photons import Photons, flux_balance
-from .placement import cubemap_centres
+from .placement import cubemap_centres, radius_about
 from .resolve import Resolve
 from .splatting import Splatting
 from .stages import Stages
@@ -89,12 +89,11 @@ class ProgressivePhotonMapper:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
         for centre in cubemap_centres(self.scene, self._geometry):
             self.centre = centre
-            reach = np.maximum(centre - self._geometry.bounds_low, self._geometry.bounds_high - centre)
             self._deep_cubemap.build(
                 self._geometry.triangles.buffer,
                 self._geometry.triangle_count,
                 centre,
-                float(np.linalg.norm(reach)),
+                radius_about(centre, self._geometry),
                 self.scene.settings.cubemap_resolution,
             )
             if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:

@@ -20,6 +20,7 @@ from ray_sets import different, photon_origins, record_rays, triangles
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.integrator.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.placement import radius_about
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import HIT
 from rppm_addon.scene import Camera, Scene, load_scene
@@ -123,15 +124,11 @@ class Subject:
     def build(self, cubemap: DeepCubemap, centre=None, resolution: int = 0) -> None:
         """Build a cubemap of the scene; at the mapper's centre where none is given. Resolution 0 is automatic."""
         centre = np.asarray(self.automatic_centre if centre is None else centre, float)
-        reach = max(
-            np.abs(self.geometry.bounds_low - centre).max(),
-            np.abs(self.geometry.bounds_high - centre).max(),
-        )
         cubemap.build(
             self.geometry.triangles.buffer,
             self.triangle_count,
             tuple(centre),
-            float(np.sqrt(3.0) * max(reach, 1e-9)),
+            radius_about(centre, self.geometry),
             resolution,
         )
 

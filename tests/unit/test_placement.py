@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.placement import FAR, cubemap_centres
+from rppm_addon.integrator.placement import FAR, cubemap_centres, radius_about
 
 GEOMETRY = SimpleNamespace(centre=np.array([1.0, 0.0, 0.0]), radius=2.0)
 
@@ -40,3 +40,9 @@ def test_the_points_to_fall_back_to_are_near():
     distances = [np.linalg.norm(other - first) for other in others]
     assert len(others) >= 2 and distances == sorted(distances)
     assert distances[0] > 0.0 and distances[-1] < 0.02 * GEOMETRY.radius
+
+
+def test_the_radius_reaches_the_farthest_corner():
+    bounds = SimpleNamespace(bounds_low=np.array([-1.0, 0.0, 0.0]), bounds_high=np.array([1.0, 2.0, 4.0]))
+    assert radius_about(np.array([3.0, 1.0, 1.0]), bounds) == pytest.approx(np.sqrt(16 + 1 + 9))
+    assert radius_about(np.array([0.0, 1.0, 2.0]), bounds) == pytest.approx(np.sqrt(1 + 1 + 4))
