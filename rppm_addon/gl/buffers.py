@@ -36,6 +36,12 @@ class GrowingBuffer:
                 f"{self.name} needs {size / 2**20:.0f} MiB but the device {self._context.information.name} "
                 f"allows {limit / 2**20:.0f} MiB in one buffer; {self._remedy}"
             )
+        available = self._context.available_memory
+        if available is not None and size > available + self.buffer.size:
+            raise DeviceError(
+                f"{self.name} needs {size / 2**20:.0f} MiB but the device {self._context.information.name} "
+                f"has {available / 2**20:.0f} MiB left; {self._remedy}"
+            )
         self.buffer.release()
         try:
             self.buffer = self._context.moderngl.buffer(reserve=size)

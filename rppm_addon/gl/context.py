@@ -6,6 +6,7 @@ import logging
 import os
 import sys
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from ..scene.errors import DeviceError
 
@@ -23,6 +24,7 @@ _LIMITS = (
     "GL_MAX_VIEWPORT_DIMS",
 )
 _NUM_PROGRAM_BINARY_FORMATS = 0x87FE
+_AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87FC}
 
 
 @dataclass
@@ -114,13 +116,30 @@ class Context:
 
     @property
     def has_program_binaries(self) -> bool:
-        count = ctypes.c_int(0)
+        return self._integers(_NUM_PROGRAM_BINARY_FORMATS)[0] > 0
+
+    @property
+    def available_memory(self) -> int | None:
+        """Bytes that the device has left by its driver's word; None where the driver does not tell."""
+        if self.is_software:
+            try:
+                lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+            except OSError:
+                return None
+            return next((int(line.split()[1]) << 10 for line in lines if line.startswith("MemAvailable:")), None)
+        for extension, name in _AVAILABLE_KIBIBYTES.items():
+            if extension in self.moderngl.extensions:
+                return self._integers(name)[0] << 10
+        return None
+
+    def _integers(self, name: int) -> list[int]:
+        """glGetIntegerv of up to four numbers."""
+        values = (ctypes.c_int * 4)()
         get_integer = self.function("glGetIntegerv", None, ctypes.c_uint, ctypes.POINTER(ctypes.c_int))
         if get_integer is None:  # Windows resolves GL 1.1 functions from the library itself
-            ctypes.WinDLL("opengl32.dll").glGetIntegerv(_NUM_PROGRAM_BINARY_FORMATS, ctypes.byref(count))
-        else:
-            get_integer(_NUM_PROGRAM_BINARY_FORMATS, ctypes.byref(count))
-        return count.value > 0
+            get_integer = ctypes.WinDLL("opengl32.dll").glGetIntegerv
+        get_integer(name, values)
+        return list(values)
 
     def barrier(self) -> None:
         """Order everything written before against everything read after."""

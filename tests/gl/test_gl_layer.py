@@ -8,6 +8,7 @@ import pytest
 
 from rppm_addon.gl import binary_cache, sources
 from rppm_addon.gl.buffers import GrowingBuffer
+from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator import records as integrator_records  # noqa: F401  registers the records
@@ -164,3 +165,15 @@ def test_growing_buffers_keep_to_the_limit(context):
         buffer.require(context.storage_block_limit + 1)
     buffer.upload(np.arange(5, dtype=np.uint32))
     np.testing.assert_array_equal(buffer.read(np.uint32, 5), np.arange(5))
+
+
+def test_a_buffer_larger_than_the_memory_left_is_an_error_in_time(context, monkeypatch):
+    assert context.available_memory is None or context.available_memory > 1 << 20
+    buffer = GrowingBuffer(context, "rocks", "carry fewer")
+    buffer.require(1 << 10)
+    monkeypatch.setattr(Context, "available_memory", 3 << 20)
+    with pytest.raises(DeviceError, match="rocks needs 8 MiB but the device .* has 3 MiB left; carry fewer"):
+        buffer.require(8 << 20)
+    assert buffer.size == 1 << 10  # what there was is kept
+    assert buffer.require(2 << 20)
+    buffer.release()
