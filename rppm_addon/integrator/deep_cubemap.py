@@ -474,8 +474,10 @@ class DeepCubemap:
 def _expected(triangle_count: int) -> dict[str, int]:
     """Lengths of lists that ordinary scenes of so many triangles do not pass."""
     return {
-        "job": 2 * triangle_count + 4096,
-        "fragment": 3 * triangle_count + 16384,
-        "tile": triangle_count // 8 + 4096,
-        "entry": 4 * triangle_count + 16384,
+        "job": 5 * triangle_count // 2 + 4096,
+        "fragment": 4 * triangle_count + 16384,
+        "tile": triangle_count // 32 + 4096,
+        "entry": 7 * triangle_count + 16384,
+        "binned_cell": triangle_count // 4 + 4096,
+        "binned_fragment": 5 * triangle_count + 16384,
     }

@@ -64,13 +64,21 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
         end = bin_ends[start + uint(bin) + 1u];
     }
     for (int remaining = bins.y - bins.x; ; --remaining) {
-        for (uint place = first; place < end; ++place) {
+        uint place = first;
+        while (true) {
+            // on to the next candidate first: the threads of a group then test theirs together
+            uint triangle = NO_TRIANGLE;
+            for (; place < end && triangle == NO_TRIANGLE; ++place) {
 #ifdef DEEP_CUBEMAP_COUNT
-            ++walk_counts.z;
+                ++walk_counts.z;
 #endif
-            uvec2 entry = cell_entries[place];
-            if ((entry.y >> 16) < wanted.x || (entry.y & 0xffffu) > wanted.y || (entry.x & seen) != 0u) continue;
-            test_triangle(walk, entry.x & ENTRY_TRIANGLE, best);
+                uvec2 entry = cell_entries[place];
+                if ((entry.y >> 16) >= wanted.x && (entry.y & 0xffffu) <= wanted.y && (entry.x & seen) == 0u) {
+                    triangle = entry.x & ENTRY_TRIANGLE;
+                }
+            }
+            if (triangle == NO_TRIANGLE) break;
+            test_triangle(walk, triangle, best);
         }
         if (remaining <= 0) return;
         if (best.triangle != NO_TRIANGLE) {
@@ -134,6 +142,12 @@ uint tile_at(TileStack tiles, int level) {
     return level <= 3 ? low : high;
 }
 
+// The tile of the start level that a cell lies in.
+uint start_tile(int face, ivec2 cell, int finest, int root_exponent) {
+    ivec2 start = cell >> (finest - root_exponent - 2 * START_LEVEL);
+    return dense_cell_index(face, start, START_LEVEL, 1 << root_exponent) - tile_offset(start);
+}
+
 // Walks the cells of a face from one distance to another. The place is always one of the finest cells;
 // `level` says how much around it is looked at together: a cell that is divided, or that holds nothing
 // at the ray's depths, is left at once.
@@ -147,12 +161,11 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
     vec2 starts = mix(vec2(enter), vec2(direction.z > 0.0 ? leave : enter), equal(steps, ivec2(0)));
     ivec2 cell = cell_at(origin, direction, starts, steps, resolution);
     float here = enter;
-    TileStack tiles; uint tile;
+    TileStack tiles = TileStack(0u, 0u, 0u, 0u, 0u, 0u);
     int level = START_LEVEL;
-    tile = dense_cell_index(face, cell >> (finest - root_exponent - 2 * START_LEVEL), START_LEVEL, 1 << root_exponent) - tile_offset(cell >> (finest - root_exponent - 2 * START_LEVEL));
+    uint tile = start_tile(face, cell, finest, root_exponent);
     // Never reached: a walk crosses 2 * resolution cells at most and changes level for few of them.
-    int most_steps = 60000;
-    for (int count = 0; count < most_steps; ++count) {
+    for (int count = 0; count < 60000; ++count) {
 #ifdef DEEP_CUBEMAP_COUNT
         ++walk_counts.x;
 #endif
@@ -209,7 +222,7 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
         }
         if (level <= START_LEVEL) {
             level = START_LEVEL;
-            tile = dense_cell_index(face, cell >> (finest - root_exponent - 2 * START_LEVEL), START_LEVEL, 1 << root_exponent) - tile_offset(cell >> (finest - root_exponent - 2 * START_LEVEL));
+            tile = start_tile(face, cell, finest, root_exponent);
         }
     }
 }
@@ -290,15 +303,14 @@ bool clip_to_ball(float closest, float squared_miss, float squared_length, float
     return room > 0.0;
 }
 
-// Part of [from, to] within the box around all triangles. Axes along which the ray does not move
-// yield infinities or NaN, which min and max here leave aside.
+// Part of [from, to] within the box around all triangles; axes along which the ray hardly moves are left aside.
 void clip_to_box(CubemapWalk walk, inout float from, inout float to) {
     vec3 low = from_sortable_bits(~walk.cubemap.low_complement) - walk.cubemap.margin;
     vec3 high = from_sortable_bits(walk.cubemap.high) + walk.cubemap.margin;
     bvec3 moves = greaterThan(abs(walk.direction), vec3(1e-20));
     vec3 a = (low - walk.origin) / walk.direction, b = (high - walk.origin) / walk.direction;
     vec3 enter = mix(vec3(from), min(a, b), moves), leave = mix(vec3(to), max(a, b), moves);
-    from = max(from, max(enter.x, max(enter.y, enter.z)) );
+    from = max(from, max(enter.x, max(enter.y, enter.z)));
     to = min(to, min(leave.x, min(leave.y, leave.z)));
 }
 

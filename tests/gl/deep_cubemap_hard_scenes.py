@@ -66,9 +66,9 @@ def all_twice() -> np.ndarray:
 
 
 def dust() -> np.ndarray:
-    """Five thousand triangles in a ball of a five-thousandth of the room, and the room."""
+    """Three thousand triangles in a ball of a five-thousandth of the room, and the room."""
     rng = np.random.default_rng(8)
-    grains = rng.normal(size=(5000, 1, 3)) * 2e-4 + rng.normal(size=(5000, 3, 3)) * 1e-5
+    grains = rng.normal(size=(3000, 1, 3)) * 2e-4 + rng.normal(size=(3000, 3, 3)) * 1e-5
     return np.concatenate([furnished_room(2), grains + [0.62, 0.31, 0.44]]).astype(np.float32)
 
 
@@ -82,6 +82,7 @@ SCENES = {
     "large triangles": large_triangles,
     "all twice": all_twice,
     "dust": dust,
+    "dense meshes": lambda: room_with_meshes(60_000),
 }
 
 
