@@ -87,7 +87,10 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
 
 
 class Emission:
-    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
+    """The lights of a scene: buffers for the shaders that include emission/lights.glsl.
+
+    ``photon_flux`` is the mean flux of a photon as it leaves its light, W, the channels' mean.
+    """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         self._program = library.compute("emission/emit.comp")
@@ -100,6 +103,7 @@ class Emission:
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_soft_lights = False
+        self.photon_flux = 0.0
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -166,6 +170,7 @@ class Emission:
         if sum(weights) <= 0:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
+        self.photon_flux = sum(powers) / scene.settings.photons
         counts = share_out(np.array(weights), scene.settings.photons)
         # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
         selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)

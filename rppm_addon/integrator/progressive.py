@@ -24,7 +24,7 @@ from .inspection import inspect_deep_cubemap
 from .photons import Photons, flux_balance
 from .placement import cubemap_centres, radius_about
 from .resolve import Resolve
-from .splatting import Splatting
+from .splatting import Splatting, radiance_quantum
 from .stages import Stages
 
 log = logging.getLogger(__name__)
@@ -189,6 +189,14 @@ class ProgressivePhotonMapper:
             self._wide_radius = wide_radius(
                 self._splatting.diffused_count, self._geometry.bounds_low, self._geometry.bounds_high
             )
+        self._splatting.count_in(
+            radiance_quantum(self._emission.photon_flux, max(self.splat_radii)),
+            self._roulette_seed() if self.scene.settings.splat_roulette else 0,
+        )
+
+    def _roulette_seed(self) -> int:
+        """Odd, so never 0, and another one for each iteration and seed."""
+        return (2 * (self.iteration + 0x9E3779B1 * self.scene.settings.seed) + 1) % (1 << 32)
 
     def _begin_band(self, view: np.ndarray, first_row: int) -> None:
         self._count = int(view["width"][0] * view["height"][0])

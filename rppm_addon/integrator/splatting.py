@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photon splatting: onto the camera view (direct) and onto cubemap views (indirect), section 4.2."""
 
+import math
+
 import moderngl
 import numpy as np
 
@@ -16,10 +18,30 @@ _FACES_OF_A_SPLAT = 3
 
 Record("StoredParameters", count="uint", first_slot="uint")
 Record("SplatParameters", count="uint", radius="float", wide_radius="float")
-Record("QuadParameters", width="uint", height="uint", wide_radius="float")
-Record("CubeParameters", centre="vec3", count="uint", radius="float", wide_radius="float", resolution="uint")
+Record("QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint")
+Record(
+    "CubeParameters",
+    centre="vec3",
+    count="uint",
+    radius="float",
+    wide_radius="float",
+    resolution="uint",
+    quanta="float",
+)
 
 _STORED_HEADER = 8
+_PHOTON_QUANTA = 1 << 24
+_GATHERED = 24
+
+
+def radiance_quantum(photon_flux: float, radius: float) -> float:
+    """W/(m^2 sr), a power of two: what the sums of splats count in.
+
+    A white diffuse surface reflects about 2^24 of them when a photon of mean flux (W) is spread over a disk of the
+    largest splat radius (m). Sums end at 2^64.
+    """
+    radiance = photon_flux / (math.pi**2 * max(radius, 1e-12) ** 2) / _PHOTON_QUANTA
+    return 2.0 ** math.floor(math.log2(min(max(radiance, 1e-30), 1e20)))
 
 
 class Splatting:
@@ -43,18 +65,16 @@ class Splatting:
         self.gathered = GrowingBuffer(context, "gathered radiance")
         self._heads.require(4 * 6 * (_CUBE_RESOLUTION**2 + (_CUBE_RESOLUTION // _BLOCK_SIZE) ** 2))
         self._core.require(4 * (width * rows + 1))
-        self.gathered.require(12 * width * rows)
-        self.direct_splats = gl.texture((width, rows), 4, dtype="f4")
-        self.direct_splats.filter = (moderngl.NEAREST, moderngl.NEAREST)
-        self._direct_view = gl.framebuffer([self.direct_splats])
+        self.gathered.require(_GATHERED * width * rows)
+        self._direct_view = gl.empty_framebuffer((width, rows))
         self._cube_size = (3 * _CUBE_RESOLUTION, 2 * _CUBE_RESOLUTION)
         self._cube_view = gl.empty_framebuffer(self._cube_size)
         self.stored_count = self.diffused_count = 0
+        self.count_in(1.0, 0)
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        sizes = {b.name: b.size for b in (self._stored, self._jobs, self._heads, self._core, self.gathered)}
-        return sizes | {"direct splats": 16 * self.direct_splats.width * self.direct_splats.height}
+        return {b.name: b.size for b in (self._stored, self._jobs, self._heads, self._core, self.gathered)}
 
     def collect(self, photons: moderngl.Buffer, slots: int, first_slot: int) -> None:
         """List the photons to splat: those stored in slots from ``first_slot`` to ``slots``."""
@@ -69,9 +89,13 @@ class Splatting:
         self.stored_count, self.diffused_count = map(int, self._stored.read(np.uint32, 2))
         self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, self.stored_count))
 
+    def count_in(self, quantum: float, roulette: int) -> None:
+        """Set what the sums count in, W/(m^2 sr), and the seed of the fragments' roulette; 0 keeps them all."""
+        self.quantum = quantum
+        self._counting = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette}
+
     def begin(self) -> None:
         """Forget what the band before gathered."""
-        self._direct_view.clear(0.0, 0.0, 0.0, 0.0)
         self.gathered.clear()
 
     def _reset_jobs(self) -> None:
@@ -99,11 +123,9 @@ class Splatting:
         self._direct.draw(
             self._direct_view,
             self._jobs.buffer,
-            {"Jobs": self._jobs.buffer, "Photons": photons, "Importons": importons},
-            {"width": width, "height": rows, "wide_radius": radii[1]},
+            {"Jobs": self._jobs.buffer, "Photons": photons, "Importons": importons, "Gathered": self.gathered.buffer},
+            {"width": width, "height": rows, "wide_radius": radii[1], **self._counting},
             viewport=(0, 0, width, rows),
-            state=moderngl.BLEND,
-            blend=(moderngl.ONE, moderngl.ONE),
         )
 
     def indirect(
@@ -120,7 +142,13 @@ class Splatting:
         self._heads.clear()
         self._core.buffer.write(bytes(4))
         self._reset_jobs()
-        cube = {"centre": centre, "radius": radii[0], "wide_radius": radii[1], "resolution": _CUBE_RESOLUTION}
+        cube = {
+            "centre": centre,
+            "radius": radii[0],
+            "wide_radius": radii[1],
+            "resolution": _CUBE_RESOLUTION,
+            "quanta": 1.0 / self.quantum,
+        }
         stored = {"Photons": photons, "StoredPhotons": self._stored.buffer}
         self._insert.run(
             count,
@@ -137,7 +165,7 @@ class Splatting:
             self._cube_view,
             self._jobs.buffer,
             {"Jobs": self._jobs.buffer, "Photons": photons, "Heads": self._heads.buffer, **gathered},
-            {"width": self._cube_size[0], "height": self._cube_size[1], "wide_radius": radii[1]},
+            {"width": self._cube_size[0], "height": self._cube_size[1], "wide_radius": radii[1], **self._counting},
             viewport=(0, 0, *self._cube_size),
         )
         self._core_program.run(
@@ -154,7 +182,6 @@ class Splatting:
             self._core,
             self.gathered,
             self._direct_view,
-            self.direct_splats,
             self._cube_view,
         ):
             resource.release()

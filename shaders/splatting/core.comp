@@ -25,6 +25,7 @@ void main() {
     if (dot(p, p) > reach * reach) return;
     for (uint k = 0u; k < core_count; ++k) {
         vec3 radiance;
-        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance)) add_gathered(core_importons[k], radiance);
+        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance))
+            add_gathered(core_importons[k], radiance, parameters.quanta);
     }
 }
