@@ -27,12 +27,27 @@ def wide_radius(diffused_photons: int, bounds_low: np.ndarray, bounds_high: np.n
     """Radius of the first iteration for photons that a diffuse surface has scattered, metres.
 
     Such light varies slowly, and its photons are spread over all of the scene: the disk holds
-    EXPECTED_PHOTONS of them where they lie evenly on surfaces as large as the bounds' six sides.
+    EXPECTED_PHOTONS of them where they lie evenly on surfaces as large as the bounds' six sides. Once photons
+    have been seen, fitted_wide_radius follows them.
     """
     x, y, z = bounds_high - bounds_low
     area = 2.0 * (x * y + y * z + z * x)
     spaced = math.sqrt(EXPECTED_PHOTONS * area / (math.pi * max(diffused_photons, 1)))
-    return min(spaced, 0.05 * float(np.linalg.norm(bounds_high - bounds_low)))
+    return min(spaced, widest_radius(bounds_low, bounds_high))
+
+
+def widest_radius(bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
+    """What the wide radius never exceeds, metres: a twentieth of the scene's diagonal."""
+    return 0.05 * float(np.linalg.norm(bounds_high - bounds_low))
+
+
+def fitted_wide_radius(radius: float, counts: np.ndarray) -> float:
+    """The wide radius with which half of the view would find EXPECTED_PHOTONS or more.
+
+    ``counts`` (n,) are those that pixels found with ``radius``; pixels without any may see no diffuse surface.
+    """
+    found = counts[counts > 0]
+    return radius * math.sqrt(EXPECTED_PHOTONS / float(np.median(found))) if len(found) else radius
 
 
 def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius: float) -> tuple[float, float]:

@@ -12,13 +12,14 @@ from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
-from .bandwidth import radius_in_pixels, radius_limits, shrinkage, wide_radius
+from .bandwidth import fitted_wide_radius, radius_in_pixels, radius_limits, shrinkage, wide_radius, widest_radius
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
 from .gbuffer import GBuffer, bands_of, camera_view, filter_offsets
 from .geometry import Geometry
+from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
 from .inspection import inspect_deep_cubemap
 from .photons import Photons, flux_balance
@@ -48,6 +49,7 @@ class ProgressivePhotonMapper:
         self.build_seconds = 0.0
         self._views: list = []
         self._wide_radius = 0.0
+        self._diffused_photons: list[np.ndarray] = []
 
     def build(self, scene: Scene) -> None:
         """Init(): take a scene, allocate its buffers and build the deep cubemap.
@@ -81,6 +83,7 @@ class ProgressivePhotonMapper:
         scene.settings.validate()
         self._release_views()
         self.iteration = 0
+        self._diffused_photons = []
         self.scene = scene
         self._materials.build(scene.materials, scene.images)
         self._geometry.build(scene, self._materials.default_material)
@@ -114,6 +117,8 @@ class ProgressivePhotonMapper:
                 else:
                     self._indirect_splatting()
             self._update_film()
+            if self._splatting.counting:
+                self._diffused_photons.append(self._splatting.diffused_photons(self._count))
 
     @property
     def splat_radii(self) -> tuple[float, float]:
@@ -178,6 +183,9 @@ class ProgressivePhotonMapper:
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
+        if 1 < self.iteration <= LEARNING_ITERATIONS + 1:
+            with self.timers.stage("learning"):
+                self._learn()
         self._photons.run(self._stages, self.iteration)
         # With next-event rays the photons' first hits would count direct light twice.
         first = self._photons.photon_count if self.scene.settings.direct_light is DirectLightMode.RAYS else 0
@@ -192,7 +200,17 @@ class ProgressivePhotonMapper:
         self._splatting.count_in(
             radiance_quantum(self._emission.photon_flux, max(self.splat_radii)),
             self._roulette_seed() if self.scene.settings.splat_roulette else 0,
+            learns_after(self.iteration),
         )
+
+    def _learn(self) -> None:
+        """From the iteration before: where photons are of use, and how many of the diffused ones half of the view finds."""
+        self._emission.learn(self._photons.photons.buffer, self._photons.segments, self.iteration - 1)
+        if self._diffused_photons:
+            low, high = self._geometry.bounds_low, self._geometry.bounds_high
+            fitted = fitted_wide_radius(self._wide_radius, np.concatenate(self._diffused_photons))
+            self._wide_radius = min(fitted, widest_radius(low, high))
+            self._diffused_photons = []
 
     def _roulette_seed(self) -> int:
         """Odd, so never 0, and another one for each iteration and seed."""

@@ -18,7 +18,7 @@ _FACES_OF_A_SPLAT = 3
 
 Record("StoredParameters", count="uint", first_slot="uint")
 Record("SplatParameters", count="uint", radius="float", wide_radius="float")
-Record("QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint")
+Record("QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint", counting="uint")
 Record(
     "CubeParameters",
     centre="vec3",
@@ -49,7 +49,6 @@ class Splatting:
 
     def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
         gl = context.moderngl
-        self._context = context
         self._stored_program = library.compute("splatting/stored.comp")
         self._direct_jobs = library.compute("splatting/direct_jobs.comp")
         self._direct = library.draw("splatting/quads.vert", "splatting/direct.frag")
@@ -65,16 +64,19 @@ class Splatting:
         self.gathered = GrowingBuffer(context, "gathered radiance")
         self._heads.require(4 * 6 * (_CUBE_RESOLUTION**2 + (_CUBE_RESOLUTION // _BLOCK_SIZE) ** 2))
         self._core.require(4 * (width * rows + 1))
+        self._diffused_photons = GrowingBuffer(context, "diffused photons")
         self.gathered.require(_GATHERED * width * rows)
+        self._diffused_photons.require(4 * width * rows)
         self._direct_view = gl.empty_framebuffer((width, rows))
         self._cube_size = (3 * _CUBE_RESOLUTION, 2 * _CUBE_RESOLUTION)
         self._cube_view = gl.empty_framebuffer(self._cube_size)
         self.stored_count = self.diffused_count = 0
-        self.count_in(1.0, 0)
+        self.count_in(1.0, 0, False)
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {b.name: b.size for b in (self._stored, self._jobs, self._heads, self._core, self.gathered)}
+        buffers = (self._stored, self._jobs, self._heads, self._core, self.gathered, self._diffused_photons)
+        return {buffer.name: buffer.size for buffer in buffers}
 
     def collect(self, photons: moderngl.Buffer, slots: int, first_slot: int) -> None:
         """List the photons to splat: those stored in slots from ``first_slot`` to ``slots``."""
@@ -89,14 +91,18 @@ class Splatting:
         self.stored_count, self.diffused_count = map(int, self._stored.read(np.uint32, 2))
         self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, self.stored_count))
 
-    def count_in(self, quantum: float, roulette: int) -> None:
-        """Set what the sums count in, W/(m^2 sr), and the seed of the fragments' roulette; 0 keeps them all."""
+    def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
+        """Set what the sums count in, W/(m^2 sr), the seed of the fragments' roulette (0 keeps them all), and
+        whether to count the diffused photons of the camera's first hits."""
         self.quantum = quantum
-        self._counting = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette}
+        self.counting = counting
+        self._counting = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette, "counting": counting}
 
     def begin(self) -> None:
         """Forget what the band before gathered."""
         self.gathered.clear()
+        if self.counting:
+            self._diffused_photons.clear()
 
     def _reset_jobs(self) -> None:
         """The arguments of the indirect draw: no vertices yet, one instance."""
@@ -123,10 +129,20 @@ class Splatting:
         self._direct.draw(
             self._direct_view,
             self._jobs.buffer,
-            {"Jobs": self._jobs.buffer, "Photons": photons, "Importons": importons, "Gathered": self.gathered.buffer},
+            {
+                "Jobs": self._jobs.buffer,
+                "Photons": photons,
+                "Importons": importons,
+                "Gathered": self.gathered.buffer,
+                "DiffusedPhotons": self._diffused_photons.buffer,
+            },
             {"width": width, "height": rows, "wide_radius": radii[1], **self._counting},
             viewport=(0, 0, width, rows),
         )
+
+    def diffused_photons(self, count: int) -> np.ndarray:
+        """(count,) how many diffused photons the importons of the band's first hits took, where they are counted."""
+        return self._diffused_photons.read(np.uint32, count)
 
     def indirect(
         self,
@@ -181,6 +197,7 @@ class Splatting:
             self._heads,
             self._core,
             self.gathered,
+            self._diffused_photons,
             self._direct_view,
             self._cube_view,
         ):

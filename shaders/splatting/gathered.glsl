@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Radiance gathered by each importon, added to by many threads at once: sums of whole quanta in 64 bits, as a
 // low and a high word, since the sum of integers does not depend on their order and that of floats does.
+// The includer declares the storage block of photons[].
 
 layout(std430, binding = 4) buffer Gathered { uint gathered_words[]; };
 
@@ -18,7 +19,9 @@ void add_quanta(uint place, float quanta) {
     if (carry > 0u) atomicAdd(gathered_words[place + 1u], carry);
 }
 
-void add_gathered(uint importon, vec3 radiance, float quanta) {
+// Threads that meet here write the same mark.
+void add_gathered(uint importon, uint photon, vec3 radiance, float quanta) {
+    photons[photon].contributed = 1u;
     add_quanta(6u * importon, radiance.r * quanta);
     add_quanta(6u * importon + 2u, radiance.g * quanta);
     add_quanta(6u * importon + 4u, radiance.b * quanta);

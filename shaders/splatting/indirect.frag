@@ -5,12 +5,12 @@
 #include <QuadParameters>
 #include <Importon>
 #include "common/photon.glsl"
-#include "splatting/gathered.glsl"
 layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
 #include "splatting/roulette.glsl"
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
+#include "splatting/gathered.glsl"
 #include "common/importon.glsl"
 
 flat in uint photon_number;
@@ -26,7 +26,7 @@ void main() {
     while (entry != 0u) {
         uint importon = entry - 1u;
         vec3 radiance;
-        if (density_estimate(importon, photon_number, parameters.wide_radius, radiance)) add_gathered(importon, radiance, parameters.quanta);
+        if (density_estimate(importon, photon_number, parameters.wide_radius, radiance)) add_gathered(importon, photon_number, radiance, parameters.quanta);
         entry = importons[importon].next;
     }
 }
