@@ -4,8 +4,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-PPM_BUFFERS = ("film", "gathered radiance", "direct splats", "photons")
-"""The running mean of radiance (16 R), the accumulators of splats (of one band of rows), photons (64 M L)."""
+PPM_BUFFERS = ("film", "gathered radiance", "photons")
+"""Running mean of radiance (16 R), sums of splats (24 bytes a pixel of one band of rows), photons (64 M L)."""
 
 
 @dataclass(frozen=True)

@@ -40,11 +40,7 @@ def scenes_of(figure: str, quick: bool, is_software: bool) -> tuple[str, ...]:
 
 def is_possible(figure: str) -> bool:
     """Whether the renderer can do what the figure is about; warns where it cannot."""
-    reasons = {
-        "bins": "" if benchmark_figures.can_choose_bins() else "DeepCubemap takes no most_bins",
-        "roulette": "" if benchmark_roulette.has_roulette() else "there is no setting splat_roulette",
-    }
-    reason = reasons.get(figure, "")
-    if reason:
-        log.warning("%s is left out: %s", figure, reason)
-    return not reason
+    if figure == "bins" and not benchmark_figures.can_choose_bins():
+        log.warning("bins is left out: DeepCubemap takes no most_bins")
+        return False
+    return True

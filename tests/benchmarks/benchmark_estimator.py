@@ -5,10 +5,10 @@ Times are seconds, lengths metres. A point's ``seconds`` are those of an iterati
 is the iteration's time.
 """
 
-import numpy as np
 from benchmark_machine import Clock
 from benchmark_rendering import Rendering, scale_of
 from benchmark_scenes import Subject
+from benchmark_statistics import fit_line
 
 _MOST_BLOCKS = 48
 _RADIUS_FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0)
@@ -83,14 +83,6 @@ def splat_radius(subject: Subject, clock: Clock, quick: bool) -> dict:
             narrow, wide = rendering.mapper.splat_radii
             points.append({"factor": factor, "radius": narrow, "wide_radius": wide, "seconds": seconds})
         return rendering.description | {"repetitions": scale.repetitions, "points": points}
-
-
-def fit_line(x: list[float], seconds: list[float]) -> dict[str, float]:
-    """seconds = base + slope x by least squares of the relative errors, and the greatest of those."""
-    x, seconds = np.asarray(x, float), np.asarray(seconds, float)
-    slope, base = np.polyfit(x, seconds, 1, w=1.0 / seconds)
-    error = np.abs(base + slope * x - seconds) / seconds
-    return {"base_seconds": float(base), "slope_seconds": float(slope), "greatest_relative_error": float(error.max())}
 
 
 def _after_the_first(rendering: Rendering, repetitions: int) -> dict[str, float]:

@@ -65,7 +65,7 @@ HARDWARE = Scale(
     path_lengths=(1, 2, 3, 4, 5, 6),
     batches=tuple(1 << power for power in range(12, 21)),
     sizes=((480, 270), (960, 540), (1280, 720), (1920, 1080), (2560, 1440), (3840, 2160)),
-    seeds=8,
+    seeds=16,
     seed_iterations=32,
 )
 SOFTWARE = Scale(
@@ -77,7 +77,7 @@ SOFTWARE = Scale(
     batches=tuple(1 << power for power in range(12, 18)),
     sizes=((120, 68), (240, 135), (480, 270), (960, 540)),
     seeds=8,
-    seed_iterations=4,
+    seed_iterations=8,
 )
 QUICK = Scale(
     pixels=1 << 11,
@@ -87,7 +87,7 @@ QUICK = Scale(
     path_lengths=(1, 2, 4),
     batches=(1 << 10, 1 << 11, 1 << 12),
     sizes=((32, 18), (64, 36), (128, 72)),
-    seeds=3,
+    seeds=6,
     seed_iterations=2,
 )
 

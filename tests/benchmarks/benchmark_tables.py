@@ -2,8 +2,10 @@
 """Tables of all machines' figures, written between two marks of a README.md."""
 
 import json
-import math
 from pathlib import Path
+
+import benchmark_estimator_tables
+from benchmark_formats import geometric_mean, mebibytes, milliseconds, number, table
 
 BEGIN, END = "<!-- tables: begin (written by tests/benchmarks/run.py) -->", "<!-- tables: end -->"
 _TITLES = {
@@ -12,6 +14,12 @@ _TITLES = {
     "bins": "Depth bins",
     "rays": "Rays",
     "placement": "Placement",
+    "iterations": "Iterations",
+    "path_lengths": "Path lengths",
+    "photon_batches": "Photons of an iteration",
+    "resolutions": "Frame sizes",
+    "splat_radius": "Splat radius",
+    "roulette": "Splat roulette",
 }
 
 
@@ -205,4 +213,5 @@ _WRITERS = {
     "bins": _bins,
     "rays": _rays,
     "placement": _placement,
+    **benchmark_estimator_tables.WRITERS,
 }

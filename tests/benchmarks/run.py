@@ -67,7 +67,9 @@ def wanted_scenes(options: argparse.Namespace, is_software: bool) -> dict[str, l
     figures = [figure for figure in dict.fromkeys(options.figures) if is_possible(figure)]
     by_scene: dict[str, list[str]] = {}
     for name in NAMES:
-        found = [figure for figure in figures if name in (options.scenes or scenes_of(figure, options.quick, is_software))]
+        found = [
+            figure for figure in figures if name in (options.scenes or scenes_of(figure, options.quick, is_software))
+        ]
         if found:
             by_scene[name] = found
     return by_scene
