@@ -22,6 +22,7 @@ from .geometry import Geometry
 from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
 from .inspection import inspect_deep_cubemap
+from .memory import Memory, reckon_memory
 from .photons import Photons, flux_balance
 from .placement import cubemap_centres, radius_about
 from .resolve import Resolve
@@ -134,12 +135,31 @@ class ProgressivePhotonMapper:
         return self._geometry.triangle_count
 
     @property
+    def memory(self) -> Memory:
+        """Bytes on the device by group of buffers; before the first iteration lists of photons are short."""
+        groups = {
+            "scene": self._geometry.memory_bytes | self._materials.memory_bytes | self._emission.memory_bytes,
+            "deep cubemap": self._deep_cubemap.memory_bytes,
+            "photon paths": self._photons.memory_bytes,
+            "camera paths": {"visibility buffer": self._gbuffer.memory_bytes} | self._importons.memory_bytes,
+            "direct light": self._direct_light.memory_bytes,
+            "splatting": self._splatting.memory_bytes,
+            "passes": self.film.memory_bytes,
+        }
+        settings = self.scene.settings
+        return reckon_memory(groups, self.film.width * self.film.height, settings.photons, settings.photon_path_length)
+
+    @property
     def memory_bytes(self) -> dict[str, int]:
         """Bytes on the device by buffer."""
-        sizes = self._geometry.memory_bytes | self._materials.memory_bytes | self._emission.memory_bytes
-        sizes |= self._deep_cubemap.memory_bytes | self._photons.memory_bytes | self._importons.memory_bytes
-        sizes |= self._splatting.memory_bytes | self._direct_light.memory_bytes | self.film.memory_bytes
-        return sizes | {"visibility buffer": self._gbuffer.memory_bytes}
+        memory = self.memory
+        return {name: size for sizes in (*memory.working.values(), memory.ppm) for name, size in sizes.items()}
+
+    def lengthen_lists(self) -> None:
+        """Give the lists of photons to splat the length that the first iteration needs, which build cannot know."""
+        self.iteration = 1
+        self._trace_photons()
+        self.iteration = 0
 
     def flux_balance(self) -> dict[str, float]:
         """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
