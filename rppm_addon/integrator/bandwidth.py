@@ -41,13 +41,14 @@ def widest_radius(bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
     return 0.05 * float(np.linalg.norm(bounds_high - bounds_low))
 
 
-def fitted_wide_radius(radius: float, counts: np.ndarray) -> float:
-    """The wide radius with which half of the view would find EXPECTED_PHOTONS or more.
+def fitted_wide_radius(radius: float, shrunk: float, counts: np.ndarray) -> float:
+    """The wide radius of the first iteration with which half of the view would find EXPECTED_PHOTONS or more.
 
-    ``counts`` (n,) are those that pixels found with ``radius``; pixels without any may see no diffuse surface.
+    ``counts`` (n,) are those that pixels found with ``radius`` times ``shrunk``; pixels without any may see no
+    diffuse surface.
     """
     found = counts[counts > 0]
-    return radius * math.sqrt(EXPECTED_PHOTONS / float(np.median(found))) if len(found) else radius
+    return radius * shrunk * math.sqrt(EXPECTED_PHOTONS / float(np.median(found))) if len(found) else radius
 
 
 def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius: float) -> tuple[float, float]:

@@ -22,7 +22,6 @@ LEARNING_ITERATIONS = 16
 """Later iterations do not learn: given the seed, they depend on these only."""
 
 
-
 def learns_after(iteration: int) -> bool:
     """Whether what the iterations so far have tallied is put to use after this one: 1, 2, 4, ..."""
     return iteration <= LEARNING_ITERATIONS and iteration & (iteration - 1) == 0

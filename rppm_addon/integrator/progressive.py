@@ -224,11 +224,12 @@ class ProgressivePhotonMapper:
         )
 
     def _learn(self) -> None:
-        """From the iteration before: where photons are of use, and how many of the diffused ones half of the view finds."""
+        """From the iteration before: where photons are of use, and how many diffused ones pixels find."""
         self._emission.learn(self._photons.photons.buffer, self._photons.segments, self.iteration - 1)
         if self._diffused_photons:
             low, high = self._geometry.bounds_low, self._geometry.bounds_high
-            fitted = fitted_wide_radius(self._wide_radius, np.concatenate(self._diffused_photons))
+            shrunk = shrinkage(self.iteration - 1, self.scene.settings.alpha)
+            fitted = fitted_wide_radius(self._wide_radius, shrunk, np.concatenate(self._diffused_photons))
             self._wide_radius = min(fitted, widest_radius(low, high))
             self._diffused_photons = []
 

@@ -18,7 +18,9 @@ _FACES_OF_A_SPLAT = 3
 
 Record("StoredParameters", count="uint", first_slot="uint")
 Record("SplatParameters", count="uint", radius="float", wide_radius="float")
-Record("QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint", counting="uint")
+Record(
+    "QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint", counting="uint"
+)
 Record(
     "CubeParameters",
     centre="vec3",
@@ -62,7 +64,7 @@ class Splatting:
         self._heads = GrowingBuffer(context, "splat cubemap")
         self._core = GrowingBuffer(context, "splat core list")
         self.gathered = GrowingBuffer(context, "gathered radiance")
-        self._heads.require(4 * 6 * (_CUBE_RESOLUTION**2 + (_CUBE_RESOLUTION // _BLOCK_SIZE) ** 2))
+        self._heads.require(4 * 6 * (_CUBE_RESOLUTION**2 + (_CUBE_RESOLUTION // _BLOCK_SIZE) ** 2 + 4))
         self._core.require(4 * (width * rows + 1))
         self._diffused_photons = GrowingBuffer(context, "diffused photons")
         self.gathered.require(_GATHERED * width * rows)
