@@ -211,15 +211,20 @@ class Emission:
         self._table["photon_count"] = counts
         self._table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
-    def learn(self, photons: moderngl.Buffer, segments: int, iteration: int) -> None:
+    def learn(self, photons: moderngl.Buffer, segments: int, iteration: int) -> float:
         """Of an iteration's splatted photons, learn where to send those of the next ones.
 
-        Lights get photons by the power that is of use; see guide.py.
+        Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
+        of use from now on.
         """
         self._guide.tally(photons, self._photons, segments)
-        if learns_after(iteration):
-            self._share_photons(self._weights * self._guide.learn())
-            self._lights.upload(self._table)
+        if not learns_after(iteration):
+            return 1.0
+        weights, useful = self._guide.learn()
+        before = self._table["photon_count"] @ useful[:, 0]
+        self._share_photons(self._weights * weights)
+        self._lights.upload(self._table)
+        return float(self._table["photon_count"] @ useful[:, 1] / before)
 
     def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
         """Emit ``count`` photons: their first rays and the flux they carry."""

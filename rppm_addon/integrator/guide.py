@@ -71,9 +71,9 @@ def usefulness(left: np.ndarray, useful: np.ndarray) -> np.ndarray:
 
 
 def probabilities(estimate: np.ndarray) -> np.ndarray:
-    """What to choose cells by, summing to 1: the square root of the usefulness gives the sum of photons the least
+    """What to choose cells by, (n,) summing to 1: the square root of the usefulness gives the sum of photons the least
     variance, and a share is defensive."""
-    weight = np.sqrt(estimate.ravel())
+    weight = np.sqrt(estimate)
     return (1.0 - _DEFENSIVE) * weight / weight.sum() + _DEFENSIVE / weight.size
 
 
@@ -92,6 +92,7 @@ class Guide:
         self._tallies = GrowingBuffer(context, "emission tallies")
         self._photon_cells = GrowingBuffer(context, "photon cells", "lower the photons per iteration")
         self._cells: list[tuple[int, int, int, int]] = []
+        self._probabilities: list[np.ndarray] = []
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -108,7 +109,7 @@ class Guide:
         counts = np.prod(self._cells, axis=1)
         lights["cells"] = self._cells
         lights["first_cell"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
-        self._starts.upload(np.concatenate([starts(np.full(count, 1.0 / count)) for count in counts]))
+        self._choose_by([np.full(count, 1.0 / count) for count in counts])
         self._tallies.upload(np.zeros((counts.sum(), 2), np.uint32))
         self._photon_cells.require(4 * photons)
 
@@ -120,19 +121,28 @@ class Guide:
             {"count": count, "segments": segments},
         )
 
-    def learn(self) -> np.ndarray:
-        """Choose cells by the tallies from now on; returns each light's mean root of the usefulness, (n,)."""
+    def _choose_by(self, found: list[np.ndarray]) -> None:
+        self._probabilities = found
+        self._starts.upload(np.concatenate([starts(probability) for probability in found]))
+
+    def learn(self) -> tuple[np.ndarray, np.ndarray]:
+        """Choose cells by the tallies from now on.
+
+        Returns each light's mean root of the usefulness, (n,), and the shares of its photons that should have been
+        of use before and will be from now on, (n, 2).
+        """
         counts = np.prod(self._cells, axis=1)
         tallies = self._tallies.read(np.uint32, 2 * counts.sum()).reshape(-1, 2).astype(np.float64)
-        found, weights, first = [], [], 0
-        for cells, count in zip(self._cells, counts, strict=True):
+        found, weights, shares, first = [], [], [], 0
+        for cells, count, before in zip(self._cells, counts, self._probabilities, strict=True):
             part = tallies[first : first + count].reshape(*cells[::-1], 2)
-            estimate = usefulness(part[..., 0], part[..., 1])
-            found.append(starts(probabilities(estimate)))
+            estimate = usefulness(part[..., 0], part[..., 1]).ravel()
+            found.append(probabilities(estimate))
             weights.append(np.sqrt(estimate).mean())
+            shares.append((before @ estimate, found[-1] @ estimate))
             first += count
-        self._starts.upload(np.concatenate(found))
-        return np.array(weights)
+        self._choose_by(found)
+        return np.array(weights), np.array(shares)
 
     def release(self) -> None:
         for buffer in (self._starts, self._tallies, self._photon_cells):

@@ -2,6 +2,7 @@
 """Rasterization-based progressive photon mapping: the paper's Algorithm 1."""
 
 import logging
+import math
 import time
 
 import numpy as np
@@ -77,7 +78,10 @@ class ProgressivePhotonMapper:
             settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
         )
         self._radius_scale = radius_in_pixels(settings, scene.camera)
-        self._limits = self._first_limits()
+        footprints = self._first_footprints()
+        self._leaves_importon = footprints > 0
+        self._limits = radius_limits(settings, footprints, self._geometry.radius)
+        self._widest_radius = widest_radius(footprints, self._geometry.bounds_low, self._geometry.bounds_high)
         self.build_seconds = time.perf_counter() - start
 
     def _gather(self, scene: Scene) -> None:
@@ -187,11 +191,8 @@ class ProgressivePhotonMapper:
     def _shrinkage(self) -> float:
         return shrinkage(max(self.iteration, 1), self.scene.settings.alpha)
 
-    def _first_limits(self) -> tuple[float, float]:
-        """r_min and r_max from the footprints that the camera's first hits have."""
-        settings = self.scene.settings
-        if settings.radius_minimum and settings.radius_maximum:
-            return settings.radius_minimum, settings.radius_maximum
+    def _first_footprints(self) -> np.ndarray:
+        """(pixels,) Eq. 3 radii of the camera's first hits, metres; 0 where there is no importon."""
         footprints = []
         for first_row, rows in self._bands:
             view = camera_view(self.scene.camera, first_row, rows, (0.0, 0.0))
@@ -199,7 +200,7 @@ class ProgressivePhotonMapper:
             self._importons.resolve(self._stages, self._count, 0, 0)
             self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
             footprints.append(self._importons.footprints(self._count))
-        return radius_limits(settings, np.concatenate(footprints), self._geometry.radius)
+        return np.concatenate(footprints)
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
@@ -214,9 +215,8 @@ class ProgressivePhotonMapper:
                 self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, first
             )
         if self.iteration == 1:
-            self._wide_radius = wide_radius(
-                self._splatting.diffused_count, self._geometry.bounds_low, self._geometry.bounds_high
-            )
+            spread = wide_radius(self._splatting.diffused_count, self._geometry.bounds_low, self._geometry.bounds_high)
+            self._wide_radius = min(spread, self._widest_radius)
         self._splatting.count_in(
             radiance_quantum(self._emission.photon_flux, max(self.splat_radii)),
             self._roulette_seed() if self.scene.settings.splat_roulette else 0,
@@ -225,12 +225,14 @@ class ProgressivePhotonMapper:
 
     def _learn(self) -> None:
         """From the iteration before: where photons are of use, and how many diffused ones pixels find."""
-        self._emission.learn(self._photons.photons.buffer, self._photons.segments, self.iteration - 1)
+        before = self.iteration - 1
+        gain = self._emission.learn(self._photons.photons.buffer, self._photons.segments, before)
         if self._diffused_photons:
-            low, high = self._geometry.bounds_low, self._geometry.bounds_high
-            shrunk = shrinkage(self.iteration - 1, self.scene.settings.alpha)
-            fitted = fitted_wide_radius(self._wide_radius, shrunk, np.concatenate(self._diffused_photons))
-            self._wide_radius = min(fitted, widest_radius(low, high))
+            shrunk = self._wide_radius * shrinkage(before, self.scene.settings.alpha)
+            counts = np.concatenate(self._diffused_photons)[self._leaves_importon]
+            # Few photons make bold promises: the radius is at most halved before they are kept.
+            fitted = fitted_wide_radius(shrunk, counts) / math.sqrt(min(gain, 4.0))
+            self._wide_radius = min(fitted, self._widest_radius)
             self._diffused_photons = []
 
     def _roulette_seed(self) -> int:
