@@ -114,6 +114,14 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         ],
         default=DEFAULTS.direct_light.name,
     )
+    final_gather: BoolProperty(
+        name="Final Gather",
+        description=(
+            "Look for light from other surfaces along one ray from each point, and take only direct light and "
+            "caustics from the photons there: fine noise in place of blotches, slower iterations"
+        ),
+        default=DEFAULTS.final_gather,
+    )
     splat_roulette: BoolProperty(
         name="Splat Roulette",
         description="Leave out half of the splats at random and count the others twice: faster iterations, more noise",

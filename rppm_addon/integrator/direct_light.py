@@ -17,6 +17,7 @@ Record(
     first_pixel="uint",
     last_segment="uint",
     specular_alpha="float",
+    final_gather="uint",
 )
 Record("CountParameters", count="uint")
 
@@ -70,6 +71,7 @@ class DirectLight:
                 "last_segment": segment == stages.settings.camera_path_length - 1,
                 "first_pixel": first_pixel,
                 "specular_alpha": stages.settings.specular_roughness**2,
+                "final_gather": stages.settings.final_gather,
             },
         )
         stages.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, count)

@@ -289,6 +289,7 @@ class ProgressivePhotonMapper:
             )
 
     def _direct_splatting(self) -> None:
+        settings = self.scene.settings
         with self.timers.stage("direct splatting"):
             self._splatting.direct(
                 self._photons.photons.buffer,
@@ -297,6 +298,7 @@ class ProgressivePhotonMapper:
                 self.film.width,
                 self._rows,
                 self.splat_radii,
+                settings.final_gather and settings.camera_path_length > 1,
             )
 
     def _indirect_splatting(self) -> None:

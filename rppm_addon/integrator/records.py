@@ -90,7 +90,9 @@ PHOTON_ACTIVE = 1
 PHOTON_STORED = 2
 PHOTON_ESCAPED = 4
 PHOTON_DIFFUSED = 8
-"""Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before."""
+PHOTON_INDIRECT = 16
+"""Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before; INDIRECT: by what stores
+photons there."""
 
 CAMERA_PATH = Record(
     "CameraPath",
@@ -119,12 +121,12 @@ IMPORTON = Record(
     lobe_alpha="float",
     lobe_ior="float",
     next="uint",
-    unused0="uint",
-    unused1="uint",
+    gathers="uint",
+    unused="uint",
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
 the path's throughput. ``direction`` points back to the viewer; ``next`` links lists of the splat
-cubemap."""
+cubemap; with ``gathers`` the path itself looks for indirect light, and INDIRECT photons do not count."""
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 """Kinds of lights, as in shaders/emission/lights.glsl."""

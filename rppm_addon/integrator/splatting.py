@@ -17,7 +17,7 @@ _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
 Record("StoredParameters", count="uint", first_slot="uint")
-Record("SplatParameters", count="uint", radius="float", wide_radius="float")
+Record("SplatParameters", count="uint", radius="float", wide_radius="float", gathers="uint")
 Record(
     "QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint", counting="uint"
 )
@@ -118,15 +118,19 @@ class Splatting:
         width: int,
         rows: int,
         radii: tuple[float, float],
+        gathers: bool,
     ) -> None:
-        """DirectSplatting: photons (narrow and wide radius) onto the importons of the camera's first hits."""
+        """DirectSplatting: photons (narrow and wide radius) onto the importons of the camera's first hits.
+
+        When paths go on to gather (``gathers``), these take no indirect photons.
+        """
         if not self.stored_count:
             return
         self._reset_jobs()
         self._direct_jobs.run(
             self.stored_count,
             {"Photons": photons, "StoredPhotons": self._stored.buffer, "Camera": camera, "Jobs": self._jobs.buffer},
-            {"count": self.stored_count, "radius": radii[0], "wide_radius": radii[1]},
+            {"count": self.stored_count, "radius": radii[0], "wide_radius": radii[1], "gathers": gathers},
         )
         self._direct.draw(
             self._direct_view,
@@ -182,7 +186,13 @@ class Splatting:
         self._indirect.draw(
             self._cube_view,
             self._jobs.buffer,
-            {"Jobs": self._jobs.buffer, "Photons": photons, "Heads": self._heads.buffer, **gathered},
+            {
+                "Jobs": self._jobs.buffer,
+                "Photons": photons,
+                "Heads": self._heads.buffer,
+                "DiffusedPhotons": self._diffused_photons.buffer,
+                **gathered,
+            },
             {"width": self._cube_size[0], "height": self._cube_size[1], "wide_radius": radii[1], **self._counting},
             viewport=(0, 0, *self._cube_size),
         )

@@ -45,6 +45,8 @@ class RenderSettings:
     """Lobes with at most this roughness (the user's, not its square) are traced as specular;
     rougher ones store photons."""
     direct_light: DirectLight = DirectLight.RAYS
+    final_gather: bool = True
+    """Whether light that other surfaces send to a point is looked for along one ray, at whose end photons count."""
     splat_roulette: bool = False
     """Whether half of the splat fragments end unseen and the others count twice (paper section 4.2, Fig. 5)."""
     iterations_per_frame: int = 1

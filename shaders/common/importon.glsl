@@ -22,6 +22,7 @@ const float PLANE_TOLERANCE = 0.35;
 // what decides that is read first.
 bool density_estimate(uint importon_number, uint photon_number, float wide_radius, out vec3 radiance) {
     radiance = vec3(0.0);
+    if (importons[importon_number].gathers != 0u && (photons[photon_number].flags & PHOTON_INDIRECT) != 0u) return false;
     float narrow = importons[importon_number].radius;
     vec3 offset = photons[photon_number].position - importons[importon_number].position;
     float radius = photon_radius(photons[photon_number].flags, narrow, wide_radius), radius2 = radius * radius;

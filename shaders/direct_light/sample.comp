@@ -5,11 +5,11 @@
 layout(local_size_x = 64) in;
 
 #include <Ray>
-#include <CameraPath>
 #include <DirectLightParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
+#include "common/camera_path.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "emission/lights.glsl"
@@ -31,15 +31,19 @@ uint choose_light(float u) {
 
 // Diffuse and rough lobes are lit by these rays alone. Specular lobes are also followed to lights with
 // extent: the power heuristic shares those out between both ways, lobe by lobe.
-vec3 evaluate_closure(Closure closure, vec3 throughput, vec3 shading, vec3 wo, vec3 wi, float light_density) {
+// What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
+vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, vec3 shading, vec3 wo, vec3 wi, float light_density) {
     vec3 value = dot(shading, wi) > 0.0 ? closure.diffuse / PI : vec3(0.0);
-    vec4 shares = specular_shares(closure, throughput, clamp(dot(shading, wo), 0.0, 1.0), parameters.specular_alpha);
+    float cosine = clamp(dot(shading, wo), 0.0, 1.0);
+    vec4 shares = specular_shares(closure, throughput, cosine, parameters.specular_alpha);
+    float total = sum(shares);
+    if (parameters.final_gather != 0u && !gathered) total += sum(stored_shares(closure, throughput, cosine, parameters.specular_alpha));
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (!lobe_stores(lobe, min(SMOOTHEST_LIT, parameters.specular_alpha))) continue;
+        if (!lobe_stores(lobe, gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha))) continue;
         float share = 1.0;
         if (lobe_is_specular(lobe, parameters.specular_alpha) && light_density > 0.0 && parameters.last_segment == 0u)
-            share = first_way_share(light_density, lobe_probability(shares, k) * lobe_density(lobe, shading, wo, wi));
+            share = first_way_share(light_density, lobe_probability(shares, total, k) * lobe_density(lobe, shading, wo, wi));
         value += share * evaluate_lobe(lobe, shading, wo, wi);
     }
     return value;
@@ -61,7 +65,8 @@ void main() {
     float side = dot(geometric, sampled.direction), cosine = dot(shading, sampled.direction);
     if (side * cosine <= 0.0) return;
     vec3 throughput = camera_paths[index].throughput * segment_transmittance(camera_paths[index].flags, closure);
-    vec3 scattered = evaluate_closure(closure, throughput, shading, -ray.direction, sampled.direction,
+    bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
+    vec3 scattered = evaluate_closure(closure, throughput, gathered, shading, -ray.direction, sampled.direction,
                                       sampled.density * light.selection_probability);
     vec3 radiance = throughput * scattered * sampled.weight * (abs(cosine) / light.selection_probability);
     if (!(largest(radiance) > 0.0)) return;

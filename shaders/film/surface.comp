@@ -6,12 +6,12 @@
 layout(local_size_x = 64) in;
 
 #include <CameraView>
-#include <CameraPath>
 #include <Closure>
 #include <Ray>
 #include <SurfaceParameters>
 #include "common/invocation.glsl"
 #include "common/geometry.glsl"
+#include "common/camera_path.glsl"
 layout(std140, binding = 0) uniform Parameters { SurfaceParameters parameters; };
 layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
 layout(std430, binding = 1) readonly buffer Closures { Closure closures[]; };
@@ -21,7 +21,6 @@ layout(std430, binding = 4) buffer Surfaces { vec4 surfaces[]; };
 
 const float BACKGROUND_DEPTH = 1e10;  // as Cycles writes it
 const float MOSTLY_TRANSPARENT = 0.5;
-const uint PATH_STRAIGHT = 1u, PATH_SURFACE_FOUND = 2u;
 
 void main() {
     uint index = invocation_index();

@@ -7,9 +7,9 @@ layout(local_size_x = 64) in;
 #include <CameraView>
 #include <Ray>
 #include <Hit>
-#include <CameraPath>
 #include "common/invocation.glsl"
 #include "common/constants.glsl"
+#include "common/camera_path.glsl"
 layout(binding = 0) uniform sampler2D visibility;
 layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
 layout(std430, binding = 1) readonly buffer Triangles { vec4 triangle_vertices[]; };
@@ -45,5 +45,5 @@ void main() {
     uint number = uint(visible.x + 0.5) | (uint(visible.y + 0.5) << 16u);
     rays[index] = ray;
     hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : intersect_plane(ray, number - 1u);
-    camera_paths[index] = CameraPath(vec3(1.0), 0.0, 0.0, 0.0, 0.0, 1u);
+    camera_paths[index] = CameraPath(vec3(1.0), 0.0, 0.0, 0.0, 0.0, PATH_STRAIGHT);
 }

@@ -6,13 +6,13 @@
 layout(local_size_x = 64) in;
 
 #include <Ray>
-#include <CameraPath>
 #include <Importon>
 #include <CameraView>
 #include <ScatterImportonsParameters>
 #include "common/invocation.glsl"
-#include "common/random.glsl"
+#include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
+#include "common/camera_path.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "emission/lights.glsl"
@@ -22,8 +22,6 @@ layout(std430, binding = 2) buffer CameraPaths { CameraPath camera_paths[]; };
 layout(std430, binding = 3) writeonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
-
-const uint PATH_STRAIGHT = 1u;
 
 // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
 float first_radius(vec3 direction, float distance, vec3 normal) {
@@ -36,10 +34,10 @@ float first_radius(vec3 direction, float distance, vec3 normal) {
     return parameters.radius_scale * sqrt(area / PI);
 }
 
-Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u) {
+Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, bool gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.shading_normal,
-                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, 0u, 0u);
+                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, gathers ? 1u : 0u, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
     float cosine = clamp(dot(unpack_unit_vector(closure.shading_normal), viewer), 0.0, 1.0);
     float total = 0.0;
@@ -74,10 +72,12 @@ void main() {
     if (!(ray.maximum_distance > 0.0)) return;
     Closure closure = closures[index];
     bool hit = closure_hit(closure);
-    bool straight = (path.flags & PATH_STRAIGHT) != 0u;
+    bool straight = (path.flags & PATH_STRAIGHT) != 0u, gathered = (path.flags & PATH_GATHERED) != 0u;
+    // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there.
+    if (gathered && !hit) return;
     vec4 seen = vec4(0.0);
 
-    vec3 lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, straight, path.scatter_density);
+    vec3 lights_passed = gathered ? vec3(0.0) : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, straight, path.scatter_density);
     seen.rgb += path.throughput * lights_passed;
     if (!hit) {
         bool background = largest(lights_passed) <= 0.0;
@@ -92,7 +92,7 @@ void main() {
     }
     path.throughput *= segment_transmittance(path.flags, closure);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    if (largest(closure.emission) > 0.0) {
+    if (largest(closure.emission) > 0.0 && !gathered) {
         float facing = max(abs(dot(geometric, ray.direction)), 1e-6);
         float density = parameters.mesh_density * materials[closure.material].emitted * closure.distance * closure.distance / facing;
         seen.rgb += path.throughput * closure.emission * scattered_share(path.scatter_density, density);
@@ -111,14 +111,16 @@ void main() {
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
 
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_IMPORTONS, parameters.segment, parameters.first_pixel + index);
-    importons[index] = make_importon(closure, path.throughput, viewer, radius, next_random(random));
+    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u && !gathered;
+    importons[index] = make_importon(closure, path.throughput, viewer, radius, next_random(random), gathers);
 
     if (parameters.last_segment != 0u) return;
     float cosine = clamp(dot(shading, viewer), 0.0, 1.0);
     vec4 shares = specular_shares(closure, path.throughput, cosine, parameters.specular_alpha);
-    float total = shares.x + shares.y + shares.z + shares.w;
+    vec4 gathering_shares = gathers ? stored_shares(closure, path.throughput, cosine, parameters.specular_alpha) : vec4(0.0);
+    float gathering = sum(gathering_shares), total = sum(shares) + gathering;
     if (total <= 0.0) return;
-    float survival = path_survival(shares);
+    float survival = path_survival(total);
     float u = next_random(random);
     vec2 u_direction = next_random2(random);
     float u_event = next_random(random);
@@ -128,7 +130,18 @@ void main() {
     bool transmitted;
     float probability;
     path.scatter_density = 0.0;
-    if (u < shares.x) {
+    bool sets_out = u < gathering;
+    if (sets_out) {
+        path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED;
+        shares = gathering_shares;
+        u_direction = scrambled_sobol(parameters.iteration, pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_GATHERING)));
+    } else u -= gathering;
+    if (u < shares.x && sets_out) {
+        direction = sample_cosine_hemisphere(shading, u_direction);
+        weight = closure.diffuse;
+        transmitted = false;
+        probability = shares.x;
+    } else if (u < shares.x) {
         direction = ray.direction;
         weight = closure.transparent;
         transmitted = true;
@@ -141,7 +154,7 @@ void main() {
         MicrofacetLobe lobe = closure_lobe(closure, chosen);
         LobeSample sampled = sample_lobe(lobe, shading, viewer, u_direction, u_event, true);
         if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
-            path.scatter_density = lobe_probability(shares, chosen) * lobe_density(lobe, shading, viewer, sampled.direction);
+            path.scatter_density = lobe_probability(shares, total, chosen) * lobe_density(lobe, shading, viewer, sampled.direction);
         direction = sampled.direction;
         weight = sampled.weight;
         transmitted = sampled.transmitted;

@@ -18,14 +18,14 @@ layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
 layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
 
-struct Scattering { vec3 direction; vec3 weight; bool transmitted; bool sharp; };
+struct Scattering { vec3 direction; vec3 weight; bool transmitted; uint flags; };
 
 // Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
 const float SHARPEST_ALPHA = 0.05;
 
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout RandomSequence random) {
-    Scattering result = Scattering(shading, vec3(0.0), false, false);
+    Scattering result = Scattering(shading, vec3(0.0), false, PHOTON_DIFFUSED | PHOTON_INDIRECT);
     float cosine = clamp(dot(shading, arrival), 0.0, 1.0);
     float scale = 1.0 / largest(flux);
     float share[5];
@@ -45,14 +45,15 @@ Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout
         return result;
     }
     u -= share[0];
-    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), true, true);
+    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), true, 0u);
     u -= share[1];
     int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
     float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
     LobeSample sampled = sample_lobe(lobe, shading, arrival, u_direction, u_event, false);
     return Scattering(sampled.direction, sampled.weight * (norm / max(probability, 1e-20)), sampled.transmitted,
-                      lobe.alpha <= SHARPEST_ALPHA);
+                      (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_DIFFUSED)
+                          | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u));
 }
 
 // Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
@@ -105,7 +106,7 @@ void main() {
             if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, shading);
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
-            if (!scattering.sharp) path_flags |= PHOTON_DIFFUSED;
+            path_flags |= scattering.flags;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             photon_paths[index].flags = path_flags;
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);

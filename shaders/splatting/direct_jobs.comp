@@ -20,6 +20,7 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     uint number = stored_photons[index];
+    if (parameters.gathers != 0u && (photons[number].flags & PHOTON_INDIRECT) != 0u) return;
     vec3 offset = photons[number].position - camera.position;
     vec3 p = vec3(dot(offset, camera.right), dot(offset, camera.up), dot(offset, camera.forward));
     float radius = photon_radius(photons[number].flags, parameters.radius, parameters.wide_radius);

@@ -11,6 +11,7 @@ layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
 #include "splatting/gathered.glsl"
+#include "splatting/diffused.glsl"
 #include "common/importon.glsl"
 
 flat in uint photon_number;
@@ -26,7 +27,10 @@ void main() {
     while (entry != 0u) {
         uint importon = entry - 1u;
         vec3 radiance;
-        if (density_estimate(importon, photon_number, parameters.wide_radius, radiance)) add_gathered(importon, photon_number, radiance, parameters.quanta);
+        if (density_estimate(importon, photon_number, parameters.wide_radius, radiance)) {
+            add_gathered(importon, photon_number, radiance, parameters.quanta);
+            count_diffused(importon, photon_number, parameters.counting);
+        }
         entry = importons[importon].next;
     }
 }

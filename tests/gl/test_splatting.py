@@ -8,7 +8,7 @@ from test_geometry import unpack
 
 from rppm_addon.integrator import splatting
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.integrator.records import IMPORTON, PHOTON_DIFFUSED, PHOTON_STORED
+from rppm_addon.integrator.records import IMPORTON, PHOTON_DIFFUSED, PHOTON_INDIRECT, PHOTON_STORED
 from rppm_addon.scene import DirectLight
 
 
@@ -20,10 +20,13 @@ def mapper(context, library):
 
 
 def brute_force(importons, photons, wide):
-    """(n, 3) radiance of diffuse importons: Eq. 1 over all pairs, with the side and plane tests."""
+    """(n, 3) radiance of diffuse importons: Eq. 1 over all pairs, with the side and plane tests.
+
+    Importons of paths that gather take no indirect photons.
+    """
     stored = photons[(photons["flags"] & PHOTON_STORED) != 0]
     normals, flux = unpack(stored["geometric_normal"]), stored["flux"].astype(np.float64)
-    diffused = (stored["flags"] & PHOTON_DIFFUSED) != 0
+    diffused, indirect = ((stored["flags"] & flag) != 0 for flag in (PHOTON_DIFFUSED, PHOTON_INDIRECT))
     result = np.zeros((len(importons), 3))
     for index, importon in enumerate(importons):
         if importon["radius"] <= 0:
@@ -34,6 +37,8 @@ def brute_force(importons, photons, wide):
         geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["shading_normal"][None])[0]
         near = (distance2 < radius**2) & (normals @ geometric > 0.7) & (abs(offset @ geometric) <= 0.35 * radius)
         near &= stored["direction"] @ shading > 0
+        if importon["gathers"]:
+            near &= ~indirect
         cosine = (stored["direction"][near] * normals[near]).sum(1)
         correction = np.minimum(abs(stored["direction"][near] @ shading) / np.maximum(abs(cosine), 1e-5), 4)
         kernel = 2 * (1 - distance2[near] / radius[near] ** 2) / (np.pi * radius[near] ** 2)
@@ -42,9 +47,8 @@ def brute_force(importons, photons, wide):
 
 
 def diffuse_room(**settings):
-    scene = scenes.room(
-        24, photons=4096, direct_light=DirectLight.PHOTONS, radius_scale=60.0, filter_width=0.0, **settings
-    )
+    fixed = {"photons": 4096, "direct_light": DirectLight.PHOTONS, "radius_scale": 60.0, "filter_width": 0.0}
+    scene = scenes.room(24, **{"final_gather": False, **fixed, **settings})
     scene.instances = scene.instances[:5] + scene.instances[6:]  # the mirror stays
     return scene
 
@@ -79,6 +83,27 @@ def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
     got = (gathered[1] - gathered[0]) * mapper._splatting.quantum
     assert (expected > 0).any(axis=1).sum() > 15
     np.testing.assert_allclose(got, expected, rtol=2e-3, atol=2e-4 * expected.max())
+
+
+def test_gathering_splats_are_all_pairs(mapper, monkeypatch):
+    """First hits take what came straight or by the mirror; where the gathering rays end, all photons count."""
+    mapper.build(diffuse_room(camera_path_length=2, final_gather=True))
+    count, first = 24 * 24, []
+    direct_splatting = mapper._direct_splatting
+
+    def watched() -> None:
+        first.append(mapper._importons.importons.read(IMPORTON.dtype, count))
+        direct_splatting()
+
+    monkeypatch.setattr(mapper, "_direct_splatting", watched)
+    mapper.iterate()
+    last = mapper._importons.importons.read(IMPORTON.dtype, count)
+    photons, wide = mapper.read_photons().ravel(), mapper.splat_radii[1]
+    assert (first[0]["gathers"][first[0]["radius"] > 0] == 1).all() and not last["gathers"][last["radius"] > 0].any()
+    parts = [brute_force(importons, photons, wide) for importons in (first[0], last)]
+    got = mapper._splatting.gathered.read(np.uint64, 3 * count).reshape(-1, 3) * mapper._splatting.quantum
+    assert all((part > 0).any(axis=1).mean() > 0.5 for part in parts)
+    np.testing.assert_allclose(got, sum(parts), rtol=2e-3, atol=2e-4 * sum(parts).max())
 
 
 def gathered_picture(mapper, **settings) -> np.ndarray:

@@ -35,6 +35,7 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
         column.separator()
         column.prop(settings, "photons")
         column.prop(settings, "direct_light")
+        column.prop(settings, "final_gather")
 
 
 class RPPM_PT_paths(RppmPanel, bpy.types.Panel):

@@ -33,10 +33,23 @@ vec4 specular_shares(Closure closure, vec3 throughput, float cosine, float specu
     return shares;
 }
 
-// Roulette sets in once the path's throughput has fallen.
-float path_survival(vec4 shares) { return min(1.0, 4.0 * (shares.x + shares.y + shares.z + shares.w)); }
+// The shares of the diffuse part and of the three lobes, where they store photons: a camera path that
+// gathers goes on by these once.
+vec4 stored_shares(Closure closure, vec3 throughput, float cosine, float specular_alpha) {
+    vec4 shares = vec4(largest(throughput * closure.diffuse), 0.0, 0.0, 0.0);
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (lobe_stores(lobe, specular_alpha)) shares[1 + k] = largest(throughput * lobe_albedo(lobe, cosine));
+    }
+    return shares;
+}
+
+float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
+
+// Roulette sets in once the path's throughput has fallen; total: of all shares by which it may go on.
+float path_survival(float total) { return min(1.0, 4.0 * total); }
 
 // Probability of choosing lobe k, survival included.
-float lobe_probability(vec4 shares, int k) {
-    return shares[1 + k] * path_survival(shares) / max(shares.x + shares.y + shares.z + shares.w, 1e-20);
+float lobe_probability(vec4 shares, float total, int k) {
+    return shares[1 + k] * path_survival(total) / max(total, 1e-20);
 }

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <CameraPath>
+
+// Flags of camera paths. STRAIGHT: nothing but transparency so far; SURFACE_FOUND: the passes have their
+// surface; GATHERED: it has left a surface that stores photons, for light that others send there.
+const uint PATH_STRAIGHT = 1u, PATH_SURFACE_FOUND = 2u, PATH_GATHERED = 4u;
