@@ -185,7 +185,8 @@ def test_what_a_ray_sees_of_a_light_has_the_sampled_density(mapper, library, nam
     sample = light_samples(mapper, library, POINTS[where])
     lit = sample["weight"][:, 0] > 0
     if not lit.any():
-        assert (name, where) in {("sphere", "near"), ("spread", "near"), ("spread", "beside")}  # within; outside the beam
+        # within the sphere, outside the beam
+        assert (name, where) in {("sphere", "near"), ("spread", "near"), ("spread", "beside")}
         return
     # On the rim, rounding may take the ray past the light.
     both = lit & (sample["seen"][:, 0] > 0)
