@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light sources: samples of them from a point, and what a ray sees of them.
-// Needs the members scene_centre and scene_radius of the parameters.
+// Needs the members scene_centre, scene_radius and mesh_density of the parameters.
 
 #include <Light>
 #include <EmissiveTriangle>
 #include "emission/environment.glsl"
+#include "common/spherical_triangle.glsl"
 layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
 layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]; };
@@ -58,20 +59,24 @@ uint search_emissive_triangle(float u) {
     return low;
 }
 
+// Probability of choosing a triangle among the emissive ones.
+float emissive_triangle_share(uint index) {
+    return emissive_triangles[index].cumulated - (index == 0u ? 0.0 : emissive_triangles[index - 1u].cumulated);
+}
+
 struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float density; };
 
 // A point on the emissive meshes with its density per area.
 TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
     uint index = search_emissive_triangle(u_triangle);
     EmissiveTriangle emissive = emissive_triangles[index];
-    float share = emissive.cumulated - (index == 0u ? 0.0 : emissive_triangles[index - 1u].cumulated);
     vec3 v0 = triangle_vertices[3u * emissive.triangle].xyz;
     vec3 v1 = triangle_vertices[3u * emissive.triangle + 1u].xyz;
     vec3 v2 = triangle_vertices[3u * emissive.triangle + 2u].xyz;
     float root = sqrt(u.x);
     vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
     return TrianglePoint(position, normalize(cross(v1 - v0, v2 - v0)), emissive.triangle, emissive.radiance,
-                         share / max(emissive.area, 1e-30));
+                         emissive_triangle_share(index) / max(emissive.area, 1e-30));
 }
 
 // Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
@@ -88,16 +93,78 @@ float soft_light_distance(Light light, vec3 origin, vec3 direction) {
 // extent). weight 0: nothing arrives.
 struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; float density; };
 
-// A disk that faces the point.
+// Surfaces are sampled by the solid angle that they have from the point: by area, what a surface gets from a
+// light that it meets has no bound.
+
+// The cone of a soft light's disk, which faces the point: one minus its cosine.
+float soft_light_cone(Light light, vec3 to_centre) {
+    float distance = length(to_centre), radius2 = light.radius * light.radius;
+    float slant = sqrt(distance * distance + radius2);
+    return radius2 / (slant * (slant + distance));
+}
+
 LightSample sample_soft_light(Light light, vec3 to_centre, vec2 u) {
-    vec3 axis = normalize(to_centre), t, b;
-    tangent_frame(axis, t, b);
-    vec2 disk = light.radius * sample_disk(u);
-    vec3 to_light = to_centre + disk.x * t + disk.y * b;
-    float distance2 = dot(to_light, to_light), distance = sqrt(distance2);
-    vec3 direction = to_light / distance;
-    return LightSample(direction, distance, radiant_strength(light, -direction) * (dot(direction, axis) / distance2), NO_TRIANGLE,
-                       distance2 / (dot(direction, axis) * PI * light.radius * light.radius));
+    float one_minus_cosine = soft_light_cone(light, to_centre), distance = length(to_centre);
+    vec3 axis = to_centre / max(distance, 1e-20), direction = sample_cone(axis, one_minus_cosine, u);
+    return LightSample(direction, distance / max(dot(direction, axis), 1e-6),
+                       radiant_strength(light, -direction) * (2.0 * one_minus_cosine / (light.radius * light.radius)),
+                       NO_TRIANGLE, 1.0 / (2.0 * PI * one_minus_cosine));
+}
+
+// A parallelogram is two triangles. Of an area light: itself, or what bounds the ellipse.
+vec3 area_light_corner(Light light, float u, float v) { return light.position + u * light.axis_u + v * light.axis_v; }
+
+vec2 area_light_solid_angles(Light light, vec3 point) {
+    vec3 v0 = area_light_corner(light, 1.0, -1.0), v1 = area_light_corner(light, -1.0, 1.0);
+    return vec2(triangle_solid_angle(point, v0, v1, area_light_corner(light, -1.0, -1.0)),
+                triangle_solid_angle(point, v0, v1, area_light_corner(light, 1.0, 1.0)));
+}
+
+// Near an ellipse, a quarter of the parallelogram in vain is the lesser evil.
+bool sampled_by_solid_angle(Light light, vec3 point) {
+    vec3 offset = point - light.position;
+    float size2 = dot(light.axis_u, light.axis_u) + dot(light.axis_v, light.axis_v);
+    return light.kind == LIGHT_RECTANGLE || dot(offset, offset) < 2.0 * size2;
+}
+
+// Coordinates along both axes of an area light, which are not orthogonal where it is sheared.
+vec2 area_light_coordinates(Light light, vec3 offset) {
+    float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v), vv = dot(light.axis_v, light.axis_v);
+    float pu = dot(offset, light.axis_u), pv = dot(offset, light.axis_v);
+    return vec2(pu * vv - pv * uv, pv * uu - pu * uv) / (uu * vv - uv * uv);
+}
+
+// Density in 1/sr with which sample_area_light gives the direction to a place on the light.
+float area_light_density(Light light, vec3 point, vec3 to_light) {
+    if (sampled_by_solid_angle(light, point)) {
+        vec2 angles = area_light_solid_angles(light, point);
+        return angles.x + angles.y > 0.0 ? 1.0 / (angles.x + angles.y) : 0.0;
+    }
+    float distance2 = dot(to_light, to_light);
+    return distance2 * sqrt(distance2) / (abs(dot(to_light, light.normal)) * light.area);
+}
+
+// To a place on an area light, with its density in 1/sr; 0 where there is none.
+vec3 sample_area_light(Light light, vec3 point, vec2 u, out float density) {
+    vec3 offset = light.position - point;
+    if (sampled_by_solid_angle(light, point)) {
+        vec2 angles = area_light_solid_angles(light, point);
+        float total = angles.x + angles.y, chosen = u.x * total;
+        density = total > 0.0 ? 1.0 / total : 0.0;
+        if (total <= 0.0) return offset;
+        bool first = chosen < angles.x;
+        vec2 within = vec2(first ? chosen / angles.x : (chosen - angles.x) / angles.y, u.y);
+        float side = first ? -1.0 : 1.0;
+        vec3 to_light = sample_spherical_triangle(point, area_light_corner(light, 1.0, -1.0), area_light_corner(light, -1.0, 1.0),
+                                                  area_light_corner(light, side, side), first ? angles.x : angles.y, within);
+        vec2 at = area_light_coordinates(light, to_light - offset);
+        if (light.kind == LIGHT_ELLIPSE && dot(at, at) > 1.0) density = 0.0;
+        return to_light;
+    }
+    vec2 place = sample_disk(u);
+    vec3 to_light = offset + place.x * light.axis_u + place.y * light.axis_v;
+    density = area_light_density(light, point, to_light);
+    return to_light;
 }
 
 LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
@@ -137,32 +204,27 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
         result.weight = radiant_strength(light, -result.direction) * (2.0 * PI * one_minus_cosine / area);
         return result;
     }
-    vec3 position, normal, radiance;
-    float density;
+    vec3 to_light, radiance;
     if (light.kind == LIGHT_MESH) {
-        TrianglePoint sampled = sample_emissive_triangle(u_choice, u);
-        position = sampled.position;
-        normal = sampled.normal;
-        radiance = sampled.radiance;
-        density = sampled.density;
-        result.triangle = sampled.triangle;
+        uint index = search_emissive_triangle(u_choice);
+        EmissiveTriangle emissive = emissive_triangles[index];
+        vec3 v0 = triangle_vertices[3u * emissive.triangle].xyz;
+        vec3 v1 = triangle_vertices[3u * emissive.triangle + 1u].xyz;
+        vec3 v2 = triangle_vertices[3u * emissive.triangle + 2u].xyz;
+        float solid_angle = triangle_solid_angle(point, v0, v1, v2);
+        if (solid_angle <= 0.0) return result;
+        to_light = sample_spherical_triangle(point, v0, v1, v2, solid_angle, u);
+        radiance = emissive.radiance;
+        result.density = emissive_triangle_share(index) / solid_angle;
+        result.triangle = emissive.triangle;
     } else {
-        vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(u) : 2.0 * u - 1.0;
-        position = light.position + place.x * light.axis_u + place.y * light.axis_v;
-        normal = light.normal;
-        radiance = light.strength;
-        density = 1.0 / light.area;
+        if (dot(point - light.position, light.normal) <= 0.0) return result;
+        to_light = sample_area_light(light, point, u, result.density);
+        radiance = light.strength * spread_attenuation(light, -dot(normalize(to_light), light.normal));
     }
-    vec3 to_light = position - point;
-    float distance2 = dot(to_light, to_light);
-    if (distance2 <= 0.0) return result;
-    result.distance = sqrt(distance2);
+    result.distance = length(to_light);
+    if (!(result.density > 0.0 && result.distance > 0.0)) return result;
     result.direction = to_light / result.distance;
-    float cosine = -dot(result.direction, normal);
-    if (light.kind == LIGHT_MESH) cosine = abs(cosine);
-    if (cosine <= 0.0) return result;
-    if (light.kind != LIGHT_MESH) radiance *= spread_attenuation(light, cosine);
-    result.density = density * distance2 / cosine;
     result.weight = radiance / result.density;
     return result;
 }
@@ -173,6 +235,16 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
 // Without a density only scattering finds it.
 float scattered_share(float scatter_density, float light_density) {
     return scatter_density > 0.0 ? 1.0 - first_way_share(light_density, scatter_density) : 1.0;
+}
+
+// Density in 1/sr with which sample_light gives a direction from the point to a triangle of emissive meshes
+// whose material emits so much, the choice of the meshes included.
+float emissive_triangle_density(vec3 point, uint triangle, float emitted) {
+    vec3 v0 = triangle_vertices[3u * triangle].xyz;
+    vec3 v1 = triangle_vertices[3u * triangle + 1u].xyz;
+    vec3 v2 = triangle_vertices[3u * triangle + 2u].xyz;
+    float area = 0.5 * length(cross(v1 - v0, v2 - v0)), solid_angle = triangle_solid_angle(point, v0, v1, v2);
+    return solid_angle > 0.0 ? parameters.mesh_density * emitted * area / solid_angle : 0.0;
 }
 
 // Radiance of a light object that a ray passes within its length, and the density in 1/sr with which
@@ -192,7 +264,7 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
         float distance2 = dot(to_centre, to_centre), radius2 = light.radius * light.radius, distance = 0.0;
         if ((light.flags & LIGHT_SOFT) != 0u) {
             distance = soft_light_distance(light, origin, direction);
-            density = distance * distance / (max(dot(direction, normalize(to_centre)), 1e-6) * PI * radius2);
+            density = 1.0 / (2.0 * PI * soft_light_cone(light, to_centre));
         } else {
             float along = dot(to_centre, direction);
             vec3 off_axis = to_centre - along * direction;
@@ -211,13 +283,9 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
     if (cosine <= 0.0) return vec3(0.0);
     float distance = dot(origin - light.position, light.normal) / cosine;
     if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
-    vec3 place = origin + distance * direction - light.position;
-    // The axes of a sheared light are not orthogonal: solve for the coordinates along both.
-    float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v), vv = dot(light.axis_v, light.axis_v);
-    float pu = dot(place, light.axis_u), pv = dot(place, light.axis_v);
-    vec2 at = vec2(pu * vv - pv * uv, pv * uu - pu * uv) / (uu * vv - uv * uv);
+    vec2 at = area_light_coordinates(light, origin + distance * direction - light.position);
     if (light.kind == LIGHT_ELLIPSE ? dot(at, at) > 1.0 : max(abs(at.x), abs(at.y)) > 1.0) return vec3(0.0);
-    density = distance * distance / (cosine * light.area);
+    density = area_light_density(light, origin, distance * direction);
     return light.strength * spread_attenuation(light, cosine);
 }
 

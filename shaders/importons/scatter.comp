@@ -93,9 +93,10 @@ void main() {
     path.throughput *= segment_transmittance(path.flags, closure);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     if (largest(closure.emission) > 0.0 && !gathered) {
-        float facing = max(abs(dot(geometric, ray.direction)), 1e-6);
-        float density = parameters.mesh_density * materials[closure.material].emitted * closure.distance * closure.distance / facing;
-        seen.rgb += path.throughput * closure.emission * scattered_share(path.scatter_density, density);
+        float share = 1.0;
+        if (path.scatter_density > 0.0)
+            share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle, materials[closure.material].emitted));
+        seen.rgb += path.throughput * closure.emission * share;
     }
     radiances[index] += seen;
 

@@ -1,0 +1,30 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples of one light from a point, and what a ray in the sampled direction sees of it.
+
+layout(local_size_x = 64) in;
+
+#include <LightSamplesParameters>
+#include "common/invocation.glsl"
+#include "common/random.glsl"
+layout(std140, binding = 0) uniform Parameters { LightSamplesParameters parameters; };
+#include "emission/lights.glsl"
+layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
+    float u_choice = next_random(random);
+    LightSample sampled = sample_light(lights[0], parameters.point, u_choice, next_random2(random));
+    float density = 0.0;
+    vec3 seen = vec3(0.0);
+    if (sampled.triangle != NO_TRIANGLE) {
+        seen = vec3(parameters.emitted);
+        density = emissive_triangle_density(parameters.point, sampled.triangle, parameters.emitted);
+    } else if (sampled.distance > 0.0)
+        seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, density);
+    results[3u * index] = vec4(sampled.direction, sampled.distance);
+    results[3u * index + 1u] = vec4(sampled.weight, sampled.density);
+    results[3u * index + 2u] = vec4(seen, density);
+}

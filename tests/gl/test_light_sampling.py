@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Next-event sampling of emitters: spread in solid angle, densities, and a variance that corners leave bounded."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scenes
+from test_light_sources import floor_scene
+
+from rppm_addon.gl.records import Record
+from rppm_addon.integrator.emission import LIGHT_PARAMETERS
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Lobe, LobeKind, Material, Scene
+
+Record("SphericalTriangleParameters", count="uint", samples="uint")
+Record("LightSamplesParameters", **LIGHT_PARAMETERS, point="vec3", emitted="float")
+FOLDER = Path(__file__).parent
+SAMPLES, PARTS = 1 << 14, 4
+
+
+def solid_angles(corners: np.ndarray) -> np.ndarray:
+    """(...,) sr of triangles (..., 3, 3) as seen from the origin (Van Oosterom and Strackee 1983)."""
+    a, b, c = np.moveaxis(corners / np.linalg.norm(corners, axis=-1, keepdims=True), -2, 0)
+    volume = np.abs((a * np.cross(b, c)).sum(-1))
+    return 2 * np.arctan2(volume, 1 + (a * b).sum(-1) + (b * c).sum(-1) + (c * a).sum(-1))
+
+
+def irradiance(polygon: np.ndarray, normal: np.ndarray) -> float:
+    """Of a polygon (n, 3) of radiance 1 at the origin, wholly above its plane, W/m^2 (Lambert 1760)."""
+    unit = polygon / np.linalg.norm(polygon, axis=1, keepdims=True)
+    following = np.roll(unit, -1, axis=0)
+    turned = np.cross(unit, following)
+    sine = np.linalg.norm(turned, axis=1)
+    angles = np.arctan2(sine, (unit * following).sum(1))
+    return abs(0.5 * ((angles / sine) @ turned) @ normal)
+
+
+def parts_of(corners: np.ndarray) -> np.ndarray:
+    """(PARTS^2, 3, 3) equal parts of a triangle (3, 3), row by row as ``part_numbers`` counts them."""
+    parts = []
+    for i in range(PARTS):
+        for j in range(PARTS - i):
+            lower, right, upper, far = (
+                (corners[0] * (PARTS - x - y) + corners[1] * x + corners[2] * y) / PARTS
+                for x, y in ((i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1))
+            )
+            parts.append((lower, right, upper))
+            if i + j < PARTS - 1:
+                parts.append((far, right, upper))
+    return np.array(parts)
+
+
+def part_numbers(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Which of ``parts_of`` each of the points (n, 3) of the triangle lies in."""
+    coordinates = np.linalg.lstsq((corners[1:] - corners[0]).T, (points - corners[0]).T, rcond=None)[0] * PARTS
+    i, j = np.clip(np.floor(coordinates), 0, PARTS - 1).astype(int)
+    upper = (coordinates.sum(0) - i - j > 1).astype(int)
+    first = np.cumsum([0] + [2 * (PARTS - k) - 1 for k in range(PARTS)])
+    return np.minimum(first[i] + 2 * j + upper, first[np.minimum(i + 1, PARTS)] - 1)
+
+
+def triangles() -> dict[str, np.ndarray]:
+    """(4, 3) float32 by name: a point and a triangle's corners."""
+    generator = np.random.default_rng(5)
+    made = {}
+    for k in range(16):
+        made[f"any {k}"] = generator.normal(size=(4, 3))
+        far = generator.normal(size=(4, 3))
+        made[f"small and far {k}"] = np.concatenate(
+            [far[:1], far[1] + 10.0 ** -(1 + k / 6) * generator.normal(size=(3, 3))]
+        )
+        corners = generator.normal(size=(3, 3))
+        unit = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        unit /= np.linalg.norm(unit)
+        for name, weights in {"inside": (0.3, 0.3, 0.4), "edge": (0.4, 0.6, 0), "corner": (0, 0, 1)}.items():
+            place = np.roll(weights, k % 3) @ corners
+            made[f"near the {name} {k}"] = np.concatenate([[place + 10.0 ** -(1 + k / 8) * unit], corners])
+        made[f"sliver {k}"] = np.concatenate(
+            [generator.normal(size=(1, 3)), [corners[0], corners[1], corners[1] + 1e-2 * unit]]
+        )
+    return {name: value.astype(np.float32) for name, value in made.items()}
+
+
+def spherical_triangles(context, library, cases: np.ndarray, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Directions to samples (n, samples, 3) and solid angles (n,) from the GPU, of cases (n, 4, 3)."""
+    count = len(cases) * samples
+    table = context.moderngl.buffer(np.pad(cases, ((0, 0), (0, 0), (0, 1))).astype(np.float32).tobytes())
+    results = context.moderngl.buffer(reserve=16 * count)
+    program = library.compute(str(FOLDER / "spherical_triangle.comp"))
+    program.run(count, {"Triangles": table, "Results": results}, {"count": count, "samples": samples})
+    read = np.frombuffer(results.read(), np.float32).reshape(len(cases), samples, 4).astype(np.float64)
+    table.release()
+    results.release()
+    return read[..., :3], read[:, 0, 3]
+
+
+def test_triangles_are_sampled_evenly_in_solid_angle(context, library):
+    """Counts in sixteen parts of each triangle against their solid angles, chi-square of 15 degrees of freedom."""
+    cases = triangles()
+    towards, angles = spherical_triangles(context, library, np.array(list(cases.values())), SAMPLES)
+    statistics = []
+    for (name, case), directions, angle in zip(cases.items(), towards, angles):
+        corners = case[1:].astype(np.float64) - case[0]
+        expected = solid_angles(corners)
+        # Rounding of the products in the volume, whose sum can be far smaller.
+        edges = corners[1:] - corners[0]
+        normal = np.cross(*edges)
+        products = np.linalg.norm(corners[0]) * np.prod(np.linalg.norm(edges, axis=1))
+        assert angle == pytest.approx(expected, rel=1e-4 + 4e-7 * products / abs(corners[0] @ normal)), name
+        size = np.linalg.norm(corners, axis=1).max()
+        assert (
+            np.abs(directions @ normal / np.linalg.norm(normal) - corners[0] @ normal / np.linalg.norm(normal)).max()
+            < 2e-6 * size
+        )
+        shares = solid_angles(parts_of(corners)) / expected
+        assert shares.sum() == pytest.approx(1, abs=1e-6)
+        counts = np.bincount(part_numbers(corners, directions), minlength=PARTS**2)
+        seen = shares * SAMPLES > 5  # where a chi-square holds
+        merged = np.append(counts[seen], counts[~seen].sum()), np.append(shares[seen], shares[~seen].sum()) * SAMPLES
+        statistic = ((merged[0] - merged[1]) ** 2 / np.maximum(merged[1], 1)).sum()
+        statistics.append(statistic)
+        assert statistic < 50, f"{name}: {statistic} {counts} {shares * SAMPLES}"
+    print(f"chi-square of {len(cases)} triangles: mean {np.mean(statistics):.1f}, most {max(statistics):.1f}")
+
+
+def test_degenerate_triangles_give_no_nan(context, library):
+    a, b, c = np.eye(3)
+    cases = np.array([
+        (a, a, b, c), (b, a, b, c), (c, a, b, c),  # the point is a corner
+        ((a + b) / 2, a, b, c), ((a + b + c) / 3, a, b, c), (2 * a - b, a, b, c),  # on an edge, inside, in the plane
+        (0 * a, a, a, b), (0 * a, a, a, a), (0 * a, a, b, (a + b) / 2), (0 * a, 0 * a, 0 * a, 0 * a),  # no area
+        (0 * a, a, -a, b), (0 * a, 1e-20 * a, 1e-20 * b, 1e-20 * c), (0 * a, 1e12 * a, 1e12 * b, 1e12 * c),
+    ])  # fmt: skip
+    towards, angles = spherical_triangles(context, library, cases, 1024)
+    assert np.isfinite(angles).all() and (angles >= 0).all() and (angles < 6.2832).all(), angles
+    assert np.isfinite(towards).all()
+
+
+AREA = {"size": (0.8, 0.5)}
+SHEARED = np.array([[1, 0.7, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1], [0, 0, 0, 1.0]])
+EMITTERS = {
+    "sphere": Light("sphere", LightKind.POINT, scenes.placed(0, 0, 1), 3 * np.ones(3), radius=0.5),
+    "soft": Light("soft", LightKind.POINT, scenes.placed(0, 0, 1), 3 * np.ones(3), radius=0.5, soft_falloff=True),
+    "rectangle": Light("rectangle", LightKind.AREA, scenes.placed(0, 0, 1), 5 * np.ones(3), shape="RECTANGLE", **AREA),
+    "sheared": Light("sheared", LightKind.AREA, SHEARED, 5 * np.ones(3), shape="RECTANGLE", **AREA),
+    "ellipse": Light("ellipse", LightKind.AREA, scenes.placed(0, 0, 1), 5 * np.ones(3), shape="ELLIPSE", **AREA),
+    "sheared ellipse": Light("sheared ellipse", LightKind.AREA, SHEARED, 5 * np.ones(3), shape="ELLIPSE", **AREA),
+    "spread": Light("spread", LightKind.AREA, scenes.placed(0, 0, 1), 5 * np.ones(3), size=(0.3, 0.3), spread=1.0),
+}
+POINTS = {"below": (0.1, 0.05, 0.0), "far": (-3.0, 1.0, -7.0), "near": (0.3, -0.2, 0.97), "beside": (0.7, 0.1, 0.96)}
+
+
+@pytest.fixture
+def mapper(context, library):
+    mapper = ProgressivePhotonMapper(context, library)
+    yield mapper
+    mapper.release()
+
+
+def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float = 0.0) -> dict[str, np.ndarray]:
+    """Samples of the scene's first light from a point: direction, distance, weight, density, seen, seen_density."""
+    results = mapper.context.moderngl.buffer(reserve=48 * count)
+    mapper._emission.environment.use()
+    library.compute(str(FOLDER / "light_samples.comp")).run(
+        count,
+        {**mapper._emission.buffers, "Results": results},
+        {**mapper._emission.parameters(3, 1, count), "point": point, "emitted": emitted},
+    )
+    table = np.frombuffer(results.read(), np.float32).reshape(count, 3, 4).astype(np.float64)
+    results.release()
+    assert np.isfinite(table).all()
+    (direction, weight, seen), (distance, density, seen_density) = table[..., :3].swapaxes(0, 1), table[..., 3].T
+    return {
+        "direction": direction, "distance": distance, "weight": weight, "density": density,
+        "seen": seen, "seen_density": seen_density,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("where", POINTS)
+@pytest.mark.parametrize("name", EMITTERS)
+def test_what_a_ray_sees_of_a_light_has_the_sampled_density(mapper, library, name, where):
+    mapper.build(floor_scene(EMITTERS[name], DirectLight.RAYS))
+    sample = light_samples(mapper, library, POINTS[where])
+    lit = sample["weight"][:, 0] > 0
+    if not lit.any():
+        # within the sphere, outside the beam
+        assert (name, where) in {("sphere", "near"), ("spread", "near"), ("spread", "beside")}
+        return
+    # On the rim, rounding may take the ray past the light.
+    both = lit & (sample["seen"][:, 0] > 0)
+    assert both.sum() > 0.999 * lit.sum()
+    np.testing.assert_allclose(sample["seen_density"][both], sample["density"][both], rtol=2e-4)
+    np.testing.assert_allclose(
+        (sample["seen"][both, 0] / sample["density"][both]), sample["weight"][both, 0], rtol=2e-3
+    )
+
+
+@pytest.mark.parametrize("where", POINTS)
+@pytest.mark.parametrize("name", ["rectangle", "sheared"])
+def test_area_lights_give_their_irradiance(mapper, library, name, where):
+    """On a plane that faces up, against Lambert's closed form."""
+    light = EMITTERS[name]
+    mapper.build(floor_scene(light, DirectLight.RAYS))
+    sample = light_samples(mapper, library, POINTS[where])
+    received = sample["weight"][:, 0] * sample["direction"][:, 2]
+    corners = np.array([(x * 0.4, y * 0.25, 0, 1) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))]) @ light.matrix.T
+    expected = 5 * irradiance(corners[:, :3] - POINTS[where], np.array([0, 0, 1.0]))
+    error = received.std() / math.sqrt(SAMPLES)
+    print(f"{name} {where}: {received.mean():.5f} closed form {expected:.5f} +- {error:.5f}")
+    assert abs(received.mean() - expected) < 4.5 * error + 1e-4 * expected
+
+
+@pytest.mark.parametrize("where", POINTS)
+def test_an_ellipse_gives_the_irradiance_of_its_area(mapper, library, where):
+    """Against the light summed over the ellipse by rings, on either side of where the sampling changes."""
+    mapper.build(floor_scene(EMITTERS["ellipse"], DirectLight.RAYS))
+    sample = light_samples(mapper, library, POINTS[where])
+    received = sample["weight"][:, 0] * sample["direction"][:, 2]
+    rings, spokes = np.meshgrid(np.sqrt((np.arange(800) + 0.5) / 800), 2 * np.pi * (np.arange(800) + 0.5) / 800)
+    places = np.stack([0.4 * rings * np.cos(spokes), 0.25 * rings * np.sin(spokes), np.ones_like(rings)], -1)
+    offset = places - POINTS[where]
+    squared = (offset**2).sum(-1)
+    expected = 5 * np.pi * 0.4 * 0.25 * (offset[..., 2] ** 2 / squared**2).mean()
+    error = received.std() / math.sqrt(SAMPLES)
+    print(f"{where}: {received.mean():.5f} by rings {expected:.5f} +- {error:.5f}")
+    assert abs(received.mean() - expected) < 4.5 * error + 1e-3 * expected
+
+
+def walled_scene() -> Scene:
+    """A floor and a wall of side 1 at its edge that emits 1."""
+    scene = floor_scene(None, DirectLight.RAYS)
+    scene.meshes.append(scenes.rectangle("wall", (0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)))
+    scene.materials.append(Material("wall", [Lobe(LobeKind.EMISSION, color=(1, 1, 1))]))
+    scene.instances.append(Instance(1, np.eye(4), [1]))
+    return scene
+
+
+def test_the_variance_beside_an_emissive_wall_is_bounded(mapper, library):
+    """On the floor at a shrinking distance from the wall. Sampled by area the relative variance would grow as the
+    distance falls. By solid angle, with two triangles of equal power, no sample exceeds radiance times 2 pi, which
+    is four times the mean in the corner: the relative variance stays below 4 - 1."""
+    mapper.build(walled_scene())
+    corners = np.array([(0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1.0)])
+    for distance in (0.5, 0.1, 0.02, 0.004):
+        point = np.array([distance, 0.1, 0.0])
+        sample = light_samples(mapper, library, point, emitted=1.0)
+        np.testing.assert_allclose(sample["seen_density"], sample["density"], rtol=2e-4)
+        received = sample["weight"][:, 0] * sample["direction"][:, 2]
+        expected = irradiance(corners - point, np.array([0, 0, 1.0]))
+        assert abs(received.mean() - expected) < 4.5 * received.std() / math.sqrt(SAMPLES) + 1e-4 * expected
+        # Second moment by area, over cells that shrink towards the point's foot.
+        edges = np.concatenate([-np.geomspace(0.6, 1e-5, 400), np.geomspace(1e-5, 0.4, 400)])
+        heights = np.concatenate([[0], np.geomspace(1e-5, 1, 800)])
+        y, z = np.meshgrid((edges[1:] + edges[:-1]) / 2, (heights[1:] + heights[:-1]) / 2)
+        cells = np.outer(np.diff(heights), np.diff(edges))
+        by_area = ((z * distance / (distance**2 + y**2 + z**2) ** 2) ** 2 * cells).sum() / expected**2 - 1
+        by_angle = received.var() / expected**2
+        print(f"at {distance}: relative variance by solid angle {by_angle:.3f}, by area {by_area:.2f}")
+        assert received.max() <= 2 * math.pi
+        assert by_angle < 3
+    assert by_area > 20 * by_angle
