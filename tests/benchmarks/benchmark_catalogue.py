@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import benchmark_estimator
 import benchmark_figures
+import benchmark_gather
 import benchmark_roulette
 from benchmark_machine import Clock
 from benchmark_scenes import SAMPLE, Subject
@@ -19,6 +20,7 @@ _ESTIMATOR: dict[str, Callable[[Subject, Clock, bool], dict]] = {
     "resolutions": benchmark_estimator.resolutions,
     "splat_radius": benchmark_estimator.splat_radius,
     "roulette": benchmark_roulette.roulette,
+    "final_gather": benchmark_gather.final_gather,
 }
 _ESTIMATOR_SCENES = (
     SAMPLE, "pool", "fireplace_room", "glass_caustics", "bathroom", "diamond_ring", "sponza_dabrovic",

@@ -72,6 +72,7 @@ def splat_radius(subject: Subject, clock: Clock, quick: bool) -> dict:
     scale = scale_of(clock, quick)
     points = []
     with Rendering(subject, clock, scale) as rendering:
+        rendering.mapper._learn = lambda: None  # which would change photons and wide radius
         rendering.start()
         automatic = rendering.mapper.splat_radii[0]
         for factor in _RADIUS_FACTORS:

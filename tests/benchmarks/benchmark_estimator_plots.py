@@ -137,6 +137,26 @@ def _roulette(document: dict):
     return figure
 
 
+def _final_gather(document: dict):
+    figure, panels = _panels(document["scenes"])
+    for axes, scene in panels:
+        for name, style in (("plain", "--"), ("gather", "-")):
+            curve = scene["curves"][name]
+            for place, side in enumerate(scene["blocks"]):
+                what = "pixels" if side == 1 else f"{side} x {side}"
+                axes.plot(
+                    [point["seconds"] for point in curve], [point["errors"][place] for point in curve], style,
+                    marker="o", markersize=3, lw=1, color=COLOURS[place], label=f"{what}, {name}",
+                )  # fmt: skip
+        axes.set(xlabel="seconds", ylabel="median relative error")
+        axes.set_title(_subtitle(scene), fontsize=9)
+        logarithmic(axes.xaxis)
+        logarithmic(axes.yaxis)
+    handles, labels = panels[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=6, fontsize=8)
+    return figure
+
+
 DRAWERS = {
     "iterations": _iterations,
     "path_lengths": _path_lengths,
@@ -144,4 +164,5 @@ DRAWERS = {
     "resolutions": _resolutions,
     "splat_radius": _splat_radius,
     "roulette": _roulette,
+    "final_gather": _final_gather,
 }

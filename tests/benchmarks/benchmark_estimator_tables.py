@@ -117,6 +117,23 @@ def _roulette(document: dict) -> str:
     )
 
 
+def _final_gather(document: dict) -> str:
+    lines = []
+    for scene in document["scenes"]:
+        plain, gather = (scene["curves"][name][-1] for name in ("plain", "gather"))
+        line = [*_what_ran(scene), f"{gather['seconds']:.1f}", f"{plain['iterations']} / {gather['iterations']}"]
+        for without, with_gather in zip(plain["errors"], gather["errors"]):
+            line += [f"{without:.1%} / {with_gather:.1%}", number(with_gather / without)]
+        lines.append(line)
+    sides = document["scenes"][0]["blocks"]
+    columns = [cell for side in sides for cell in ("pixels" if side == 1 else f"{side} x {side} pixels", "ratio")]
+    return (
+        "Median relative error of pixels and of blocks of pixels after as many seconds, plain / with final gather, and "
+        "how many times that of the plain estimate it is.\n\n"
+        + table([*_WHAT_RAN, "seconds", "iterations", *columns], lines)
+    )
+
+
 _WHAT_RAN = ["scene", "frame", "photons", "lengths"]
 
 
@@ -146,4 +163,5 @@ WRITERS = {
     "resolutions": _resolutions,
     "splat_radius": _splat_radius,
     "roulette": _roulette,
+    "final_gather": _final_gather,
 }

@@ -55,6 +55,8 @@ class Scale:
     seeds: int
     seed_iterations: int
     """Independent renders for a variance, and the iterations of each."""
+    reference_iterations: int
+    """Of the picture that errors are measured against, and four times as many as of the longest render."""
 
 
 HARDWARE = Scale(
@@ -67,6 +69,7 @@ HARDWARE = Scale(
     sizes=((480, 270), (960, 540), (1280, 720), (1920, 1080), (2560, 1440), (3840, 2160)),
     seeds=16,
     seed_iterations=32,
+    reference_iterations=1024,
 )
 SOFTWARE = Scale(
     pixels=1 << 15,
@@ -78,6 +81,7 @@ SOFTWARE = Scale(
     sizes=((120, 68), (240, 135), (480, 270), (960, 540)),
     seeds=8,
     seed_iterations=8,
+    reference_iterations=96,
 )
 QUICK = Scale(
     pixels=1 << 11,
@@ -89,6 +93,7 @@ QUICK = Scale(
     sizes=((32, 18), (64, 36), (128, 72)),
     seeds=6,
     seed_iterations=2,
+    reference_iterations=16,
 )
 
 
@@ -104,7 +109,10 @@ class Rendering:
         self._camera = dataclasses.replace(subject.scene.camera, crop=None)
         photon_length, camera_length = _PATH_LENGTHS.get(subject.name, _OTHER_PATH_LENGTHS)
         self._settings = RenderSettings(
-            photons=scale.photons, photon_path_length=photon_length, camera_path_length=camera_length
+            photons=scale.photons,
+            photon_path_length=photon_length,
+            camera_path_length=camera_length,
+            final_gather=False,  # the paper's estimate
         )
         self._scene = subject.scene
         proportion = self._camera.width / self._camera.height

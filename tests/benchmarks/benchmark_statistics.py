@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Straight lines through times, and variances of pictures."""
+"""Straight lines through times, variances and errors of pictures."""
 
 import numpy as np
 
 _DARK = 0.1
-"""Share of the picture's mean that is added to the mean (squares), so that nearly black pixels do not outweigh all."""
+"""Share of the picture's mean that is added to that of a pixel, so that nearly black ones do not outweigh all."""
 
 
 def fit_line(x: list[float], seconds: list[float]) -> dict[str, float]:
@@ -13,6 +13,17 @@ def fit_line(x: list[float], seconds: list[float]) -> dict[str, float]:
     slope, base = np.polyfit(x, seconds, 1, w=1.0 / seconds)
     error = np.abs(base + slope * x - seconds) / seconds
     return {"base_seconds": float(base), "slope_seconds": float(slope), "greatest_relative_error": float(error.max())}
+
+
+def block_error(picture: np.ndarray, reference: np.ndarray, side: int) -> float:
+    """Median relative error of the means of blocks of side x side pixels; both (height, width), cut to whole blocks."""
+
+    def blocks(values: np.ndarray) -> np.ndarray:
+        rows, columns = values.shape[0] // side, values.shape[1] // side
+        return values[: rows * side, : columns * side].reshape(rows, side, columns, side).mean(axis=(1, 3))
+
+    truth = blocks(reference)
+    return float(np.median(np.abs(blocks(picture) - truth) / (truth + _DARK * reference.mean())))
 
 
 def variances(without: np.ndarray, rejecting: np.ndarray) -> tuple[float, list[float], list[float]]:

@@ -20,6 +20,7 @@ _TITLES = {
     "resolutions": "Frame sizes",
     "splat_radius": "Splat radius",
     "roulette": "Splat roulette",
+    "final_gather": "Final gather",
 }
 
 

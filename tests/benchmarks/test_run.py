@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmark_statistics import fit_line, variances
+from benchmark_statistics import block_error, fit_line, variances
 
 from rppm_addon.integrator.deep_cubemap import DeepCubemap
 
@@ -18,7 +18,7 @@ RUN = Path(__file__).with_name("run.py")
 FIGURES = ["construction", "resolution", "rays", "placement"]
 if "most_bins" in inspect.signature(DeepCubemap.__init__).parameters:
     FIGURES.append("bins")
-ESTIMATOR = {"iterations", "path_lengths", "photon_batches", "resolutions", "splat_radius", "roulette"}
+ESTIMATOR = {"iterations", "path_lengths", "photon_batches", "resolutions", "splat_radius", "roulette", "final_gather"}
 FIGURES += sorted(ESTIMATOR)
 KINDS = {"camera", "diffuse bounce", "photon"}
 
@@ -114,7 +114,7 @@ def test_placement_tries_all_kinds_of_places(documents):
 
 def test_stages_add_up_to_the_iterations(documents):
     stages = {"photon paths", "camera paths", "direct light", "direct splatting", "indirect splatting", "film", "other"}
-    for figure in ESTIMATOR - {"roulette"}:
+    for figure in ESTIMATOR - {"roulette", "final_gather"}:
         (line,) = documents[figure]["scenes"]
         assert line["size"][0] * line["size"][1] == pytest.approx(2048, rel=0.05) and line["photons"] == 2048
         for point in line.get("blocks") or line["points"]:
@@ -167,6 +167,24 @@ def test_roulette_has_times_and_variances(documents):
     assert line["relative_variance"] > 0 and line["iterations_at_equal_time"] >= 1
     ratio, error = line["variance_ratio"]["with"]
     assert ratio > 1 and error > 0  # roulette's own noise adds to it
+
+
+def test_error_falls_with_and_without_final_gather(documents):
+    (line,) = documents["final_gather"]["scenes"]
+    plain, gather = (line["curves"][name] for name in ("plain", "gather"))
+    assert plain[-1]["seconds"] >= gather[-1]["seconds"] and gather[-1]["iterations"] == 4
+    for curve in (plain, gather):
+        assert curve[0]["iterations"] == 1
+        assert len(curve[0]["errors"]) == 3 and min(curve[-1]["errors"]) > 0
+        assert curve[-1]["errors"][0] < curve[0]["errors"][0]  # that of pixels, of which there are many
+
+
+def test_block_error_is_the_median_of_whole_blocks():
+    reference = np.ones((5, 9))
+    picture = np.kron([[1.0, 1.2], [1.0, 1.2]], np.ones((2, 4)))
+    picture = np.pad(picture, ((0, 1), (0, 1)), constant_values=9.0)
+    assert block_error(picture, reference, 4) == pytest.approx(0.1 / 1.1)
+    assert block_error(picture, reference, 2) == pytest.approx(0.1 / 1.1)
 
 
 def test_a_straight_line_is_found():
