@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light straight from the sources, by next-event rays from the camera paths' vertices."""
 
+import moderngl
+
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
@@ -47,8 +49,10 @@ class DirectLight:
         first_pixel: int,
         iteration: int,
         segment: int,
+        found_radiances: moderngl.Buffer,
     ) -> None:
-        """Add the direct light of the resolved vertices of ``count`` camera paths to the band's radiance.
+        """Add the direct light of the resolved vertices of ``count`` camera paths to the band's radiance, or to what
+        their gathering rays found.
 
         To be called before the paths scatter on.
         """
@@ -80,6 +84,7 @@ class DirectLight:
             {
                 "Visibility": self._visibility.buffer,
                 "Contributions": self._contributions.buffer,
+                "FoundRadiances": found_radiances,
                 "Radiances": importons.radiances.buffer,
             },
             {"count": count},

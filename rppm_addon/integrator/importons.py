@@ -10,6 +10,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..scene.settings import DirectLight
 from .emission import LIGHT_PARAMETERS
+from .final_gather import SHARED_RADIUS
 from .records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
 from .stages import Stages
 
@@ -27,6 +28,8 @@ Record(
     shrinkage="float",
     radius_minimum="float",
     radius_maximum="float",
+    wide_radius="float",
+    shared_radius="float",
 )
 
 
@@ -91,6 +94,8 @@ class Importons:
         radius_scale: float,
         shrinkage: float,
         limits: tuple[float, float],
+        wide_radius: float,
+        vertices: moderngl.Buffer,
     ) -> None:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
         settings = stages.settings
@@ -106,6 +111,7 @@ class Importons:
                 "Radiances": self.radiances.buffer,
                 "Camera": camera,
                 "Materials": stages.materials.buffers["Materials"],
+                "GatheringVertices": vertices,
             },
             {
                 **stages.emission.parameters(settings.seed, iteration, count),
@@ -120,6 +126,8 @@ class Importons:
                 "shrinkage": shrinkage,
                 "radius_minimum": limits[0],
                 "radius_maximum": limits[1],
+                "wide_radius": wide_radius,
+                "shared_radius": SHARED_RADIUS,
             },
         )
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 PPM_BUFFERS = ("film", "gathered radiance", "photons")
-"""Running mean of radiance (16 R), sums of splats (24 bytes a pixel of one band of rows), photons (64 M L)."""
+"""Running mean of radiance (16 R), sums of splats (48 bytes a pixel of one band of rows), photons (64 M L)."""
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
+from .final_gather import FinalGather
 from .gbuffer import GBuffer, bands_of, camera_view, filter_offsets
 from .geometry import Geometry
 from .guide import LEARNING_ITERATIONS, learns_after
@@ -72,8 +73,17 @@ class ProgressivePhotonMapper:
         self._importons = Importons(self.context, self._library, width * rows)
         self._splatting = Splatting(self.context, self._library, width, rows)
         self._direct_light = DirectLight(self.context, self._library, width * rows)
+        self._final_gather = FinalGather(self.context, self._library, width * rows)
         self.film = Film(self.context, self._library, width, height)
-        self._views = [self._photons, self._gbuffer, self._importons, self._splatting, self._direct_light, self.film]
+        self._views = [
+            self._photons,
+            self._gbuffer,
+            self._importons,
+            self._splatting,
+            self._direct_light,
+            self._final_gather,
+            self.film,
+        ]
         self._stages = Stages(
             settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
         )
@@ -89,6 +99,7 @@ class ProgressivePhotonMapper:
         self._release_views()
         self.iteration = 0
         self._diffused_photons = []
+        self._wide_radius = 0.0
         self.scene = scene
         self._materials.build(scene.materials, scene.images)
         self._geometry.build(scene, self._materials.default_material)
@@ -121,9 +132,15 @@ class ProgressivePhotonMapper:
                     self._direct_splatting()
                 else:
                     self._indirect_splatting()
+            if self._gathers:
+                self._share_gathered_light()
             self._update_film()
             if self._splatting.counting:
                 self._diffused_photons.append(self._splatting.diffused_photons(self._count))
+
+    @property
+    def _gathers(self) -> bool:
+        return self.scene.settings.final_gather and self.scene.settings.camera_path_length > 1
 
     @property
     def splat_radii(self) -> tuple[float, float]:
@@ -147,6 +164,7 @@ class ProgressivePhotonMapper:
             "photon paths": self._photons.memory_bytes,
             "camera paths": {"visibility buffer": self._gbuffer.memory_bytes} | self._importons.memory_bytes,
             "direct light": self._direct_light.memory_bytes,
+            "final gather": self._final_gather.memory_bytes,
             "splatting": self._splatting.memory_bytes,
             "passes": self.film.memory_bytes,
         }
@@ -254,6 +272,7 @@ class ProgressivePhotonMapper:
         with self.timers.stage("gbuffer"):
             self._importons.begin()
             self._splatting.begin()
+            self._final_gather.begin()
             self._begin_band(view, first_row)
 
     def _trace_importons(self, segment: int) -> None:
@@ -278,6 +297,8 @@ class ProgressivePhotonMapper:
                 self._radius_scale,
                 shrink,
                 limits,
+                self._wide_radius * shrink,
+                self._final_gather.vertices.buffer,
             )
 
     def _add_direct_light(self, segment: int) -> None:
@@ -285,11 +306,16 @@ class ProgressivePhotonMapper:
             return
         with self.timers.stage("direct light"):
             self._direct_light.run(
-                self._stages, self._importons, self._count, self._first_pixel, self.iteration, segment
+                self._stages,
+                self._importons,
+                self._count,
+                self._first_pixel,
+                self.iteration,
+                segment,
+                self._final_gather.radiances.buffer,
             )
 
     def _direct_splatting(self) -> None:
-        settings = self.scene.settings
         with self.timers.stage("direct splatting"):
             self._splatting.direct(
                 self._photons.photons.buffer,
@@ -298,17 +324,32 @@ class ProgressivePhotonMapper:
                 self.film.width,
                 self._rows,
                 self.splat_radii,
-                settings.final_gather and settings.camera_path_length > 1,
+                self._gathers,
             )
 
     def _indirect_splatting(self) -> None:
+        narrow, wide = self.splat_radii
         with self.timers.stage("indirect splatting"):
             self._splatting.indirect(
                 self._photons.photons.buffer,
                 self._importons.importons.buffer,
                 self._count,
                 self.centre,
-                self.splat_radii,
+                (max(narrow, wide) if self._gathers else narrow, wide),
+            )
+
+    def _share_gathered_light(self) -> None:
+        """What the gathering rays found, to the pixels that they left from and to those around."""
+        with self.timers.stage("final gather"):
+            self._final_gather.run(
+                self._splatting,
+                self._importons.radiances.buffer,
+                self._count,
+                self.film.width,
+                self._first_pixel,
+                self._radius_scale / math.sqrt(math.pi) * self._shrinkage,
+                self.scene.settings.seed,
+                self.iteration,
             )
 
     def _update_film(self) -> None:

@@ -33,7 +33,7 @@ Record(
 
 _STORED_HEADER = 8
 _PHOTON_QUANTA = 1 << 24
-_GATHERED = 24
+_GATHERED = 48
 
 
 def radiance_quantum(photon_flux: float, radius: float) -> float:
@@ -95,7 +95,7 @@ class Splatting:
 
     def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
         """Set what the sums count in, W/(m^2 sr), the seed of the fragments' roulette (0 keeps them all), and
-        whether to count the diffused photons of the camera's first hits."""
+        whether to count the diffused photons that pixels find."""
         self.quantum = quantum
         self.counting = counting
         self._counting = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette, "counting": counting}
@@ -147,8 +147,11 @@ class Splatting:
         )
 
     def diffused_photons(self, count: int) -> np.ndarray:
-        """(count,) how many diffused photons the importons of the band's first hits took, where they are counted."""
-        return self._diffused_photons.read(np.uint32, count)
+        """(count,) how many diffused photons the importons of each of the band's pixels took, where they are counted.
+
+        Those that roulette leaves stand for two.
+        """
+        return self._diffused_photons.read(np.uint32, count) * (2 if self._counting["roulette"] else 1)
 
     def indirect(
         self,

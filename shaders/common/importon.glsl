@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The includer declares the storage blocks of photons[] and importons[] before.
 #include "common/bsdf/microfacet.glsl"
+#include "common/gathering.glsl"
 
 // BSDF times path throughput of an importon for light from wi.
 vec3 evaluate_importon(Importon importon, vec3 shading, vec3 wi) {
@@ -22,7 +23,7 @@ const float PLANE_TOLERANCE = 0.35;
 // what decides that is read first.
 bool density_estimate(uint importon_number, uint photon_number, float wide_radius, out vec3 radiance) {
     radiance = vec3(0.0);
-    if (importons[importon_number].gathers != 0u && (photons[photon_number].flags & PHOTON_INDIRECT) != 0u) return false;
+    if (importons[importon_number].gathers == GATHERS_BY_RAY && (photons[photon_number].flags & PHOTON_INDIRECT) != 0u) return false;
     float narrow = importons[importon_number].radius;
     vec3 offset = photons[photon_number].position - importons[importon_number].position;
     float radius = photon_radius(photons[photon_number].flags, narrow, wide_radius), radius2 = radius * radius;

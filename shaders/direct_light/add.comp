@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What reached its light is added to the pixels' radiance.
+// What reached its light is added to the radiance of the pixels, or to that of their gathering rays.
 
 layout(local_size_x = 64) in;
 
@@ -10,9 +10,13 @@ layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
 layout(std430, binding = 0) readonly buffer Visibility { uint visibility[]; };
 layout(std430, binding = 1) readonly buffer Contributions { vec4 contributions[]; };
 layout(std430, binding = 2) buffer Radiances { vec4 radiances[]; };
+layout(std430, binding = 3) buffer FoundRadiances { vec4 found_radiances[]; };
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    if (visibility[index] != 0u) radiances[index] += contributions[index];
+    vec4 contribution = contributions[index];
+    if (visibility[index] == 0u) return;
+    if (contribution.w > 0.0) found_radiances[index].rgb += contribution.rgb;
+    else radiances[index].rgb += contribution.rgb;
 }

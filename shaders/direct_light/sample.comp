@@ -70,7 +70,7 @@ void main() {
                                       sampled.density * light.selection_probability);
     vec3 radiance = throughput * scattered * sampled.weight * (abs(cosine) / light.selection_probability);
     if (!(largest(radiance) > 0.0)) return;
-    contributions[index] = vec4(radiance, 0.0);
+    contributions[index] = vec4(radiance, gathered ? 1.0 : 0.0);
     vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
     Ray shadow = Ray(origin, closure.triangle, sampled.direction, INFINITY_DISTANCE);
     if (sampled.distance < INFINITY_DISTANCE) {

@@ -6,13 +6,13 @@
 layout(local_size_x = 64) in;
 
 #include <Ray>
-#include <Importon>
 #include <CameraView>
 #include <ScatterImportonsParameters>
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
+#include "common/gathering.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "emission/lights.glsl"
@@ -20,6 +20,7 @@ layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer CameraPaths { CameraPath camera_paths[]; };
 layout(std430, binding = 3) writeonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 11) writeonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
 layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
 
@@ -34,10 +35,10 @@ float first_radius(vec3 direction, float distance, vec3 normal) {
     return parameters.radius_scale * sqrt(area / PI);
 }
 
-Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, bool gathers) {
+Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.shading_normal,
-                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, gathers ? 1u : 0u, 0u);
+                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, gathers, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
     float cosine = clamp(dot(unpack_unit_vector(closure.shading_normal), viewer), 0.0, 1.0);
     float total = 0.0;
@@ -69,6 +70,7 @@ void main() {
     Ray ray = rays[index];
     importons[index].radius = 0.0;
     rays[index].maximum_distance = 0.0;
+    if (parameters.segment == 0u) gathering_vertices[index].radius = -1.0;
     if (!(ray.maximum_distance > 0.0)) return;
     Closure closure = closures[index];
     bool hit = closure_hit(closure);
@@ -110,10 +112,13 @@ void main() {
     // Eq. 4, with the limits that shrink as the radius does.
     float radius = path.primary_radius * path.total_length / max(path.primary_distance, 1e-12);
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
+    // Caustics that gathering rays find are bright and rare: a wide disk makes them less so.
+    if (gathered) radius = max(radius, parameters.wide_radius);
 
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_IMPORTONS, parameters.segment, parameters.first_pixel + index);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u && !gathered;
-    importons[index] = make_importon(closure, path.throughput, viewer, radius, next_random(random), gathers);
+    importons[index] = make_importon(closure, path.throughput, viewer, radius, next_random(random),
+                                     gathers ? GATHERS_BY_RAY : (gathered ? GATHERED_BY_RAY : GATHERS_ALL));
 
     if (parameters.last_segment != 0u) return;
     float cosine = clamp(dot(shading, viewer), 0.0, 1.0);
@@ -137,7 +142,8 @@ void main() {
         shares = gathering_shares;
         u_direction = scrambled_sobol(parameters.iteration, pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_GATHERING)));
     } else u -= gathering;
-    if (u < shares.x && sets_out) {
+    bool diffuse = sets_out && u < shares.x;
+    if (diffuse) {
         direction = sample_cosine_hemisphere(shading, u_direction);
         weight = closure.diffuse;
         transmitted = false;
@@ -162,6 +168,12 @@ void main() {
         path.flags &= ~PATH_STRAIGHT;
     }
     path.throughput *= weight * (total / (probability * survival));
+    if (sets_out) {
+        // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
+        float shared_radius = diffuse ? parameters.shared_radius * radius : 0.0;
+        gathering_vertices[index] = GatheringVertex(closure.position, shared_radius, path.throughput, closure.shading_normal);
+        path.throughput = vec3(1.0);
+    }
     float side = dot(direction, geometric);
     if (!(largest(path.throughput) > 0.0) || (transmitted ? side >= 0.0 : side <= 0.0)) return;
     if (transmitted) path.flags = cross_surface(path.flags, closure);

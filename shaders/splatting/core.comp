@@ -13,8 +13,8 @@ layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
 layout(std430, binding = 2) readonly buffer Core { uint core_count; uint core_importons[]; };
 layout(std430, binding = 3) readonly buffer Importons { Importon importons[]; };
-#include "splatting/gathered.glsl"
 #include "common/importon.glsl"
+#include "splatting/gathered.glsl"
 
 void main() {
     uint index = invocation_index();

@@ -9,9 +9,9 @@ layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
 #include "splatting/roulette.glsl"
 layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
+#include "common/importon.glsl"
 #include "splatting/gathered.glsl"
 #include "splatting/diffused.glsl"
-#include "common/importon.glsl"
 
 flat in uint photon_number;
 flat in uint face;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Radiance gathered by each importon, added to by many threads at once: sums of whole quanta in 64 bits, as a
 // low and a high word, since the sum of integers does not depend on their order and that of floats does.
-// The includer declares the storage block of photons[].
+// An importon has three sums for its pixel, and three for what a gathering ray finds.
+// The includer declares the storage blocks of photons[] and importons[].
 
+#include "splatting/sums.glsl"
 layout(std430, binding = 4) buffer Gathered { uint gathered_words[]; };
 
-const float WORD = 4294967296.0;
 const float MOST_QUANTA = 4611686018427387904.0;  // 2^62
 
 void add_quanta(uint place, float quanta) {
@@ -22,7 +23,8 @@ void add_quanta(uint place, float quanta) {
 // Threads that meet here write the same mark.
 void add_gathered(uint importon, uint photon, vec3 radiance, float quanta) {
     photons[photon].contributed = 1u;
-    add_quanta(6u * importon, radiance.r * quanta);
-    add_quanta(6u * importon + 2u, radiance.g * quanta);
-    add_quanta(6u * importon + 4u, radiance.b * quanta);
+    uint place = first_word(importon, importons[importon].gathers == GATHERED_BY_RAY);
+    add_quanta(place, radiance.r * quanta);
+    add_quanta(place + 2u, radiance.g * quanta);
+    add_quanta(place + 4u, radiance.b * quanta);
 }

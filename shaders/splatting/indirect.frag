@@ -10,9 +10,9 @@ layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
 layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
+#include "common/importon.glsl"
 #include "splatting/gathered.glsl"
 #include "splatting/diffused.glsl"
-#include "common/importon.glsl"
 
 flat in uint photon_number;
 flat in uint face;

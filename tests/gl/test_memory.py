@@ -23,7 +23,7 @@ def test_a_megapixel_takes_no_more_than_in_the_paper(renderer):
     memory = renderer.memory(scenes.room(1024, **SETTINGS))
     assert memory.pixels == 1 << 20
     assert memory.ppm["film"] == 16 << 20
-    assert memory.ppm["gathered radiance"] == 24 * MAXIMUM_BAND_PIXELS
+    assert memory.ppm["gathered radiance"] == 48 * MAXIMUM_BAND_PIXELS
     assert memory.ppm_bytes - memory.ppm["photons"] <= 32 << 20
     assert memory.ppm_bytes <= memory.paper_bytes
 
