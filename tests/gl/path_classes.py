@@ -1,306 +1,211 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Radiance of single light path classes L(S|G|D)*E by deterministic quadrature in float64.
+"""Scenes in which one light path class L(S|G|D)*E alone reaches the camera, and what it shows there.
 
-Nothing here is shared with the shaders. Points, directions and normals are (..., 3) arrays; directions have unit
-length and point away from the surface; planes have the normal on the side where the light is. Surfaces are white:
-the caller multiplies by their colours, which is exact for lobes whose reflectance is constant.
+A spot lights the first surface of a class only, and the path lengths are as short as the class allows. The camera
+looks through pixel centres at the inside of smoothly lit surfaces, farther from the edges than a splat reaches.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
+import path_quadrature as quadrature
+import scenes
+from path_quadrature import Plane, Spot
 
-from rppm_addon.scene import Camera, Light
+from rppm_addon.scene import (
+    Camera,
+    DirectLight,
+    Instance,
+    Light,
+    LightKind,
+    Lobe,
+    LobeKind,
+    Material,
+    Mesh,
+    RenderSettings,
+    Scene,
+)
 
-Scatter = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-"""BSDF in 1/sr of (normal, one direction, the other direction)."""
-
-
-def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.einsum("...i,...i->...", a, b)
-
-
-def unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-
-
-def frame(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two unit vectors across an axis, (..., 3)."""
-    helper = np.where(np.abs(axis[..., :1]) < 0.6, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
-    first = unit(np.cross(helper, axis))
-    return first, np.cross(axis, first)
-
-
-def gauss_legendre(low: float, high: float, count: int) -> tuple[np.ndarray, np.ndarray]:
-    x, weight = np.polynomial.legendre.leggauss(count)
-    return low + (high - low) * (0.5 + 0.5 * x), 0.5 * (high - low) * weight
-
-
-def circle(count: int) -> np.ndarray:
-    """(count,) angles around a full turn: the trapezoidal rule is exact to high order there."""
-    return 2 * np.pi * (np.arange(count) + 0.5) / count
-
-
-# --- scattering ----------------------------------------------------------------------------------
-
-
-def diffuse(normal: np.ndarray, wi: np.ndarray, wo: np.ndarray) -> np.ndarray:
-    """White Lambertian reflection on the upper side."""
-    return np.where((dot(normal, wi) > 0) & (dot(normal, wo) > 0), 1 / np.pi, 0.0)
+SIZE = 24
+"""Pixels along a side."""
+MODES = RAYS, PHOTONS = DirectLight.RAYS, DirectLight.PHOTONS
+FIRST, SECOND, THIRD = np.array([0.9, 0.7, 0.5]), np.array([0.6, 0.8, 0.7]), np.array([0.8, 0.75, 0.9])
+"""Colours of the surfaces in the order in which light meets them: a wrong number of bounces shows in the hue."""
+CUT = 0.5
+SHARP, TRACED, STORED = 0.2, 0.48, 0.52
+"""Roughness that draws caustics, just below the cut-off, just above it."""
+EXTENT = 0.35
+"""Radius of the spot, metres, for paths that find it by scattering alone."""
+UP, DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0])
+FLOOR = Plane(np.zeros(3), UP)
+WALL = Plane(np.array([1.2, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]))
+FLOOR_AXES, WALL_AXES = np.eye(3)[:2], np.eye(3)[1:]
+NARROW, WIDE = 0, 1
+"""Of ProgressivePhotonMapper.splat_radii."""
 
 
-def glossy(roughness: float) -> Scatter:
-    """Single scattering by GGX microfacets that reflect everything (Walter et al. 2007, eq. 20 and 33), with the
-    height-correlated masking of Heitz (2014, eq. 99); alpha is the squared roughness."""
-    alpha = roughness**2
-
-    def smith(cosine: np.ndarray) -> np.ndarray:
-        tangent2 = (1 - cosine**2) / cosine**2
-        return (np.sqrt(1 + alpha**2 * tangent2) - 1) / 2
-
-    def scatter(normal: np.ndarray, wi: np.ndarray, wo: np.ndarray) -> np.ndarray:
-        ci, co = dot(normal, wi), dot(normal, wo)
-        lit = (ci > 0) & (co > 0)
-        ci, co = np.where(lit, ci, 1.0), np.where(lit, co, 1.0)
-        ch = np.clip(dot(normal, unit(wi + wo)), 1e-9, 1.0)
-        tangent2 = (1 - ch**2) / ch**2
-        distribution = alpha**2 / (np.pi * ch**4 * (alpha**2 + tangent2) ** 2)
-        return np.where(lit, distribution / (1 + smith(ci) + smith(co)) / (4 * ci * co), 0.0)
-
-    return scatter
+@dataclass
+class Case:
+    scene: Scene
+    expected: Callable[[np.ndarray], np.ndarray]
+    """(H, W, 3) radiance if each importon met the photons that lie at an offset (3,), metres."""
+    gathers: int | None = None
+    """The radius that its photons are gathered with, NARROW or WIDE; None: by rays alone."""
+    across: np.ndarray | None = None
+    """(2, 3) axes of the surface on which they are gathered."""
 
 
-def transmittance(index_before: float, index_behind: float, sine_before: np.ndarray) -> np.ndarray:
-    """Unpolarised Fresnel transmittance of flux by the amplitudes of both polarisations (Born and Wolf, 1.5.2)."""
-    cosine = np.sqrt(1 - sine_before**2)
-    behind = np.sqrt(1 - (sine_before * index_before / index_behind) ** 2)
-    across = (index_before * cosine - index_behind * behind) / (index_before * cosine + index_behind * behind)
-    within = (index_behind * cosine - index_before * behind) / (index_behind * cosine + index_before * behind)
-    return 1 - (across**2 + within**2) / 2
+Build = Callable[[DirectLight], Case]
 
 
-# --- surfaces and light --------------------------------------------------------------------------
+# --- parts of scenes -----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Plane:
-    point: np.ndarray
-    normal: np.ndarray
-
-    def hit(self, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        """Where rays (origins and directions) meet the plane."""
-        distance = dot(self.point - origins, self.normal) / dot(directions, self.normal)
-        return origins + distance[..., None] * directions
-
-    def mirrored(self, points: np.ndarray) -> np.ndarray:
-        return points - 2 * dot(points - self.point, self.normal)[..., None] * self.normal
-
-    def mirrored_direction(self, directions: np.ndarray) -> np.ndarray:
-        return directions - 2 * dot(directions, self.normal)[..., None] * self.normal
+def lobe(kind: str | float, color: np.ndarray) -> Lobe:
+    """D, S or the roughness of G."""
+    if kind == "D":
+        return Lobe(LobeKind.DIFFUSE, color=tuple(color))
+    roughness = 0.0 if kind == "S" else kind
+    return Lobe(LobeKind.GLOSSY, color=tuple(color), roughness=roughness, multiscatter=False)
 
 
-@dataclass(frozen=True)
-class Spot:
-    """A spot whose intensity rises smoothly from the cone's edge to its axis (blend 1), of a sphere's extent."""
-
-    position: np.ndarray
-    axis: np.ndarray
-    intensity: float
-    """W/sr on the axis."""
-    cosine: float
-    """Of half the cone's angle."""
-    radius: float
-
-    @classmethod
-    def of(cls, light: Light) -> "Spot":
-        assert light.spot_blend == 1.0
-        position, axis = light.matrix[:3, 3], -unit(light.matrix[:3, 2])
-        return cls(position, axis, float(light.strength[0]), np.cos(light.spot_angle / 2), light.radius)
-
-    def along(self, directions: np.ndarray) -> np.ndarray:
-        """W/sr towards directions (Blender's smooth step in the cosine)."""
-        x = np.clip((directions @ self.axis - self.cosine) / (1 - self.cosine), 0, 1)
-        return self.intensity * x**2 * (3 - 2 * x)
-
-    def mirrored(self, plane: Plane) -> "Spot":
-        return replace(self, position=plane.mirrored(self.position), axis=plane.mirrored_direction(self.axis))
-
-    def moved(self, offset: np.ndarray) -> "Spot":
-        return replace(self, position=self.position + offset)
-
-    def beams(self, detail: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Origins (n, 3), directions (n, 3) and flux (n,) W of rays that stand for all light.
-
-        A sphere of uniform radiance shows the same disk to every direction: its intensity is spread evenly over it.
-        """
-        cosine, weight = gauss_legendre(self.cosine, 1.0, 6 * detail)
-        angle = circle(8 * detail)
-        u, v = frame(self.axis)
-        sine = np.sqrt(1 - cosine**2)[:, None, None]
-        around = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v
-        directions = (sine * around + cosine[:, None, None] * self.axis).reshape(-1, 3)
-        flux = np.repeat(weight, len(angle)) * (2 * np.pi / len(angle)) * self.along(directions)
-        if self.radius == 0:
-            return np.broadcast_to(self.position, directions.shape), directions, flux
-        square, share = gauss_legendre(0.0, 1.0, detail)
-        place = (np.sqrt(square)[:, None] * np.exp(1j * circle(4 * detail))).ravel() * self.radius
-        u, v = frame(directions)
-        origins = self.position + place.real[:, None, None] * u + place.imag[:, None, None] * v
-        shares = np.repeat(share, 4 * detail) / (4 * detail)
-        everywhere = np.broadcast_to(directions, origins.shape)
-        return origins.reshape(-1, 3), everywhere.reshape(-1, 3), (shares[:, None] * flux).ravel()
-
-    def towards(self, points: np.ndarray, detail: int) -> tuple[np.ndarray, np.ndarray]:
-        """Directions to the light (..., n, 3) and irradiance across them (..., n) of all light at points (..., 3)."""
-        to_centre = self.position - points
-        distance = np.linalg.norm(to_centre, axis=-1)
-        axis = to_centre / distance[..., None]
-        if self.radius == 0:
-            return axis[..., None, :], (self.along(-axis) / distance**2)[..., None]
-        drop = 1 - np.sqrt(1 - (self.radius / distance) ** 2)  # of the cosine, over the cap that is seen
-        share, weight = gauss_legendre(0.0, 1.0, 3 * detail)
-        cosine = 1 - share * drop[..., None]
-        around = circle(6 * detail)
-        u, v = frame(axis)
-        across = np.cos(around)[:, None] * u[..., None, :] + np.sin(around)[:, None] * v[..., None, :]
-        directions = (
-            np.sqrt(1 - cosine**2)[..., :, None, None] * across[..., None, :, :]
-            + cosine[..., :, None, None] * axis[..., None, None, :]
-        )
-        solid_angle = weight * drop[..., None] * (2 * np.pi / len(around))
-        radiance = self.along(-directions) / (np.pi * self.radius**2)
-        return (
-            directions.reshape(*points.shape[:-1], -1, 3),
-            (radiance * solid_angle[..., None]).reshape(*points.shape[:-1], -1),
-        )
+def scattering(kind: str | float) -> quadrature.Scatter:
+    return quadrature.diffuse if kind == "D" else quadrature.glossy(kind)
 
 
-# --- camera --------------------------------------------------------------------------------------
+def level(name: str, z: float, low: float = -1.5, high: float = 1.5, width: float = 1.5) -> Mesh:
+    """A rectangle that faces up."""
+    return scenes.rectangle(name, (low, -width, z), (high, -width, z), (high, width, z), (low, width, z))
 
 
-def camera_rays(camera: Camera) -> tuple[np.ndarray, np.ndarray]:
-    """Origin (3,) and directions (H, W, 3) through pixel centres, row 0 at the bottom."""
-    left, right, bottom, top = camera.window
-    x = left + (right - left) * (np.arange(camera.width) + 0.5) / camera.width
-    y = bottom + (top - bottom) * (np.arange(camera.height) + 0.5) / camera.height
-    local = np.stack(np.broadcast_arrays(x[None, :], y[:, None], -1.0), -1)
-    return camera.matrix[:3, 3], unit(local @ camera.matrix[:3, :3].T)
+def facing_down(name: str, z: float, low: float, high: float) -> Mesh:
+    return scenes.rectangle(name, (low, -1.5, z), (low, 1.5, z), (high, 1.5, z), (high, -1.5, z))
 
 
-# --- reflected light -----------------------------------------------------------------------------
+def spot(position: tuple, target: tuple, half_angle: float, radius: float = 0.0) -> Light:
+    matrix = scenes.looking(position, target)
+    return Light(
+        "spot", LightKind.SPOT, matrix, np.full(3, 5.0), radius=radius, spot_angle=2 * half_angle, spot_blend=1.0
+    )
 
 
-def lit(
-    spot: Spot, scatter: Scatter, normal: np.ndarray, points: np.ndarray, viewers: np.ndarray, detail: int = 6
-) -> np.ndarray:
-    """Radiance towards viewers of points (..., 3) that the spot lights: L x E."""
-    to_light, irradiance = spot.towards(points, detail)
-    cosine = np.maximum(dot(to_light, normal), 0.0)
-    return (scatter(normal, to_light, viewers[..., None, :]) * cosine * irradiance).sum(-1)
+def view(position: tuple, target: tuple, tangent: float) -> Camera:
+    return Camera(scenes.looking(position, target), (-tangent, tangent, -tangent, tangent), SIZE, SIZE, clip_start=0.01)
 
 
-def relit(
-    spot: Spot,
-    first: Plane,
-    first_scatter: Scatter,
-    scatter: Scatter,
-    normal: np.ndarray,
-    points: np.ndarray,
-    viewers: np.ndarray,
-    detail: int = 3,
-) -> np.ndarray:
-    """Radiance towards viewers of points (..., 3) lit by a first surface that holds all of the spot's cone: L x x E."""
-    origins, directions, flux = spot.beams(detail)
-    sources = first.hit(origins, directions)
-    shape, points, viewers = points.shape[:-1], points.reshape(-1, 3), viewers.reshape(-1, 3)
-    result = np.empty(len(points))
-    for some in np.array_split(np.arange(len(points)), max(1, len(points) * len(flux) // 500_000)):
-        to_source = sources - points[some, None]
-        distance2 = dot(to_source, to_source)
-        to_source /= np.sqrt(distance2)[..., None]
-        cosines = np.maximum(-dot(to_source, first.normal), 0.0) * np.maximum(dot(to_source, normal), 0.0)
-        leaving = flux * first_scatter(first.normal, -directions, -to_source)
-        value = leaving * cosines / distance2 * scatter(normal, to_source, viewers[some, None])
-        result[some] = value.sum(-1)
-    return result.reshape(shape)
+def scene_of(
+    surfaces: list[tuple[Mesh, Lobe]],
+    light: Light | None,
+    camera: Camera,
+    mode: DirectLight,
+    photon_path_length: int,
+    camera_path_length: int,
+    iterations: int = 8,
+) -> Scene:
+    settings = RenderSettings(
+        iterations=iterations, photons=8192, direct_light=mode, photon_path_length=photon_path_length,
+        camera_path_length=camera_path_length, radius_minimum=0.03, radius_maximum=0.03, filter_width=0.0,
+        specular_roughness=CUT,
+        radius_scale=100.0,  # bounds the wide radius in pixels, which are few here
+    )  # fmt: skip
+    return Scene(
+        camera,
+        [mesh for mesh, _ in surfaces],
+        [Instance(index, np.eye(4), [index]) for index in range(len(surfaces))],
+        [Material(mesh.name, [lobe]) for mesh, lobe in surfaces],
+        [light] if light else [],
+        settings=settings,
+    )
 
 
-def gathered(
-    patches: np.ndarray,
-    patch_normal: np.ndarray,
-    flux: np.ndarray,
-    scatter: Scatter,
-    normal: np.ndarray,
-    points: np.ndarray,
-    viewers: np.ndarray,
-) -> np.ndarray:
-    """Radiance towards viewers of points (n, 3) lit by diffuse patches (m, 3) that reflect so much flux (m,) W."""
-    to_patch = patches - points[:, None]
-    distance2 = dot(to_patch, to_patch)
-    to_patch /= np.sqrt(distance2)[..., None]
-    cosines = np.maximum(-dot(to_patch, patch_normal), 0.0) * np.maximum(dot(to_patch, normal), 0.0)
-    return (flux / np.pi * cosines / distance2 * scatter(normal, to_patch, viewers[:, None])).sum(-1)
+def traced_only(scene: Scene, iterations: int, photons: int = 64) -> None:
+    """Where the camera's random numbers make the noise, pixels are cheaper than photons."""
+    scene.camera = dataclasses.replace(scene.camera, width=2 * SIZE, height=2 * SIZE)
+    scene.settings = scene.settings.with_values(iterations=iterations, photons=photons)
 
 
-# --- refraction by level interfaces --------------------------------------------------------------
+def colored(values: np.ndarray, *colors: np.ndarray) -> np.ndarray:
+    """(H, W) of white surfaces to (H, W, 3) of coloured ones."""
+    return values[..., None] * np.prod(colors, axis=0)
 
 
-@dataclass(frozen=True)
-class Layer:
-    thickness: float
-    """Metres along z."""
-    index: float
+# --- a floor that the spot lights, and a wall that it does not -----------------------------------
+
+ON_WALL = view((0.0, -0.4, 1.9), (1.2, -0.2, 1.0), 0.3)
+ON_FLOOR = view((1.0, -0.2, 0.9), (0.0, 0.0, 0.0), 0.15)
 
 
-def through(layers: Sequence[Layer], sine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How far rays that start with a sine to the vertical go sideways, metres, and the transmittance of flux."""
-    aside, passed = np.zeros_like(sine), np.ones_like(sine)
-    before = layers[0].index
-    for layer in layers:
-        if layer.index != before:
-            passed = passed * transmittance(before, layer.index, sine)
-            sine = sine * before / layer.index  # Snell
-            before = layer.index
-        aside = aside + layer.thickness * sine / np.sqrt(1 - sine**2)
-    return aside, passed
+def corner(
+    floor: str | float,
+    wall: str | float,
+    camera: Camera,
+    mode: DirectLight,
+    lengths: tuple[int, int],
+    radius: float = 0.0,
+    half_angle: float | None = None,
+    iterations: int = 8,
+) -> tuple[Scene, Spot]:
+    """Floor and wall of kinds D, S or a roughness, path lengths of photons and camera.
 
-
-def refracted_irradiance(spot: Spot, layers: Sequence[Layer], points: np.ndarray) -> np.ndarray:
-    """Irradiance of a level floor at points (..., 3) below a point-like spot, through layers from the light down.
-
-    The flux of a ring of directions lands on a ring of the floor, whose width comes from differentiating where rays
-    land; the direction that lands at a point is bracketed by bisection.
+    The cone of a light with an extent is narrower, so that all of its beams still end on the floor.
     """
-    assert spot.radius == 0
-    offset = (points - spot.position)[..., :2]
-    aside = np.maximum(np.linalg.norm(offset, axis=-1), 1e-9)
-    low, high = np.zeros_like(aside), np.full_like(aside, 0.5 * np.pi - 1e-3)
-    for _ in range(60):
-        middle = (low + high) / 2
-        short = through(layers, np.sin(middle))[0] < aside
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    angle, step = (low + high) / 2, 1e-5
-    passed = through(layers, np.sin(angle))[1]
-    widening = (through(layers, np.sin(angle + step))[0] - through(layers, np.sin(angle - step))[0]) / (2 * step)
-    sideways = np.sin(angle)[..., None] * offset / aside[..., None]
-    directions = np.concatenate([sideways, -np.cos(angle)[..., None]], -1)
-    return spot.along(directions) * passed * np.sin(angle) / (aside * widening)
+    light = spot((-1.2, 0.2, 1.0), (0.0, 0.0, 0.0), half_angle or (0.15 if radius else 0.2), radius)
+    upright = scenes.rectangle("wall", (1.2, -1.5, 0.02), (1.2, -1.5, 2), (1.2, 1.5, 2), (1.2, 1.5, 0.02))
+    surfaces = [(level("floor", 0.0, -1.5, 1.2), lobe(floor, FIRST)), (upright, lobe(wall, SECOND))]
+    return scene_of(surfaces, light, camera, mode, *lengths, iterations), Spot.of(light)
 
 
-def seen_through(
-    layers: Sequence[Layer], origin: np.ndarray, directions: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where camera rays that start downwards or upwards in the first layer leave the last one, the directions
-    (..., 3) with which they do, and the share of radiance that comes back along them: the transmittance times the
-    squared index of the first layer over that of the last."""
-    sine = np.linalg.norm(directions[..., :2], axis=-1)
-    aside, passed = through(layers, sine)
-    level = directions[..., :2] / np.maximum(sine, 1e-12)[..., None]
-    side = np.sign(directions[..., 2])
-    height = sum(layer.thickness for layer in layers)
-    ends = np.concatenate([origin[:2] + aside[..., None] * level, (origin[2] + side * height)[..., None]], -1)
-    ratio = layers[0].index / layers[-1].index
-    last = sine * ratio
-    leaving = np.concatenate([last[..., None] * level, (side * np.sqrt(1 - last**2))[..., None]], -1)
-    return ends, leaving, passed * ratio**2
+def straight(kind: str | float, mode: DirectLight, radius: float = 0.0) -> Case:
+    """LDE, LGE: the floor seen straight."""
+    scene, light = corner(kind, "D", ON_FLOOR, mode, (1, 2), radius)
+    if mode is RAYS or kind == TRACED:
+        traced_only(scene, 64)
+    origin, directions = quadrature.camera_rays(scene.camera)
+    points = FLOOR.hit(origin, directions)
+
+    def expected(offset: np.ndarray) -> np.ndarray:
+        return colored(quadrature.lit(light, scattering(kind), UP, points + offset, -directions), FIRST)
+
+    return Case(scene, expected, NARROW if mode is PHOTONS and kind != TRACED else None, FLOOR_AXES)
+
+
+def two_bounces(first: str | float, second: str | float, mode: DirectLight, radius: float = 0.0) -> Case:
+    """LDDE, LGDE, LDGE, LGGE: the wall, lit by the floor, seen straight."""
+    scene, light = corner(first, second, ON_WALL, mode, (2, 3), radius, iterations=16 if first == "D" else 8)
+    gathered_on_floor = second == TRACED
+    splats = not gathered_on_floor or (mode is PHOTONS and first != TRACED)
+    if gathered_on_floor:
+        scattering_alone = mode is PHOTONS and first == TRACED
+        traced_only(scene, 192 if scattering_alone else 64, 1024 if splats else 64)
+    origin, directions = quadrature.camera_rays(scene.camera)
+    points = WALL.hit(origin, directions)
+    scatters = scattering(first), scattering(second)
+    detail = 2 if radius else 10 if first == SHARP else 3
+
+    def expected(offset: np.ndarray) -> np.ndarray:
+        # The floor's photons move with their light, the wall's are met beside the importon.
+        moved, places = (light.moved(-offset), points) if gathered_on_floor else (light, points + offset)
+        picture = quadrature.relit(moved, FLOOR, *scatters, WALL.normal, places, -directions, detail)
+        return colored(picture, FIRST, SECOND)
+
+    if gathered_on_floor:
+        return Case(scene, expected, NARROW if splats else None, FLOOR_AXES)
+    return Case(scene, expected, NARROW if first == SHARP else WIDE, WALL_AXES)
+
+
+def mirror_then(kind: str | float, mode: DirectLight, radius: float = 0.0) -> Case:
+    """LSDE, LSGE: the wall, lit by a mirror, seen straight."""
+    scene, light = corner("S", kind, ON_WALL, mode, (2, 3), radius)
+    if kind == TRACED:
+        traced_only(scene, 128)
+    image = light.mirrored(FLOOR)
+    origin, directions = quadrature.camera_rays(scene.camera)
+    points = WALL.hit(origin, directions)
+
+    def expected(offset: np.ndarray) -> np.ndarray:
+        picture = quadrature.lit(image, scattering(kind), WALL.normal, points + offset, -directions)
+        return colored(picture, FIRST, SECOND)
+
+    return Case(scene, expected, None if kind == TRACED else NARROW, WALL_AXES)

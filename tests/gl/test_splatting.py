@@ -7,16 +7,8 @@ import scenes
 from test_geometry import unpack
 
 from rppm_addon.integrator import splatting
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import IMPORTON, PHOTON_DIFFUSED, PHOTON_STORED
 from rppm_addon.scene import DirectLight
-
-
-@pytest.fixture
-def mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
 
 
 def brute_force(importons, photons, wide):
