@@ -102,10 +102,11 @@ def scene_of(
     mode: DirectLight,
     photon_path_length: int,
     camera_path_length: int,
-    iterations: int = 8,
+    iterations: int = 6,
+    photons: int = 8192,
 ) -> Scene:
     settings = RenderSettings(
-        iterations=iterations, photons=8192, direct_light=mode, photon_path_length=photon_path_length,
+        iterations=iterations, photons=photons, direct_light=mode, photon_path_length=photon_path_length,
         camera_path_length=camera_path_length, radius_minimum=0.03, radius_maximum=0.03, filter_width=0.0,
         specular_roughness=CUT,
         radius_scale=100.0,  # bounds the wide radius in pixels, which are few here
@@ -145,7 +146,7 @@ def corner(
     lengths: tuple[int, int],
     radius: float = 0.0,
     half_angle: float | None = None,
-    iterations: int = 8,
+    iterations: int = 6,
 ) -> tuple[Scene, Spot]:
     """Floor and wall of kinds D, S or a roughness, path lengths of photons and camera.
 
@@ -161,7 +162,7 @@ def straight(kind: str | float, mode: DirectLight, radius: float = 0.0) -> Case:
     """LDE, LGE: the floor seen straight."""
     scene, light = corner(kind, "D", ON_FLOOR, mode, (1, 2), radius)
     if mode is RAYS or kind == TRACED:
-        traced_only(scene, 64)
+        traced_only(scene, 12 if mode is RAYS else 44)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = FLOOR.hit(origin, directions)
 
@@ -173,16 +174,16 @@ def straight(kind: str | float, mode: DirectLight, radius: float = 0.0) -> Case:
 
 def two_bounces(first: str | float, second: str | float, mode: DirectLight, radius: float = 0.0) -> Case:
     """LDDE, LGDE, LDGE, LGGE: the wall, lit by the floor, seen straight."""
-    scene, light = corner(first, second, ON_WALL, mode, (2, 3), radius, iterations=16 if first == "D" else 8)
+    scene, light = corner(first, second, ON_WALL, mode, (2, 3), radius, iterations=12 if first == "D" else 6)
     gathered_on_floor = second == TRACED
     splats = not gathered_on_floor or (mode is PHOTONS and first != TRACED)
     if gathered_on_floor:
         scattering_alone = mode is PHOTONS and first == TRACED
-        traced_only(scene, 192 if scattering_alone else 64, 1024 if splats else 64)
+        traced_only(scene, 128 if scattering_alone else 44, 1024 if splats else 64)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = WALL.hit(origin, directions)
     scatters = scattering(first), scattering(second)
-    detail = 2 if radius else 10 if first == SHARP else 3
+    detail = 2 if radius else 14 if first == SHARP else 3
 
     def expected(offset: np.ndarray) -> np.ndarray:
         # The floor's photons move with their light, the wall's are met beside the importon.
@@ -199,7 +200,7 @@ def mirror_then(kind: str | float, mode: DirectLight, radius: float = 0.0) -> Ca
     """LSDE, LSGE: the wall, lit by a mirror, seen straight."""
     scene, light = corner("S", kind, ON_WALL, mode, (2, 3), radius)
     if kind == TRACED:
-        traced_only(scene, 128)
+        traced_only(scene, 88)
     image = light.mirrored(FLOOR)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = WALL.hit(origin, directions)

@@ -11,7 +11,7 @@ from path_classes import Case
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
 
-BLOCKS, SEEDS = 3, 4
+BLOCKS, SEEDS = 3, 6
 """Blocks along a side, independent seeds."""
 SHARPNESS = 0.05
 """Share of the mean that every test must be able to tell; most tell much less."""
@@ -57,7 +57,7 @@ def block_errors(by_seed: np.ndarray, level: np.ndarray) -> np.ndarray:
     """(BLOCKS, BLOCKS) standard errors of the mean over seeds of block means (seeds, BLOCKS, BLOCKS).
 
     The variance goes with the level, as that of counted photons does; what goes beyond is common to all blocks, for
-    four seeds tell little of a single one.
+    few seeds tell little of a single one.
     """
     variance = by_seed.var(axis=0, ddof=1)
     level = np.maximum(level, 0.1 * level.mean())

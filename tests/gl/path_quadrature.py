@@ -128,8 +128,8 @@ class Spot:
 
         A sphere of uniform radiance shows the same disk to every direction: its intensity is spread evenly over it.
         """
-        cosine, weight = gauss_legendre(self.cosine, 1.0, 6 * detail)
-        angle = circle(8 * detail)
+        cosine, weight = gauss_legendre(self.cosine, 1.0, 4 * detail)
+        angle = circle(6 * detail)
         u, v = frame(self.axis)
         sine = np.sqrt(1 - cosine**2)[:, None, None]
         around = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v

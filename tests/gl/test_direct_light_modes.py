@@ -20,7 +20,7 @@ EDGES = 3
 def all_kinds(mode: DirectLight) -> Scene:
     """A room with diffuse walls, a glass ball and a mirror ball, a back wall and a ceiling that are glossy too."""
     scene = scenes.room(
-        2 * SIZE, iterations=8, photons=16384, direct_light=mode, photon_path_length=5, camera_path_length=5,
+        2 * SIZE, iterations=5, photons=16384, direct_light=mode, photon_path_length=5, camera_path_length=5,
         radius_minimum=0.025, radius_maximum=0.025, filter_width=0.0, specular_roughness=CUT,
     )  # fmt: skip
     for index, roughness in ((1, TRACED), (2, STORED)):
@@ -40,7 +40,7 @@ def test_direct_light_by_photons_or_by_rays_is_the_same_picture(mapper):
     renders = {mode: [render(mapper, all_kinds(mode), 100 + k) for k in range(SEEDS)] for mode in MODES}
     by_rays, by_photons = (np.array([picture for picture, _ in renders[mode]]) for mode in MODES)
     radius = np.sqrt(np.mean([square[0] for _, square in renders[PHOTONS]]))
-    write_pair("all kinds", by_photons.mean(axis=0), by_rays.mean(axis=0), OUTPUT)
+    write_pair("direct light modes", by_photons.mean(axis=0), by_rays.mean(axis=0), OUTPUT)
     level, difference = blocks(by_rays.mean(axis=0)), blocks(by_photons - by_rays)
     errors = block_errors(difference, level)
     lost = EDGES * 2 * 0.17 * radius / NEAREST_BLOCK

@@ -63,7 +63,7 @@ def two_mirrors(mode: DirectLight) -> Case:
 def then_mirror(mode: DirectLight) -> Case:
     """LDSE: the floor seen in the wall."""
     camera = view((0.0, -0.2, 2.0), (1.2, -0.1, 1.0), 0.08)
-    scene, light = corner("D", "S", camera, mode, (1, 2), iterations=4)
+    scene, light = corner("D", "S", camera, mode, (1, 2), iterations=3)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = FLOOR.hit(WALL.mirrored(origin), WALL.mirrored_direction(directions))
 

@@ -63,7 +63,7 @@ def seen_straight(kind: str, mode: DirectLight) -> Case:
     light, surfaces, shown = source(kind, scenes.looking((0.9, 0.2, 1.1), (0.0, 0.0, 0.0)))
     surfaces.append((level("floor", 0.0), lobe("D", np.zeros(3))))
     camera = view((-0.6, -0.3, 0.5), (0.9, 0.2, 1.1), 0.3)
-    scene = scene_of(surfaces, light, camera, mode, 1, 1, iterations=2)
+    scene = scene_of(surfaces, light, camera, mode, 1, 1, iterations=2, photons=64)
     origin, directions = quadrature.camera_rays(camera)
     return Case(scene, lambda _: shown(origin, directions))
 
@@ -73,7 +73,7 @@ def seen_in_mirror(kind: str, mode: DirectLight) -> Case:
     light, surfaces, shown = source(kind, scenes.looking((0.9, 0.2, 1.1), (0.0, 0.0, 0.0)))
     surfaces.append((level("floor", 0.0), lobe("S", FIRST)))
     camera = view((-0.8, -0.3, 1.2), (0.0, 0.0, 0.0), 0.2)
-    scene = scene_of(surfaces, light, camera, mode, 1, 2, iterations=2)
+    scene = scene_of(surfaces, light, camera, mode, 1, 2, iterations=2, photons=64)
     origin, directions = quadrature.camera_rays(camera)
     points = FLOOR.hit(origin, directions)
     return Case(scene, lambda _: FIRST * shown(points, FLOOR.mirrored_direction(directions)))
@@ -85,7 +85,7 @@ def seen_through_glass(kind: str, slab: bool, mode: DirectLight) -> Case:
     camera = view((0.6, -0.3, 1.9), (0.0, 0.0, 0.2), 0.25)
     surfaces += glass.panes(slab)
     scene = scene_of(surfaces, light, camera, mode, 1, 3 if slab else 2)
-    traced_only(scene, 32)
+    traced_only(scene, 16)
     origin, directions = quadrature.camera_rays(scene.camera)
     cut = glass.layers(origin[2], slab)[:-1] + [glass.Layer(0.0, glass.AIR if slab else glass.INDEX)]
     points, leaving, share = glass.seen_through(cut, origin, directions)

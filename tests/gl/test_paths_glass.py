@@ -42,7 +42,7 @@ def refraction(light_above: bool, camera_above: bool, slab: bool, mode: DirectLi
     crossings = 2 if slab else 1
     lengths = 1 + crossings * light_above, 1 + crossings * camera_above
     surfaces = [(level("floor", 0.0), lobe("D", FIRST)), *glass.panes(slab)]
-    scene = scene_of(surfaces, light, camera, mode, *lengths, iterations=4)
+    scene = scene_of(surfaces, light, camera, mode, *lengths, iterations=3)
     origin, directions = quadrature.camera_rays(camera)
     points, _, share = glass.seen_through(glass.layers(origin[2], slab), origin, directions)
     downwards = glass.layers(light.matrix[2, 3], slab)

@@ -61,27 +61,27 @@ WITHOUT_EXTENT: dict[str, Build] = {
 }
 """No scattered path meets such a light: by rays alone."""
 
-PATCHES = 28
-"""Along a side of the ceiling between two glossy surfaces."""
+CEILING, PATCHES = 0.7, 28
+"""Height of the ceiling between two glossy surfaces, metres, and quadrature nodes along a side of it."""
 
 
 def glossy_diffuse_glossy(roughness: float, mode: DirectLight) -> Case:
     """LGDGE: two halves of a floor, which do not see each other, and the ceiling between."""
-    light = spot((-1.3, 0.1, 0.8), (-0.75, 0.0, 0.0), 0.25)
+    light = spot((-1.35, 0.1, 0.6), (-0.75, 0.0, 0.0), 0.25)
     surfaces = [
         (level("lit", 0.0, -1.5, -0.05, 1.0), lobe(roughness, FIRST)),
-        (facing_down("ceiling", 1.0, -2.0, 2.0), lobe("D", SECOND)),
+        (facing_down("ceiling", CEILING, -2.0, 2.0), lobe("D", SECOND)),
         (level("seen", 0.0, 0.05, 1.5, 1.0), lobe(roughness, THIRD)),
     ]
-    camera = view((1.6, -0.2, 0.7), (0.75, 0.0, 0.0), 0.22)
+    camera = view((1.1, -0.2, 0.6), (0.75, 0.0, 0.0), 0.35)
     scene = scene_of(surfaces, light, camera, mode, 3, 2)
-    iterations, photons = (20, 2048) if roughness == TRACED else (24, 16384)
+    iterations, photons = (12, 1024) if roughness == TRACED else (20, 16384)
     scene.settings = scene.settings.with_values(iterations=iterations, photons=photons)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = FLOOR.hit(origin, directions).reshape(-1, 3)
     side, weight = quadrature.gauss_legendre(-2.0, 2.0, PATCHES)
     x, y = np.meshgrid(side, 0.75 * side)
-    patches = np.stack([x, y, np.ones_like(x)], -1).reshape(-1, 3)
+    patches = np.stack([x, y, np.full_like(x, CEILING)], -1).reshape(-1, 3)
     area = 0.75 * np.outer(weight, weight).ravel()
     glossy = scattering(roughness)
     seen = roughness != TRACED
