@@ -179,7 +179,7 @@ def two_bounces(first: str | float, second: str | float, mode: DirectLight, radi
     splats = not gathered_on_floor or (mode is PHOTONS and first != TRACED)
     if gathered_on_floor:
         scattering_alone = mode is PHOTONS and first == TRACED
-        traced_only(scene, 128 if scattering_alone else 44, 1024 if splats else 64)
+        traced_only(scene, 128 if scattering_alone else 32 if splats else 44, 1024 if splats else 64)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = WALL.hit(origin, directions)
     scatters = scattering(first), scattering(second)
@@ -198,9 +198,9 @@ def two_bounces(first: str | float, second: str | float, mode: DirectLight, radi
 
 def mirror_then(kind: str | float, mode: DirectLight, radius: float = 0.0) -> Case:
     """LSDE, LSGE: the wall, lit by a mirror, seen straight."""
-    scene, light = corner("S", kind, ON_WALL, mode, (2, 3), radius)
+    scene, light = corner("S", kind, ON_WALL, mode, (2, 3), radius, iterations=4)
     if kind == TRACED:
-        traced_only(scene, 88)
+        traced_only(scene, 64)
     image = light.mirrored(FLOOR)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = WALL.hit(origin, directions)

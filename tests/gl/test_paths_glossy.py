@@ -67,7 +67,7 @@ CEILING, PATCHES = 0.7, 28
 
 def glossy_diffuse_glossy(roughness: float, mode: DirectLight) -> Case:
     """LGDGE: two halves of a floor, which do not see each other, and the ceiling between."""
-    light = spot((-1.35, 0.1, 0.6), (-0.75, 0.0, 0.0), 0.25)
+    light = spot((-1.4, 0.0, 0.45), (-0.6, 0.0, 0.0), 0.12)
     surfaces = [
         (level("lit", 0.0, -1.5, -0.05, 1.0), lobe(roughness, FIRST)),
         (facing_down("ceiling", CEILING, -2.0, 2.0), lobe("D", SECOND)),
@@ -75,7 +75,7 @@ def glossy_diffuse_glossy(roughness: float, mode: DirectLight) -> Case:
     ]
     camera = view((1.1, -0.2, 0.6), (0.75, 0.0, 0.0), 0.35)
     scene = scene_of(surfaces, light, camera, mode, 3, 2)
-    iterations, photons = (12, 1024) if roughness == TRACED else (20, 16384)
+    iterations, photons = (12, 1024) if roughness == TRACED else (24, 16384)
     scene.settings = scene.settings.with_values(iterations=iterations, photons=photons)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = FLOOR.hit(origin, directions).reshape(-1, 3)
