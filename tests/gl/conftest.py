@@ -5,6 +5,7 @@ import pytest
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.session.renderer import Renderer
 
 
@@ -27,6 +28,13 @@ def library(context):
     library = ProgramLibrary(context)
     yield library
     library.release()
+
+
+@pytest.fixture
+def mapper(context, library):
+    mapper = ProgressivePhotonMapper(context, library)
+    yield mapper
+    mapper.release()
 
 
 @pytest.fixture(scope="module")

@@ -7,19 +7,11 @@ import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import IMPORTON
 from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, RenderSettings, Scene
 
 SIZE = 24
 TANGENT = 0.4  # of half the vertical aperture
-
-
-@pytest.fixture
-def mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
 
 
 def tilted_view(orthographic: bool, segments: int) -> Scene:

@@ -9,16 +9,8 @@ import scenes
 from test_light_sources import LIGHTS, floor_scene
 
 from rppm_addon.integrator import guide, progressive
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import PHOTON_PATH, RAY
 from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, Scene, World
-
-
-@pytest.fixture
-def mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
 
 
 def lit_floor(name: str, aimed: bool) -> Scene:

@@ -7,18 +7,10 @@ import scenes
 from test_geometry import unpack
 
 from rppm_addon.integrator import splatting
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import IMPORTON, PHOTON_DIFFUSED, PHOTON_INDIRECT, PHOTON_STORED
 from rppm_addon.scene import DirectLight
 
 GATHERS_BY_RAY, GATHERED_BY_RAY = 1, 2
-
-
-@pytest.fixture
-def mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
 
 
 def brute_force(importons, photons, wide):

@@ -108,8 +108,8 @@ def compare(
     assert wave[0] <= tolerance.mode, f"{name}: the differences have structure, a wave {wave[1]} of {wave[2]:+.2%}"
 
 
-def write_pair(name: str, rppm: np.ndarray, reference: np.ndarray) -> None:
-    """RPPM | reference | difference (grey is none, full range is a fifth of white) to out/parity/."""
+def write_pair(name: str, rppm: np.ndarray, reference: np.ndarray, folder: Path = OUTPUT) -> None:
+    """RPPM | reference | difference (grey is none, full range is a fifth of white) to out/parity/ or a folder."""
     white = np.percentile(reference, 99) or 1.0
 
     def shown(values: np.ndarray) -> np.ndarray:
@@ -117,6 +117,6 @@ def write_pair(name: str, rppm: np.ndarray, reference: np.ndarray) -> None:
 
     difference = np.clip(0.5 + 2.5 * (rppm - reference) / white, 0.0, 1.0)
     picture = np.concatenate([shown(rppm), shown(reference), difference], axis=1)[::-1]
-    OUTPUT.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     image = Image.fromarray(np.round(255 * picture).astype(np.uint8))
-    image.resize((4 * image.width, 4 * image.height), Image.Resampling.NEAREST).save(OUTPUT / f"{name}.png")
+    image.resize((4 * image.width, 4 * image.height), Image.Resampling.NEAREST).save(folder / f"{name}.png")

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether the photon mapper's mean over independent seeds is what quadrature says a class of light paths shows."""
+
+import zlib
+from pathlib import Path
+
+import numpy as np
+from parity.comparison import write_pair
+from path_classes import Case
+
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import Scene
+
+BLOCKS, SEEDS = 3, 6
+"""Blocks along a side, independent seeds."""
+SHARPNESS = 0.05
+"""Share of the mean that every test must be able to tell; most tell much less."""
+ROUNDING = 5e-4
+"""Relative error of float positions, of unit vectors in 2 x 16 bits, and of block means of the reference (measured
+with twice the nodes: at most 3e-4)."""
+OUTPUT = Path(__file__).parents[2] / "out" / "path_classes"
+
+
+def render(mapper: ProgressivePhotonMapper, scene: Scene, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """(H, W, 3) radiance, and the mean over the iterations of the squares of both splat radii, m^2."""
+    scene.settings.seed = seed
+    mapper.build(scene)
+    squares = []
+    for _ in range(scene.settings.iterations):
+        mapper.iterate()
+        squares.append(np.square(mapper.splat_radii))
+    return mapper.film.read_radiance()[..., :3].astype(np.float64), np.mean(squares, axis=0)
+
+
+def gathered(case: Case, square: np.ndarray) -> np.ndarray:
+    """(H, W, 3) what density estimation with splats of a mean ``square`` (2,) of both radii, m^2, converges to.
+
+    The kernel 2 (1 - x^2) / pi over a disk of radius r has the second moment r^2 / 3 and the fourth r^4 / 6: so have
+    its middle, taken by a third, and a ring of radius r / sqrt(2) by two thirds.
+    """
+    exact = case.expected(np.zeros(3))
+    if case.gathers is None:
+        return exact
+    angle = 2 * np.pi * np.arange(5) / 5
+    ring = np.sqrt(square[case.gathers] / 2) * np.stack([np.cos(angle), np.sin(angle)], -1) @ case.across
+    return exact / 3 + np.mean([case.expected(offset) for offset in ring], axis=0) * 2 / 3
+
+
+def blocks(pictures: np.ndarray) -> np.ndarray:
+    """(..., H, W, 3) to (..., BLOCKS, BLOCKS), means of pixels and channels."""
+    *outer, height, width, _ = pictures.shape
+    shape = *outer, BLOCKS, height // BLOCKS, BLOCKS, width // BLOCKS, 3
+    return pictures.reshape(shape).mean(axis=(-4, -2, -1))
+
+
+def block_errors(by_seed: np.ndarray, level: np.ndarray) -> np.ndarray:
+    """(BLOCKS, BLOCKS) standard errors of the mean over seeds of block means (seeds, BLOCKS, BLOCKS).
+
+    The variance goes with the level, as that of counted photons does; what goes beyond is common to all blocks, for
+    few seeds tell little of a single one.
+    """
+    variance = by_seed.var(axis=0, ddof=1)
+    level = np.maximum(level, 0.1 * level.mean())
+    return np.sqrt(level * np.mean(variance / level) / len(by_seed))
+
+
+def judge(name: str, pictures: np.ndarray, right: np.ndarray) -> None:
+    """Assert that pictures (seeds, H, W, 3) have the mean and the block means of the right one (H, W, 3), by channel
+    and block: they may differ by four standard errors and by rounding."""
+    write_pair(name, pictures.mean(axis=0), right, OUTPUT)
+    level, by_seed = blocks(right), blocks(pictures)
+    errors = block_errors(by_seed, level)
+    ratios = pictures.mean(axis=(1, 2)) / right.mean(axis=(0, 1))
+    mean = ratios.mean(axis=0)
+    # Splats reach over blocks: the seeds' own spread counts as well.
+    spread = ratios.mean(axis=1).std(ddof=1) / np.sqrt(len(pictures))
+    error = max(spread, np.sqrt((errors**2).mean()) / BLOCKS / level.mean())
+    difference = by_seed.mean(axis=0) - level
+    allowed = 4 * errors + ROUNDING * np.maximum(level, level.mean())
+    worst = np.unravel_index(np.argmax(np.abs(difference) / allowed), difference.shape)
+    scale = max(level[worst], 0.1 * level.mean())
+    print(
+        f"\n{name}: mean by channel {np.round(mean - 1, 4)} +- {error:.4f}, "
+        f"worst block {difference[worst] / scale:+.4f} +- {errors[worst] / scale:.4f}"
+    )
+    assert 4 * error < SHARPNESS, f"{name}: too noisy to tell"
+    assert np.abs(mean - 1).max() <= 4 * error + ROUNDING
+    assert (np.abs(difference) <= allowed).all()
+
+
+def compare(mapper: ProgressivePhotonMapper, name: str, case: Case) -> None:
+    """Render a class, whose name tells its seeds, so that no two share their noise, and judge it."""
+    first = zlib.crc32(name.encode()) & 0xFFFFFFF
+    renders = [render(mapper, case.scene, first + k) for k in range(SEEDS)]
+    square = np.mean([square for _, square in renders], axis=0)
+    judge(name, np.array([picture for picture, _ in renders]), gathered(case, square))
