@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include <CameraView>
 #include <ScatterImportonsParameters>
 #include "common/invocation.glsl"
-#include "common/random.glsl"
+#include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
@@ -111,8 +111,10 @@ void main() {
     float radius = path.primary_radius * path.total_length / max(path.primary_distance, 1e-12);
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
 
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_IMPORTONS, parameters.segment, parameters.first_pixel + index);
-    importons[index] = make_importon(closure, path.throughput, viewer, radius, next_random(random));
+    // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_IMPORTONS << 24u));
+    vec2 u_lobe = scrambled_sobol(parameters.iteration, choices);
+    importons[index] = make_importon(closure, path.throughput, viewer, radius, u_lobe.y);
 
     if (parameters.last_segment != 0u) return;
     float cosine = clamp(dot(shading, viewer), 0.0, 1.0);
@@ -120,10 +122,10 @@ void main() {
     float total = shares.x + shares.y + shares.z + shares.w;
     if (total <= 0.0) return;
     float survival = path_survival(shares);
-    float u = next_random(random);
-    vec2 u_direction = next_random2(random);
-    float u_event = next_random(random);
+    float u = u_lobe.x;
     if (u >= survival) return;
+    vec2 u_direction = scrambled_sobol(parameters.iteration, pcg4d(choices));
+    float u_event = scrambled_sobol(parameters.iteration, pcg4d(choices + 1u)).x;
     u *= total / survival;
     vec3 direction, weight;
     bool transmitted;
