@@ -115,9 +115,11 @@ void main() {
     // Caustics that gathering rays find are bright and rare: a wide disk makes them less so.
     if (gathered) radius = max(radius, parameters.wide_radius);
 
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_IMPORTONS, parameters.segment, parameters.first_pixel + index);
+    // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_IMPORTONS << 24u));
+    vec2 u_lobe = scrambled_sobol(parameters.iteration, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u && !gathered;
-    importons[index] = make_importon(closure, path.throughput, viewer, radius, next_random(random),
+    importons[index] = make_importon(closure, path.throughput, viewer, radius, u_lobe.y,
                                      gathers ? GATHERS_BY_RAY : (gathered ? GATHERED_BY_RAY : GATHERS_ALL));
 
     if (parameters.last_segment != 0u) return;
@@ -127,10 +129,10 @@ void main() {
     float gathering = sum(gathering_shares), total = sum(shares) + gathering;
     if (total <= 0.0) return;
     float survival = path_survival(total);
-    float u = next_random(random);
-    vec2 u_direction = next_random2(random);
-    float u_event = next_random(random);
+    float u = u_lobe.x;
     if (u >= survival) return;
+    vec2 u_direction = scrambled_sobol(parameters.iteration, pcg4d(choices));
+    float u_event = scrambled_sobol(parameters.iteration, pcg4d(choices + 1u)).x;
     u *= total / survival;
     vec3 direction, weight;
     bool transmitted;
@@ -140,7 +142,6 @@ void main() {
     if (sets_out) {
         path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED;
         shares = gathering_shares;
-        u_direction = scrambled_sobol(parameters.iteration, pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_GATHERING)));
     } else u -= gathering;
     bool diffuse = sets_out && u < shares.x;
     if (diffuse) {
