@@ -29,7 +29,7 @@ lint: setup ## Check Python, imports, licence lines and shaders
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tests/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
 
-bench: setup ## Measure the deep cubemap for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
+bench: setup ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
 	@.venv/bin/python -c 'import matplotlib' 2>/dev/null || .venv/bin/python -m pip install --quiet \
 		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
 	.venv/bin/python tests/benchmarks/run.py --scene-folder $(SCENES) $(BENCH)

@@ -18,7 +18,7 @@ from .commands.interruption import Interruption
 from .commands.progress_bar import BarLogHandler, ProgressBar
 from .commands.recorder import RenderRecorder, RenderRequest, apply_settings
 from .pictures import PictureError, make_folder
-from .scene import RenderSettings
+from .scene import RenderSettings, Scene
 from .scene.errors import RppmError, SettingsError
 from .scene.settings import CUBEMAP_COSTS
 
@@ -150,7 +150,15 @@ def _parser() -> argparse.ArgumentParser:
     inspect.add_argument("--json", type=Path, metavar="FILE", help="write counts and bytes by buffer as JSON")
     inspect.set_defaults(run=_inspect)
 
-    info = commands.add_parser("info", parents=[common], help="show the device, its driver and limits, what is missing")
+    info = commands.add_parser(
+        "info",
+        parents=[scene, common],
+        help="show the device, its driver and limits, what is missing; the memory that a scene takes",
+        description="Show the device, its driver and limits, and what is missing. With --scene, build the scene on the "
+        "device and show the bytes of each buffer, the buffers of progressive photon mapping against the paper's.",
+    )
+    info.add_argument("--scene", type=Path, metavar="FILE", help="a .blend file or a .npz of rppm export")
+    info.add_argument("--json", type=Path, metavar="FILE", help="write it as JSON")
     info.set_defaults(run=_info)
     return parser
 
@@ -221,25 +229,13 @@ def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
 
 def _inspect(options: argparse.Namespace, bar: ProgressBar) -> int:
     from .commands.inspection import inspection_lines, write_inspection
-    from .commands.saved_scene import camera_at_resolution
-    from .scene import load_scene
     from .session.renderer import Renderer
 
     settings, data_values = _split_values(options.values)
     apply_settings(RenderSettings(), settings)
     for path in options.output:
         make_folder(path)
-    if _is_blend(options.file):
-        from .commands import blend_file
-
-        request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
-        scene = blend_file.export_blend_file(request, show_output=options.debug)
-    else:
-        _refuse_blend_options(options, data_values)
-        scene = load_scene(options.file)
-        if options.resolution is not None:
-            scene.camera = camera_at_resolution(scene.camera, *options.resolution)
-    scene.settings = apply_settings(scene.settings, settings)
+    scene = _load_scene(options.file, options, settings, data_values)
     with Renderer() as renderer:
         costs, counts, memory = renderer.inspect(scene)
     for path in options.output:
@@ -255,6 +251,10 @@ def _inspect(options: argparse.Namespace, bar: ProgressBar) -> int:
 def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     from .gl.context import device_information
 
+    settings, data_values = _split_values(options.values)
+    if options.scene is None and (settings or data_values or options.resolution or options.frame is not None):
+        raise SettingsError("--resolution, --frame and --set need a scene; name it with --scene FILE")
+    apply_settings(RenderSettings(), settings)
     try:
         blender = importlib.metadata.version("bpy")
     except importlib.metadata.PackageNotFoundError:
@@ -265,7 +265,40 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     for name, value in device.limits.items():
         print(f"  {name} {value}")
     print("Missing  " + ("nothing" if not device.missing else "\n         ".join(device.missing)))
+    report: dict[str, object] = {"blender": blender, "device": dataclasses.asdict(device)}
+    if options.scene is not None:
+        from .commands.memory import memory_lines
+        from .session.renderer import Renderer
+
+        scene = _load_scene(options.scene, options, settings, data_values)
+        with Renderer() as renderer:
+            memory = renderer.memory(scene)
+        print("\n".join([f"\nScene    {options.scene}", *memory_lines(memory, scene.camera.resolution)]))
+        report |= {"scene": str(options.scene), "memory": memory.as_dict()}
+    if options.json is not None:
+        _write_json(options.json, report)
     return 0
+
+
+def _load_scene(
+    file: Path, options: argparse.Namespace, settings: dict[str, object], data_values: list[tuple[str, str]]
+) -> Scene:
+    """A .blend's or a saved scene at --frame and --resolution, with settings and data values of --set."""
+    if _is_blend(file):
+        from .commands import blend_file
+
+        request = blend_file.BlendRequest(file, options.frame, options.resolution, data_values)
+        scene = blend_file.export_blend_file(request, show_output=options.debug)
+    else:
+        from .commands.saved_scene import camera_at_resolution
+        from .scene import load_scene
+
+        _refuse_blend_options(options, data_values)
+        scene = load_scene(file)
+        if options.resolution is not None:
+            scene.camera = camera_at_resolution(scene.camera, *options.resolution)
+    scene.settings = apply_settings(scene.settings, settings)
+    return scene
 
 
 def _is_blend(path: Path) -> bool:

@@ -114,6 +114,11 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         ],
         default=DEFAULTS.direct_light.name,
     )
+    splat_roulette: BoolProperty(
+        name="Splat Roulette",
+        description="Leave out half of the splats at random and count the others twice: faster iterations, more noise",
+        default=DEFAULTS.splat_roulette,
+    )
     filter_width: FloatProperty(
         name="Filter Width",
         description="Width of the Blackman-Harris pixel filter; 0 looks through the middle of pixels only",

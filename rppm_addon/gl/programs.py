@@ -131,22 +131,17 @@ class DrawProgram(_Program):
         mode: int = moderngl.TRIANGLES,
         viewport: tuple[int, int, int, int] | None = None,
         state: int = moderngl.NOTHING,
-        blend: tuple[int, int] | None = None,
         depth_function: str = "<",
     ) -> None:
         """Draw into a framebuffer and order the writes.
 
         ``vertices`` is their count, or a buffer of one indirect draw command (four uints).
-        ``blend`` are source and destination factors; state then must hold moderngl.BLEND.
         """
         self._bind(buffers, parameters)
         gl = self.context.moderngl
         framebuffer.use()
         framebuffer.viewport = viewport or (0, 0, framebuffer.width, framebuffer.height)
         gl.enable_only(state)
-        if blend is not None:
-            gl.blend_func = blend
-            gl.blend_equation = moderngl.FUNC_ADD
         gl.depth_func = depth_function
         if isinstance(vertices, moderngl.Buffer):
             self._vertex_array.render_indirect(vertices, mode, count=1)

@@ -2,6 +2,7 @@
 """Seconds spent in each stage."""
 
 import time
+from collections.abc import Callable
 from contextlib import contextmanager
 
 from .context import Context
@@ -11,12 +12,13 @@ class StageTimers:
     """Sums device seconds by stage name.
 
     On a GPU these are GL timer queries, read when they are asked for. On a software driver such
-    queries measure nothing (the work runs elsewhere), so the stage is finished and the clock read.
-    Stages do not nest.
+    queries measure nothing (the work runs elsewhere), so the stage is finished and ``clock`` read, a
+    function that returns seconds. Stages do not nest.
     """
 
     def __init__(self, context: Context) -> None:
         self._context = context
+        self.clock: Callable[[], float] = time.perf_counter
         self._seconds: dict[str, float] = {}
         self._pending: list[tuple[str, object]] = []
         self._idle: list[object] = []
@@ -25,10 +27,10 @@ class StageTimers:
     def stage(self, name: str):
         """Time the device work given within the with block."""
         if self._context.is_software:
-            start = time.perf_counter()
+            start = self.clock()
             yield
             self._context.finish()
-            self._seconds[name] = self._seconds.get(name, 0.0) + time.perf_counter() - start
+            self._seconds[name] = self._seconds.get(name, 0.0) + self.clock() - start
             return
         query = self._idle.pop() if self._idle else self._context.moderngl.query(time=True)
         with query:

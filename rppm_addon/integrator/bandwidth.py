@@ -27,12 +27,37 @@ def wide_radius(diffused_photons: int, bounds_low: np.ndarray, bounds_high: np.n
     """Radius of the first iteration for photons that a diffuse surface has scattered, metres.
 
     Such light varies slowly, and its photons are spread over all of the scene: the disk holds
-    EXPECTED_PHOTONS of them where they lie evenly on surfaces as large as the bounds' six sides.
+    EXPECTED_PHOTONS of them where they lie evenly on surfaces as large as the bounds' six sides. Once photons
+    have been seen, fitted_wide_radius follows them.
     """
     x, y, z = bounds_high - bounds_low
     area = 2.0 * (x * y + y * z + z * x)
-    spaced = math.sqrt(EXPECTED_PHOTONS * area / (math.pi * max(diffused_photons, 1)))
-    return min(spaced, 0.05 * float(np.linalg.norm(bounds_high - bounds_low)))
+    return math.sqrt(EXPECTED_PHOTONS * area / (math.pi * max(diffused_photons, 1)))
+
+
+def fitted_wide_radius(radius: float, counts: np.ndarray) -> float:
+    """The radius, metres, with which half of the view would find EXPECTED_PHOTONS or more; infinite if none are found.
+
+    ``counts`` (n,) are those that pixels with an importon found with ``radius``. Where half of the view finds next
+    to none, the mean tells more than the median.
+    """
+    found = max(float(np.median(counts)), 0.5 * float(np.mean(counts))) if len(counts) else 0.0
+    return radius * math.sqrt(EXPECTED_PHOTONS / found) if found > 0 else math.inf
+
+
+def widest_radius(footprints: np.ndarray, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
+    """What the wide radius of the first iteration never exceeds, metres.
+
+    A twentieth of the scene's diagonal, and ten times the Eq. 3 radius in the middle of the view (``footprints``, as
+    for radius_limits): beyond, splats would cover the picture.
+    """
+    widest = 0.05 * float(np.linalg.norm(bounds_high - bounds_low))
+    seen = _seen(footprints)
+    return min(widest, 10.0 * float(np.median(seen))) if len(seen) else widest
+
+
+def _seen(footprints: np.ndarray) -> np.ndarray:
+    return footprints[np.isfinite(footprints) & (footprints > 0)]
 
 
 def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius: float) -> tuple[float, float]:
@@ -42,7 +67,7 @@ def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius
     r_max, at which all photons are splatted, covers 95 % of the view, and r_min keeps a
     twentieth of the median where a hit lies at the camera's nose.
     """
-    seen = footprints[np.isfinite(footprints) & (footprints > 0)]
+    seen = _seen(footprints)
     middle, high = np.percentile(seen, [50, 95]) if len(seen) else (0.005 * scene_radius,) * 2
     maximum = settings.radius_maximum or min(float(high), 0.25 * scene_radius)
     minimum = settings.radius_minimum or min(0.05 * float(middle), maximum)

@@ -15,10 +15,10 @@ from ..scene.lights import Light, LightKind
 from ..scene.scene import Scene
 from .environment import Environment
 from .geometry import Geometry
-from .records import EMISSIVE_TRIANGLE, LIGHT
+from .guide import Guide, learns_after
+from .records import ELLIPSE, EMISSIVE_TRIANGLE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .targets import caustic_targets
 
-POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 _VISIBLE, _SOFT = 1, 2
 
 LIGHT_PARAMETERS = {
@@ -87,7 +87,10 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
 
 
 class Emission:
-    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
+    """The lights of a scene: buffers for the shaders that include emission/lights.glsl.
+
+    ``photon_flux`` is the mean flux of a photon as it leaves its light, W, the channels' mean.
+    """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         self._program = library.compute("emission/emit.comp")
@@ -97,9 +100,13 @@ class Emission:
         self._targets = GrowingBuffer(context, "photon targets")
         self._target_count = 0
         self.environment = Environment(context)
+        self._guide = Guide(context, library)
+        self._table = LIGHT.zeros(0)
+        self._weights = np.zeros(0)
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_soft_lights = False
+        self.photon_flux = 0.0
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -118,6 +125,7 @@ class Emission:
             "emissive triangles": self._emissive.size,
             "photon targets": self._targets.size,
             "environment": self.environment.memory_bytes,
+            **self._guide.memory_bytes,
         }
 
     def parameters(self, seed: int, iteration: int, count: int) -> dict[str, object]:
@@ -166,16 +174,17 @@ class Emission:
         if sum(weights) <= 0:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
-        counts = share_out(np.array(weights), scene.settings.photons)
+        self.photon_flux = sum(powers) / scene.settings.photons
         # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
         selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
         table = np.array(entries, LIGHT.dtype)
         table["selection_probability"] = selection
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
-        table["photon_count"] = counts
         self.has_soft_lights = bool((table["flags"] & _SOFT).any())
-        table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
+        self._share_photons(self._weights)
+        self._guide.build(table, scene.settings.photons)
         self._lights.upload(table)
         self._emissive.upload(emissive if len(emissive) else EMISSIVE_TRIANGLE.zeros(1))
         targets = caustic_targets(scene, geometry)
@@ -197,12 +206,38 @@ class Emission:
             "world_selection": float(selection[table["kind"] == WORLD].sum()),
         }
 
+    def _share_photons(self, weights: np.ndarray) -> None:
+        counts = share_out(weights, self._photons)
+        self._table["photon_count"] = counts
+        self._table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
+
+    def learn(self, photons: moderngl.Buffer, segments: int, iteration: int) -> float:
+        """Of an iteration's splatted photons, learn where to send those of the next ones.
+
+        Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
+        of use from now on.
+        """
+        self._guide.tally(photons, self._photons, segments)
+        if not learns_after(iteration):
+            return 1.0
+        weights, useful = self._guide.learn()
+        before = self._table["photon_count"] @ useful[:, 0]
+        self._share_photons(self._weights * weights)
+        self._lights.upload(self._table)
+        return float(self._table["photon_count"] @ useful[:, 1] / before)
+
     def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
         """Emit ``count`` photons: their first rays and the flux they carry."""
         self.environment.use()
         self._program.run(
             count,
-            {**self.buffers, "Rays": rays, "PhotonPaths": photon_paths, "Targets": self._targets.buffer},
+            {
+                **self.buffers,
+                **self._guide.buffers,
+                "Rays": rays,
+                "PhotonPaths": photon_paths,
+                "Targets": self._targets.buffer,
+            },
             {**self.parameters(seed, iteration, count), "target_count": self._target_count},
         )
 
@@ -226,6 +261,7 @@ class Emission:
         self._lights.release()
         self._emissive.release()
         self._targets.release()
+        self._guide.release()
         self.environment.release()
 
 

@@ -12,7 +12,7 @@ from .importons import Importons
 from .splatting import Splatting
 
 Record("SurfaceParameters", count="uint", first_pixel="uint", iteration="uint", segment="uint")
-Record("FilmParameters", count="uint", width="uint", first_pixel="uint", iteration="uint")
+Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
 
 
 class Film:
@@ -52,11 +52,10 @@ class Film:
         self, radiances: moderngl.Buffer, splatting: Splatting, count: int, first_pixel: int, iteration: int
     ) -> None:
         """Add the band's estimate of an iteration."""
-        splatting.direct_splats.use(0)
         self._accumulate.run(
             count,
             {"Radiances": radiances, "Gathered": splatting.gathered.buffer, "Film": self._radiance.buffer},
-            {"count": count, "width": self.width, "first_pixel": first_pixel, "iteration": iteration},
+            {"count": count, "quantum": splatting.quantum, "first_pixel": first_pixel, "iteration": iteration},
         )
 
     def read_radiance(self) -> np.ndarray:

@@ -2,6 +2,7 @@
 """Rasterization-based progressive photon mapping: the paper's Algorithm 1."""
 
 import logging
+import math
 import time
 
 import numpy as np
@@ -12,19 +13,21 @@ from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
-from .bandwidth import radius_in_pixels, radius_limits, shrinkage, wide_radius
+from .bandwidth import fitted_wide_radius, radius_in_pixels, radius_limits, shrinkage, wide_radius, widest_radius
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
 from .gbuffer import GBuffer, bands_of, camera_view, filter_offsets
 from .geometry import Geometry
+from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
 from .inspection import inspect_deep_cubemap
+from .memory import Memory, reckon_memory
 from .photons import Photons, flux_balance
 from .placement import cubemap_centres, radius_about
 from .resolve import Resolve
-from .splatting import Splatting
+from .splatting import Splatting, radiance_quantum
 from .stages import Stages
 
 log = logging.getLogger(__name__)
@@ -48,6 +51,7 @@ class ProgressivePhotonMapper:
         self.build_seconds = 0.0
         self._views: list = []
         self._wide_radius = 0.0
+        self._diffused_photons: list[np.ndarray] = []
 
     def build(self, scene: Scene) -> None:
         """Init(): take a scene, allocate its buffers and build the deep cubemap.
@@ -74,13 +78,17 @@ class ProgressivePhotonMapper:
             settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
         )
         self._radius_scale = radius_in_pixels(settings, scene.camera)
-        self._limits = self._first_limits()
+        footprints = self._first_footprints()
+        self._leaves_importon = footprints > 0
+        self._limits = radius_limits(settings, footprints, self._geometry.radius)
+        self._widest_radius = widest_radius(footprints, self._geometry.bounds_low, self._geometry.bounds_high)
         self.build_seconds = time.perf_counter() - start
 
     def _gather(self, scene: Scene) -> None:
         scene.settings.validate()
         self._release_views()
         self.iteration = 0
+        self._diffused_photons = []
         self.scene = scene
         self._materials.build(scene.materials, scene.images)
         self._geometry.build(scene, self._materials.default_material)
@@ -114,6 +122,8 @@ class ProgressivePhotonMapper:
                 else:
                     self._indirect_splatting()
             self._update_film()
+            if self._splatting.counting:
+                self._diffused_photons.append(self._splatting.diffused_photons(self._count))
 
     @property
     def splat_radii(self) -> tuple[float, float]:
@@ -129,12 +139,31 @@ class ProgressivePhotonMapper:
         return self._geometry.triangle_count
 
     @property
+    def memory(self) -> Memory:
+        """Bytes on the device by group of buffers; before the first iteration lists of photons are short."""
+        groups = {
+            "scene": self._geometry.memory_bytes | self._materials.memory_bytes | self._emission.memory_bytes,
+            "deep cubemap": self._deep_cubemap.memory_bytes,
+            "photon paths": self._photons.memory_bytes,
+            "camera paths": {"visibility buffer": self._gbuffer.memory_bytes} | self._importons.memory_bytes,
+            "direct light": self._direct_light.memory_bytes,
+            "splatting": self._splatting.memory_bytes,
+            "passes": self.film.memory_bytes,
+        }
+        settings = self.scene.settings
+        return reckon_memory(groups, self.film.width * self.film.height, settings.photons, settings.photon_path_length)
+
+    @property
     def memory_bytes(self) -> dict[str, int]:
         """Bytes on the device by buffer."""
-        sizes = self._geometry.memory_bytes | self._materials.memory_bytes | self._emission.memory_bytes
-        sizes |= self._deep_cubemap.memory_bytes | self._photons.memory_bytes | self._importons.memory_bytes
-        sizes |= self._splatting.memory_bytes | self._direct_light.memory_bytes | self.film.memory_bytes
-        return sizes | {"visibility buffer": self._gbuffer.memory_bytes}
+        memory = self.memory
+        return {name: size for sizes in (*memory.working.values(), memory.ppm) for name, size in sizes.items()}
+
+    def lengthen_lists(self) -> None:
+        """Give the lists of photons to splat the length that the first iteration needs, which build cannot know."""
+        self.iteration = 1
+        self._trace_photons()
+        self.iteration = 0
 
     def flux_balance(self) -> dict[str, float]:
         """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
@@ -162,11 +191,8 @@ class ProgressivePhotonMapper:
     def _shrinkage(self) -> float:
         return shrinkage(max(self.iteration, 1), self.scene.settings.alpha)
 
-    def _first_limits(self) -> tuple[float, float]:
-        """r_min and r_max from the footprints that the camera's first hits have."""
-        settings = self.scene.settings
-        if settings.radius_minimum and settings.radius_maximum:
-            return settings.radius_minimum, settings.radius_maximum
+    def _first_footprints(self) -> np.ndarray:
+        """(pixels,) Eq. 3 radii of the camera's first hits, metres; 0 where there is no importon."""
         footprints = []
         for first_row, rows in self._bands:
             view = camera_view(self.scene.camera, first_row, rows, (0.0, 0.0))
@@ -174,10 +200,13 @@ class ProgressivePhotonMapper:
             self._importons.resolve(self._stages, self._count, 0, 0)
             self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
             footprints.append(self._importons.footprints(self._count))
-        return radius_limits(settings, np.concatenate(footprints), self._geometry.radius)
+        return np.concatenate(footprints)
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
+        if 1 < self.iteration <= LEARNING_ITERATIONS + 1:
+            with self.timers.stage("learning"):
+                self._learn()
         self._photons.run(self._stages, self.iteration)
         # With next-event rays the photons' first hits would count direct light twice.
         first = self._photons.photon_count if self.scene.settings.direct_light is DirectLightMode.RAYS else 0
@@ -186,9 +215,29 @@ class ProgressivePhotonMapper:
                 self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, first
             )
         if self.iteration == 1:
-            self._wide_radius = wide_radius(
-                self._splatting.diffused_count, self._geometry.bounds_low, self._geometry.bounds_high
-            )
+            spread = wide_radius(self._splatting.diffused_count, self._geometry.bounds_low, self._geometry.bounds_high)
+            self._wide_radius = min(spread, self._widest_radius)
+        self._splatting.count_in(
+            radiance_quantum(self._emission.photon_flux, max(self.splat_radii)),
+            self._roulette_seed() if self.scene.settings.splat_roulette else 0,
+            learns_after(self.iteration),
+        )
+
+    def _learn(self) -> None:
+        """From the iteration before: where photons are of use, and how many diffused ones pixels find."""
+        before = self.iteration - 1
+        gain = self._emission.learn(self._photons.photons.buffer, self._photons.segments, before)
+        if self._diffused_photons:
+            shrunk = self._wide_radius * shrinkage(before, self.scene.settings.alpha)
+            counts = np.concatenate(self._diffused_photons)[self._leaves_importon]
+            # Few photons make bold promises: the radius is at most halved before they are kept.
+            fitted = fitted_wide_radius(shrunk, counts) / math.sqrt(min(gain, 4.0))
+            self._wide_radius = min(fitted, self._widest_radius)
+            self._diffused_photons = []
+
+    def _roulette_seed(self) -> int:
+        """Odd, so never 0, and another one for each iteration and seed."""
+        return (2 * (self.iteration + 0x9E3779B1 * self.scene.settings.seed) + 1) % (1 << 32)
 
     def _begin_band(self, view: np.ndarray, first_row: int) -> None:
         self._count = int(view["width"][0] * view["height"][0])

@@ -81,10 +81,10 @@ PHOTON = Record(
     direction="vec3",
     triangle="uint",
     scattered_flux="vec3",
-    unused="uint",
+    contributed="uint",
 )
 """One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
-``direction`` points back to where the photon came from."""
+``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it."""
 
 PHOTON_ACTIVE = 1
 PHOTON_STORED = 2
@@ -126,6 +126,9 @@ IMPORTON = Record(
 the path's throughput. ``direction`` points back to the viewer; ``next`` links lists of the splat
 cubemap."""
 
+POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
+"""Kinds of lights, as in shaders/emission/lights.glsl."""
+
 LIGHT = Record(
     "Light",
     position="vec3",
@@ -145,10 +148,12 @@ LIGHT = Record(
     first_photon="uint",
     photon_count="uint",
     flags="uint",
-    unused="uint",
+    first_cell="uint",
+    cells="uvec4",
 )
 """A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
-unit axes, ``selection_end`` the cumulated probability of choosing this or an earlier light."""
+unit axes, ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
+``first_cell`` those of integrator/guide.py."""
 
 EMISSIVE_TRIANGLE = Record(
     "EmissiveTriangle", radiance="vec3", triangle="uint", area="float", cumulated="float", pad0="float", pad1="float"

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photon splatting: onto the camera view (direct) and onto cubemap views (indirect), section 4.2."""
 
+import math
+
 import moderngl
 import numpy as np
 
@@ -16,10 +18,32 @@ _FACES_OF_A_SPLAT = 3
 
 Record("StoredParameters", count="uint", first_slot="uint")
 Record("SplatParameters", count="uint", radius="float", wide_radius="float")
-Record("QuadParameters", width="uint", height="uint", wide_radius="float")
-Record("CubeParameters", centre="vec3", count="uint", radius="float", wide_radius="float", resolution="uint")
+Record(
+    "QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint", counting="uint"
+)
+Record(
+    "CubeParameters",
+    centre="vec3",
+    count="uint",
+    radius="float",
+    wide_radius="float",
+    resolution="uint",
+    quanta="float",
+)
 
 _STORED_HEADER = 8
+_PHOTON_QUANTA = 1 << 24
+_GATHERED = 24
+
+
+def radiance_quantum(photon_flux: float, radius: float) -> float:
+    """W/(m^2 sr), a power of two: what the sums of splats count in.
+
+    A white diffuse surface reflects about 2^24 of them when a photon of mean flux (W) is spread over a disk of the
+    largest splat radius (m). Sums end at 2^64.
+    """
+    radiance = photon_flux / (math.pi**2 * max(radius, 1e-12) ** 2) / _PHOTON_QUANTA
+    return 2.0 ** math.floor(math.log2(min(max(radiance, 1e-30), 1e20)))
 
 
 class Splatting:
@@ -27,7 +51,6 @@ class Splatting:
 
     def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
         gl = context.moderngl
-        self._context = context
         self._stored_program = library.compute("splatting/stored.comp")
         self._direct_jobs = library.compute("splatting/direct_jobs.comp")
         self._direct = library.draw("splatting/quads.vert", "splatting/direct.frag")
@@ -41,20 +64,21 @@ class Splatting:
         self._heads = GrowingBuffer(context, "splat cubemap")
         self._core = GrowingBuffer(context, "splat core list")
         self.gathered = GrowingBuffer(context, "gathered radiance")
-        self._heads.require(4 * 6 * (_CUBE_RESOLUTION**2 + (_CUBE_RESOLUTION // _BLOCK_SIZE) ** 2))
+        self._heads.require(4 * 6 * (_CUBE_RESOLUTION**2 + (_CUBE_RESOLUTION // _BLOCK_SIZE) ** 2 + 4))
         self._core.require(4 * (width * rows + 1))
-        self.gathered.require(12 * width * rows)
-        self.direct_splats = gl.texture((width, rows), 4, dtype="f4")
-        self.direct_splats.filter = (moderngl.NEAREST, moderngl.NEAREST)
-        self._direct_view = gl.framebuffer([self.direct_splats])
+        self._diffused_photons = GrowingBuffer(context, "diffused photons")
+        self.gathered.require(_GATHERED * width * rows)
+        self._diffused_photons.require(4 * width * rows)
+        self._direct_view = gl.empty_framebuffer((width, rows))
         self._cube_size = (3 * _CUBE_RESOLUTION, 2 * _CUBE_RESOLUTION)
         self._cube_view = gl.empty_framebuffer(self._cube_size)
         self.stored_count = self.diffused_count = 0
+        self.count_in(1.0, 0, False)
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        sizes = {b.name: b.size for b in (self._stored, self._jobs, self._heads, self._core, self.gathered)}
-        return sizes | {"direct splats": 16 * self.direct_splats.width * self.direct_splats.height}
+        buffers = (self._stored, self._jobs, self._heads, self._core, self.gathered, self._diffused_photons)
+        return {buffer.name: buffer.size for buffer in buffers}
 
     def collect(self, photons: moderngl.Buffer, slots: int, first_slot: int) -> None:
         """List the photons to splat: those stored in slots from ``first_slot`` to ``slots``."""
@@ -69,10 +93,18 @@ class Splatting:
         self.stored_count, self.diffused_count = map(int, self._stored.read(np.uint32, 2))
         self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, self.stored_count))
 
+    def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
+        """Set what the sums count in, W/(m^2 sr), the seed of the fragments' roulette (0 keeps them all), and
+        whether to count the diffused photons of the camera's first hits."""
+        self.quantum = quantum
+        self.counting = counting
+        self._counting = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette, "counting": counting}
+
     def begin(self) -> None:
         """Forget what the band before gathered."""
-        self._direct_view.clear(0.0, 0.0, 0.0, 0.0)
         self.gathered.clear()
+        if self.counting:
+            self._diffused_photons.clear()
 
     def _reset_jobs(self) -> None:
         """The arguments of the indirect draw: no vertices yet, one instance."""
@@ -99,12 +131,20 @@ class Splatting:
         self._direct.draw(
             self._direct_view,
             self._jobs.buffer,
-            {"Jobs": self._jobs.buffer, "Photons": photons, "Importons": importons},
-            {"width": width, "height": rows, "wide_radius": radii[1]},
+            {
+                "Jobs": self._jobs.buffer,
+                "Photons": photons,
+                "Importons": importons,
+                "Gathered": self.gathered.buffer,
+                "DiffusedPhotons": self._diffused_photons.buffer,
+            },
+            {"width": width, "height": rows, "wide_radius": radii[1], **self._counting},
             viewport=(0, 0, width, rows),
-            state=moderngl.BLEND,
-            blend=(moderngl.ONE, moderngl.ONE),
         )
+
+    def diffused_photons(self, count: int) -> np.ndarray:
+        """(count,) how many diffused photons the importons of the band's first hits took, where they are counted."""
+        return self._diffused_photons.read(np.uint32, count)
 
     def indirect(
         self,
@@ -120,7 +160,13 @@ class Splatting:
         self._heads.clear()
         self._core.buffer.write(bytes(4))
         self._reset_jobs()
-        cube = {"centre": centre, "radius": radii[0], "wide_radius": radii[1], "resolution": _CUBE_RESOLUTION}
+        cube = {
+            "centre": centre,
+            "radius": radii[0],
+            "wide_radius": radii[1],
+            "resolution": _CUBE_RESOLUTION,
+            "quanta": 1.0 / self.quantum,
+        }
         stored = {"Photons": photons, "StoredPhotons": self._stored.buffer}
         self._insert.run(
             count,
@@ -137,7 +183,7 @@ class Splatting:
             self._cube_view,
             self._jobs.buffer,
             {"Jobs": self._jobs.buffer, "Photons": photons, "Heads": self._heads.buffer, **gathered},
-            {"width": self._cube_size[0], "height": self._cube_size[1], "wide_radius": radii[1]},
+            {"width": self._cube_size[0], "height": self._cube_size[1], "wide_radius": radii[1], **self._counting},
             viewport=(0, 0, *self._cube_size),
         )
         self._core_program.run(
@@ -153,8 +199,8 @@ class Splatting:
             self._heads,
             self._core,
             self.gathered,
+            self._diffused_photons,
             self._direct_view,
-            self.direct_splats,
             self._cube_view,
         ):
             resource.release()

@@ -45,6 +45,8 @@ class RenderSettings:
     """Lobes with at most this roughness (the user's, not its square) are traced as specular;
     rougher ones store photons."""
     direct_light: DirectLight = DirectLight.RAYS
+    splat_roulette: bool = False
+    """Whether half of the splat fragments end unseen and the others count twice (paper section 4.2, Fig. 5)."""
     iterations_per_frame: int = 1
     """N_ipf: iterations between two pictures shown."""
     seed: int = 0

@@ -12,6 +12,7 @@ import numpy as np
 from ..gl.context import Context, DeviceInformation
 from ..gl.programs import ProgramLibrary
 from ..integrator.film import Film
+from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..scene.scene import Scene
 
@@ -209,6 +210,15 @@ class Renderer:
             cubemap = self._mapper.deep_cubemap
             counts = cubemap.counts | {"resolution": cubemap.resolution}
             return self._mapper.inspect_deep_cubemap(), counts, cubemap.memory_bytes
+
+    def memory(self, scene: Scene) -> Memory:
+        """Bytes on the device that rendering the scene takes. Raises the errors of scene/errors.py."""
+        with self._context.moderngl:
+            if self._mapper is None:
+                self._mapper = ProgressivePhotonMapper(self._context, self._library)
+            self._mapper.build(scene)
+            self._mapper.lengthen_lists()
+            return self._mapper.memory
 
     def release(self) -> None:
         """Free the device; the renderer cannot be used afterwards."""

@@ -7,6 +7,7 @@ const uint STAGE_PHOTONS = 2u;
 const uint STAGE_IMPORTONS = 3u;
 const uint STAGE_DIRECT_LIGHT = 4u;
 const uint STAGE_RESOLVE = 5u;
+const uint STAGE_SPLATTING = 6u;
 
 uvec4 pcg4d(uvec4 v) {
     v = v * 1664525u + 1013904223u;

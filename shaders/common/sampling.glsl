@@ -17,12 +17,27 @@ vec2 sample_disk(vec2 u) {
     return r * vec2(cos(angle), sin(angle));
 }
 
+// The point of the unit square that sample_disk maps to p.
+vec2 disk_to_square(vec2 p) {
+    if (p.x == 0.0 && p.y == 0.0) return vec2(0.5);
+    bool wide = abs(p.x) > abs(p.y);
+    float r = length(p) * ((wide ? p.x : p.y) < 0.0 ? -1.0 : 1.0);
+    float across = r * (4.0 / PI) * atan(wide ? p.y / p.x : p.x / p.y);
+    return 0.5 + 0.5 * (wide ? vec2(r, across) : vec2(across, r));
+}
+
 // Around n with density cosine / pi.
 vec3 sample_cosine_hemisphere(vec3 n, vec2 u) {
     vec2 d = sample_disk(u);
     vec3 t, b;
     tangent_frame(n, t, b);
     return normalize(d.x * t + d.y * b + sqrt(max(0.0, 1.0 - dot(d, d))) * n);
+}
+
+vec2 hemisphere_to_square(vec3 n, vec3 direction) {
+    vec3 t, b;
+    tangent_frame(n, t, b);
+    return disk_to_square(vec2(dot(direction, t), dot(direction, b)));
 }
 
 // Around axis, uniform in solid angle within the cone of this cosine. one_minus_cosine keeps small cones exact.
@@ -35,9 +50,19 @@ vec3 sample_cone(vec3 axis, float one_minus_cosine, vec2 u) {
     return normalize(sine * (cos(angle) * t + sin(angle) * b) + (1.0 - drop) * axis);
 }
 
+vec2 cone_to_square(vec3 axis, float one_minus_cosine, vec3 direction) {
+    vec3 t, b;
+    tangent_frame(axis, t, b);
+    return vec2((1.0 - dot(direction, axis)) / one_minus_cosine, fract(atan(dot(direction, b), dot(direction, t)) / (2.0 * PI)));
+}
+
 vec3 sample_sphere(vec2 u) {
     float z = 1.0 - 2.0 * u.x;
     float r = sqrt(max(0.0, 1.0 - z * z));
     float angle = 2.0 * PI * u.y;
     return vec3(r * cos(angle), r * sin(angle), z);
+}
+
+vec2 sphere_to_square(vec3 direction) {
+    return vec2(0.5 - 0.5 * direction.z, fract(atan(direction.y, direction.x) / (2.0 * PI)));
 }

@@ -13,6 +13,9 @@ layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
 #include "emission/photons.glsl"
 layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) writeonly buffer PhotonPaths { PhotonPath photon_paths[]; };
+layout(std430, binding = 8) writeonly buffer PhotonCells { uint photon_cells[]; };
+
+const uint NO_CELL = 0xffffffffu;
 
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
 // they pass it by.
@@ -35,15 +38,27 @@ void main() {
     Light light = lights[number];
     // The light's photons take turns: the last of each period is aimed, the others go anywhere.
     uint turn = index - light.first_photon, period = aiming_period(light);
-    bool aimed = turn % period == period - 1u;
+    bool aimed = parameters.target_count > 0u && turn % period == period - 1u;
     // The share that this rule gives to just so many photons keeps the estimate exact.
-    float aimed_share = float(light.photon_count / period) / float(max(light.photon_count, 1u));
-    uint within = aimed ? turn / period : turn - turn / period;
+    uint aimed_photons = parameters.target_count > 0u ? light.photon_count / period : 0u;
+    float aimed_share = float(aimed_photons) / float(max(light.photon_count, 1u));
+    uint within = aimed ? turn / period : turn - (parameters.target_count > 0u ? turn / period : 0u);
     // A fresh scrambled set for every light and iteration, stratified among the light's photons.
     uvec4 seed = pcg4d(uvec4(2u * number + (aimed ? 1u : 0u), parameters.iteration, parameters.seed, STAGE_EMISSION));
     vec2 u_parts = scrambled_sobol(within, pcg4d(seed + 1u));
     EmissionChoice choice = EmissionChoice(scrambled_sobol(within, seed), scrambled_sobol(within, pcg4d(seed)),
                                            u_parts.x, u_parts.y, aimed, aimed_share);
+    photon_cells[index] = NO_CELL;
+    if (!aimed) {
+        // Evenly spaced from a random start: each cell gets its share but for one photon.
+        uint step = 0xffffffffu / max(light.photon_count - aimed_photons, 1u);
+        uint cell = choose_guide_cell(light, seed.x + within * step + pcg4d(seed + within).y % step);
+        vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
+        place_in_cell(light, cell, place, choice.direction);
+        if (light.kind == LIGHT_MESH) choice.part = place.x;
+        else choice.place = place;
+        photon_cells[index] = light.first_cell + cell;
+    }
     Emission emission = emit_photon(light, choice);
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);

@@ -9,7 +9,7 @@ layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
 layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]; };
 
-// The numbers of rppm_addon/integrator/emission.py.
+// The numbers of rppm_addon/integrator/records.py and emission.py.
 const uint LIGHT_POINT = 0u, LIGHT_SPOT = 1u, LIGHT_SUN = 2u, LIGHT_RECTANGLE = 3u, LIGHT_ELLIPSE = 4u,
            LIGHT_MESH = 5u, LIGHT_WORLD = 6u;
 const uint LIGHT_VISIBLE = 1u, LIGHT_SOFT = 2u;

@@ -4,18 +4,21 @@
 
 #include "emission/lights.glsl"
 #include "emission/aim.glsl"
+#include "emission/guide.glsl"
 
 struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
 
 // Random numbers of one photon, whether it is aimed, and the share of those that are.
 struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; float aimed_share; };
 
-// Density of both ways together; without a target both are the plain one.
-float mixed_density(float plain, float aimed, bool targets_seen, EmissionChoice choice) {
-    return targets_seen ? mix(plain, aimed, choice.aimed_share) : plain;
+// Density of both ways together over the plain one's measure: guided photons have the plain density times the
+// guide's; aimed ones that see no target have the plain one.
+float mixed_density(Light light, float plain, vec2 place, vec2 direction, float aimed, bool targets_seen, EmissionChoice choice) {
+    float guided = plain * guide_density(light, guide_cell(light, place, direction));
+    return mix(guided, targets_seen ? aimed : plain, choice.aimed_share);
 }
 
-Emission emit_from_infinity(vec3 direction, vec3 flux_density, EmissionChoice choice) {
+Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, EmissionChoice choice) {
     vec3 t, b;
     tangent_frame(direction, t, b);
     float radius = parameters.scene_radius, shadows = target_shadows();
@@ -23,7 +26,8 @@ Emission emit_from_infinity(vec3 direction, vec3 flux_density, EmissionChoice ch
     vec2 place = choice.aimed && seen ? sample_target_shadow(t, b, shadows, choice.target, choice.place)
                                       : radius * sample_disk(choice.place);
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
-    float density = mixed_density(plain, seen ? target_shadow_density(t, b, shadows, place) : 0.0, seen, choice);
+    float density = mixed_density(light, plain, disk_to_square(place / radius), choice.direction,
+                                  seen ? target_shadow_density(t, b, shadows, place) : 0.0, seen, choice);
     vec3 origin = parameters.scene_centre + place.x * t + place.y * b - radius * direction;
     return Emission(origin, NO_TRIANGLE, direction, flux_density / density);
 }
@@ -39,12 +43,14 @@ Emission emit_from_lamp(Light light, EmissionChoice choice) {
     float plain = 1.0 / (4.0 * PI);
     if (spot) plain = dot(direction, light.normal) >= 1.0 - light.spread_scale ? 1.0 / (2.0 * PI * light.spread_scale) : 0.0;
     float aimed = seen ? target_direction_density(light.position, cones, direction) : 0.0;
+    vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
+    float density = mixed_density(light, plain, choice.place, square, aimed, seen, choice);
     vec3 t, b;
     tangent_frame(direction, t, b);
     vec2 disk = sample_disk(choice.place);
     float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
     vec3 origin = light.position + light.radius * (disk.x * t + disk.y * b + forward * direction);
-    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / mixed_density(plain, aimed, seen, choice));
+    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / density);
 }
 
 // From a point of a surface, with the density per area that the point was chosen by.
@@ -66,21 +72,25 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
     if (cosine <= 0.0) return none;
     float plain = both_sides ? cosine / (2.0 * PI) : cosine / PI;
     if (narrow) plain = cosine >= light.cosine_cone ? 1.0 / (2.0 * PI * (1.0 - light.cosine_cone)) : 0.0;
-    float density = mixed_density(plain, seen ? target_direction_density(origin, cones, direction) : 0.0, seen, choice);
+    bool front = dot(direction, normal) > 0.0;
+    vec2 square = narrow ? cone_to_square(normal, 1.0 - light.cosine_cone, direction)
+                         : hemisphere_to_square(front ? normal : -normal, direction);
+    if (both_sides) square.x = 0.5 * (square.x + (front ? 1.0 : 0.0));
+    vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
+    float density = mixed_density(light, plain, place, square, seen ? target_direction_density(origin, cones, direction) : 0.0, seen, choice);
     if (!both_sides) radiance *= spread_attenuation(light, cosine);
-    vec3 side = dot(direction, normal) > 0.0 ? normal : -normal;
-    return Emission(both_sides ? offset_from_surface(origin, side) : origin, triangle, direction,
+    return Emission(both_sides ? offset_from_surface(origin, front ? normal : -normal) : origin, triangle, direction,
                     radiance * (cosine / (area_density * density)));
 }
 
 Emission emit_photon(Light light, EmissionChoice choice) {
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_lamp(light, choice);
     if (light.kind == LIGHT_SUN)
-        return emit_from_infinity(sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction), light.strength, choice);
+        return emit_from_infinity(light, sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction), light.strength, choice);
     if (light.kind == LIGHT_WORLD) {
         float density;
         vec3 towards = sample_world(choice.direction, density);
-        return emit_from_infinity(-towards, world_radiance(towards) / density, choice);
+        return emit_from_infinity(light, -towards, world_radiance(towards) / density, choice);
     }
     if (light.kind == LIGHT_MESH) {
         TrianglePoint point = sample_emissive_triangle(choice.part, choice.place);

@@ -8,12 +8,12 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include <Importon>
 #include "common/photon.glsl"
-#include "splatting/gathered.glsl"
 layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
 layout(std430, binding = 2) readonly buffer Core { uint core_count; uint core_importons[]; };
 layout(std430, binding = 3) readonly buffer Importons { Importon importons[]; };
+#include "splatting/gathered.glsl"
 #include "common/importon.glsl"
 
 void main() {
@@ -25,6 +25,7 @@ void main() {
     if (dot(p, p) > reach * reach) return;
     for (uint k = 0u; k < core_count; ++k) {
         vec3 radiance;
-        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance)) add_gathered(core_importons[k], radiance);
+        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance))
+            add_gathered(core_importons[k], photon, radiance, parameters.quanta);
     }
 }

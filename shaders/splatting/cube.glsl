@@ -7,11 +7,13 @@ vec3 to_face(vec3 p, int face) {
     return q;
 }
 
-// Behind the heads of the lists lie flags of occupied blocks of cells.
+// Behind the heads of the lists lie flags of occupied blocks of cells, and behind those, for each face, the bounds of
+// its occupied cells: size - x, size - y, x + 1, y + 1 at their greatest, so that zeros mean none.
 const int BLOCK_SIZE = 8;
 
 int first_block(int size) { return 6 * size * size; }
 int block_index(int face, ivec2 block, int size) { return first_block(size) + (face * (size / BLOCK_SIZE) + block.y) * (size / BLOCK_SIZE) + block.x; }
+int face_bounds(int face, int size) { return first_block(size) + 6 * (size / BLOCK_SIZE) * (size / BLOCK_SIZE) + 4 * face; }
 
 int face_of(vec3 p) {
     vec3 a = abs(p);

@@ -5,11 +5,12 @@
 #include <QuadParameters>
 #include <Importon>
 #include "common/photon.glsl"
-#include "splatting/gathered.glsl"
 layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
+#include "splatting/roulette.glsl"
+layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
+#include "splatting/gathered.glsl"
 #include "common/importon.glsl"
 
 flat in uint photon_number;
@@ -19,12 +20,13 @@ void main() {
     // The atlas is three faces wide: width / 3 cells to a face.
     ivec2 size = ivec2(int(parameters.width) / 3);
     ivec2 cell = ivec2(gl_FragCoord.xy) - ivec2(int(face) % 3, int(face) / 3) * size;
-    uint entry = heads[(int(face) * size.x + cell.y) * size.x + cell.x];
-    if (entry == 0u) return;
+    int place = (int(face) * size.x + cell.y) * size.x + cell.x;
+    uint entry = heads[place];
+    if (entry == 0u || rejected(photon_number, uint(place))) return;
     while (entry != 0u) {
         uint importon = entry - 1u;
         vec3 radiance;
-        if (density_estimate(importon, photon_number, parameters.wide_radius, radiance)) add_gathered(importon, radiance);
+        if (density_estimate(importon, photon_number, parameters.wide_radius, radiance)) add_gathered(importon, photon_number, radiance, parameters.quanta);
         entry = importons[importon].next;
     }
 }

@@ -42,9 +42,16 @@ bool shrink_to_occupied(int face, int size, inout ivec2 first, inout ivec2 last)
     return occupied_high.x >= 0;
 }
 
+// Behind the last bounces of most scenes no importon is left.
+bool any_importon(int size) {
+    uint cells = 0u;
+    for (int face = 0; face < 6; ++face) cells |= heads[face_bounds(face, size)];
+    return cells != 0u;
+}
+
 void main() {
     uint index = invocation_index();
-    if (index >= parameters.count) return;
+    if (index >= parameters.count || !any_importon(int(parameters.resolution))) return;
     uint number = stored_photons[index];
     vec3 p = photons[number].position - parameters.centre;
     float distance = length(p), radius = photon_radius(photons[number].flags, parameters.radius, parameters.wide_radius);
@@ -54,14 +61,16 @@ void main() {
     p /= distance;
     int size = int(parameters.resolution);
     for (int face = 0; face < 6; ++face) {
+        int bounds = face_bounds(face, size);
+        if (heads[bounds] == 0u) continue;
         vec3 q = to_face(p, face);
         vec2 across, along;
         if (q.z < -sine || !sphere_tangents(q.xz, sine, vec2(-1.0, 1.0), across)
             || !sphere_tangents(q.yz, sine, vec2(-1.0, 1.0), along)) continue;
         vec2 low = floor((vec2(across.x, along.x) * 0.5 + 0.5) * float(size) - 1e-2);
         vec2 high = floor((vec2(across.y, along.y) * 0.5 + 0.5) * float(size) + 1e-2) + 1.0;
-        ivec2 first = ivec2(clamp(low, vec2(0.0), vec2(float(size))));
-        ivec2 last = ivec2(clamp(high, vec2(0.0), vec2(float(size))));
+        vec2 bounds_low = vec2(float(size)) - vec2(heads[bounds], heads[bounds + 1]);
+        ivec2 first = ivec2(max(low, bounds_low)), last = ivec2(min(high, vec2(heads[bounds + 2], heads[bounds + 3])));
         if (any(greaterThanEqual(first, last)) || !shrink_to_occupied(face, size, first, last)) continue;
         ivec2 corner = ivec2(face % 3, face / 3) * size;
         uvec2 from = uvec2(corner + first), to = uvec2(corner + last);

@@ -28,6 +28,10 @@ void main() {
     vec3 q = to_face(p, face);
     int size = int(parameters.resolution);
     ivec2 cell = ivec2(clamp(floor((q.xy / q.z * 0.5 + 0.5) * float(size)), vec2(0.0), vec2(float(size - 1))));
+    int bounds = face_bounds(face, size);
+    uvec4 reach = uvec4(size - cell, cell + 1);
+    for (int k = 0; k < 4; ++k)
+        if (heads[bounds + k] < reach[k]) atomicMax(heads[bounds + k], reach[k]);
     heads[block_index(face, cell / BLOCK_SIZE, size)] = 1u;
     importons[index].next = atomicExchange(heads[(face * size + cell.y) * size + cell.x], index + 1u);
 }

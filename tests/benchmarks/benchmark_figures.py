@@ -20,7 +20,6 @@ from rppm_addon.scene.errors import RppmError
 
 log = logging.getLogger("benchmark")
 
-FIGURES = ("construction", "resolution", "bins", "rays", "placement")
 _SWEPT = ("room_100k", "glass_caustics", "pool", "diamond_ring", "fireplace_room", "bathroom", "sponza_dabrovic_1M")
 SCENES = {
     "construction": (

@@ -40,15 +40,17 @@ class Clock:
             f"process time of all threads / {self.cores} cores" if self.is_software else "wall clock between finishes"
         )
 
+    def now(self) -> float:
+        """Seconds since some moment."""
+        return time.process_time() / self.cores if self.is_software else time.perf_counter()
+
     def once(self, work: Callable[[], object]) -> float:
         """Seconds of one call, until the device is done."""
         self._context.finish()
-        start = time.process_time() if self.is_software else time.perf_counter()
+        start = self.now()
         work()
         self._context.finish()
-        if self.is_software:
-            return (time.process_time() - start) / self.cores
-        return time.perf_counter() - start
+        return self.now() - start
 
     def median(self, work: Callable[[], object]) -> float:
         """Median of several calls: as many as fit a third of a second, 2 to 5 on software and 5 to 50 on GPUs.

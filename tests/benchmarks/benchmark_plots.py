@@ -4,26 +4,11 @@
 import json
 from pathlib import Path
 
-import matplotlib
+import benchmark_estimator_plots
+import matplotlib.pyplot as plt
+import numpy as np
+from benchmark_drawing import COLOURS, STYLE, label_of, logarithmic
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.ticker import FuncFormatter, NullLocator  # noqa: E402
-
-_STYLE = {
-    "figure.dpi": 110,
-    "figure.constrained_layout.use": True,
-    "font.size": 9,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-}
-_COLOURS = ("#1f6fb4", "#e07b00", "#2f9e44", "#c92a2a", "#7048a8", "#8a5a3b", "#d6579a", "#5f6b76")
 _KIND_COLOURS = {"camera": "#1f6fb4", "diffuse bounce": "#e07b00", "photon": "#2f9e44"}
 _PLACE_COLOURS = {
     "inside": "#9aa5b1", "outside": "#c92a2a", "emitter": "#f0a500", "camera": "#1f6fb4", "middle": "#2f9e44",
@@ -40,7 +25,7 @@ _PLACE_LABELS = {
 def draw_figure(file: Path) -> Path:
     """Draw a JSON of run.py; returns the PNG."""
     document = json.loads(file.read_text(encoding="utf-8"))
-    with plt.rc_context(_STYLE):
+    with plt.rc_context(STYLE):
         figure = _DRAWERS[document["figure"]](document)
         machine = document["machine"]
         quick = ", quick run" if document["quick"] else ""
@@ -55,36 +40,6 @@ def draw_figure(file: Path) -> Path:
         figure.savefig(picture, metadata={"Software": None})
         plt.close(figure)
     return picture
-
-
-def _plain(value: float, _: int = 0) -> str:
-    """1000 as 1k, 1000000 as 1M, 0.01 as it is."""
-    for size, letter in ((1e6, "M"), (1e3, "k")):
-        if value >= size:
-            return f"{value / size:.4g}{letter}"
-    return f"{value:.4g}"
-
-
-def _logarithmic(axis, base: int = 10) -> None:
-    """Plain numbers along a logarithmic axis (axes.xaxis or axes.yaxis)."""
-    getattr(axis.axes, f"set_{axis.axis_name}scale")("log", base=base)
-    axis.set_major_formatter(FuncFormatter(_plain))
-    if base != 10:
-        axis.set_minor_locator(NullLocator())
-        return
-
-    def minor(value: float, _: int) -> str:
-        low, high = axis.get_view_interval()
-        decades = np.log10(high / low)
-        named = "23456789" if decades < 0.7 else "235" if decades < 1.4 else "25" if decades < 1.8 else ""
-        return _plain(value) if f"{value:.0e}"[0] in named else ""
-
-    axis.set_minor_formatter(FuncFormatter(minor))
-
-
-def _label(scene: dict) -> str:
-    triangles = float(f"{scene['triangles']:.3g}")
-    return f"{scene['scene']} ({_plain(triangles)})"
 
 
 def _construction(document: dict):
@@ -117,18 +72,18 @@ def _construction(document: dict):
         return value
 
     threads = {name: values["threads"] for scene in scenes for name, values in scene["hierarchies"].items()}
-    curve(time, route("rasterization", "rebuild_seconds", 1e3), "cubemap, rasterization", _COLOURS[0], "o")
-    curve(time, route("rasterization", "first_seconds", 1e3), "the same, first build", _COLOURS[0], "v", True)
-    curve(time, route("compute", "rebuild_seconds", 1e3), "cubemap, compute", _COLOURS[2], "s")
-    curve(time, route("compute", "first_seconds", 1e3), "the same, first build", _COLOURS[2], "^", True)
-    for name, colour in (("SAH", _COLOURS[3]), ("Embree", _COLOURS[1])):
+    curve(time, route("rasterization", "rebuild_seconds", 1e3), "cubemap, rasterization", COLOURS[0], "o")
+    curve(time, route("rasterization", "first_seconds", 1e3), "the same, first build", COLOURS[0], "v", True)
+    curve(time, route("compute", "rebuild_seconds", 1e3), "cubemap, compute", COLOURS[2], "s")
+    curve(time, route("compute", "first_seconds", 1e3), "the same, first build", COLOURS[2], "^", True)
+    for name, colour in (("SAH", COLOURS[3]), ("Embree", COLOURS[1])):
         if name in threads:
             label = f"boxes, {name}, {threads[name]} thread" + "s" * (threads[name] > 1)
             curve(time, hierarchy("seconds", name, 1e3), label, colour, "D")
             curve(factor, hierarchy("factor", name), label, colour, "D")
     for key, label, colour, marker in (
-        ("fragments_per_triangle", "in cells (fragments)", _COLOURS[0], "o"),
-        ("entries_per_triangle", "in depth bins (entries)", _COLOURS[4], "s"),
+        ("fragments_per_triangle", "in cells (fragments)", COLOURS[0], "o"),
+        ("entries_per_triangle", "in depth bins (entries)", COLOURS[4], "s"),
     ):
         if any(key in scene["routes"]["rasterization"] for scene in scenes):
             curve(fragments, route("rasterization", key), label, colour, marker)
@@ -139,8 +94,8 @@ def _construction(document: dict):
         (fragments, "How often a triangle is stored", "times per triangle"),
     ):
         axes.set(title=title, xlabel="triangles (lines: made rooms; open marks: other scenes)", ylabel=unit)
-        _logarithmic(axes.xaxis)
-        _logarithmic(axes.yaxis)
+        logarithmic(axes.xaxis)
+        logarithmic(axes.yaxis)
     time.legend(fontsize=8)
     factor.legend(fontsize=8)
     fragments.legend(fontsize=8)
@@ -151,15 +106,15 @@ def _construction(document: dict):
         for name, size in scene["routes"]["rasterization"]["memory_bytes"].items():
             sizes.setdefault(name.removeprefix("deep cubemap "), np.zeros(len(shown)))[row] = size / 2**20
     names = sorted(sizes, key=lambda name: -sizes[name].max())
-    if len(names) > len(_COLOURS):
-        few = names[: len(_COLOURS) - 1]
+    if len(names) > len(COLOURS):
+        few = names[: len(COLOURS) - 1]
         sizes["others"] = sum(sizes[name] for name in names[len(few) :])
         names = [*few, "others"]
     left = np.zeros(len(shown))
-    for name, colour in zip(names, _COLOURS):
+    for name, colour in zip(names, COLOURS):
         memory.barh(range(len(shown)), sizes[name], left=left, color=colour, label=name)
         left += sizes[name]
-    memory.set_yticks(range(len(shown)), [_label(scene) for scene in shown], fontsize=8)
+    memory.set_yticks(range(len(shown)), [label_of(scene) for scene in shown], fontsize=8)
     memory.set(title="Memory held, by buffer", xlabel="MiB")
     memory.grid(axis="y", visible=False)
     memory.legend(fontsize=8)
@@ -169,14 +124,14 @@ def _construction(document: dict):
 def _sweep(document: dict, key: str, what: str):
     """Memory, build time and time per ray against a knob; dotted is the cubemap's own choice (None or 0)."""
     figure, panels = plt.subplots(1, 3, figsize=(13, 5.2))
-    for scene, colour in zip(document["scenes"], _COLOURS * 2):
+    for scene, colour in zip(document["scenes"], COLOURS * 2):
         good = [point for point in scene["points"] if "failure" not in point]
         points = [point for point in good if point[key]]
         values = [_sweep_values(point, scene["rays"]) for point in points]
         own = [_sweep_values(point, scene["rays"]) for point in good if not point[key]]
         for index, axes in enumerate(panels):
             heights = [value[index] for value in values]
-            axes.plot([p[key] for p in points], heights, color=colour, marker="o", markersize=4, label=_label(scene))
+            axes.plot([p[key] for p in points], heights, color=colour, marker="o", markersize=4, label=label_of(scene))
             for value in own:
                 axes.axhline(value[index], color=colour, lw=1.0, ls=":")
     ticks = sorted({point[key] for scene in document["scenes"] for point in scene["points"] if point[key]})
@@ -184,8 +139,8 @@ def _sweep(document: dict, key: str, what: str):
         panels, ("Memory held", "Rebuild", "Tracing, mean of the kinds of rays"), ("MiB", "ms", "ns per ray")
     ):
         axes.set(title=title, xlabel=what, ylabel=unit)
-        _logarithmic(axes.xaxis, 2)
-        _logarithmic(axes.yaxis)
+        logarithmic(axes.xaxis, 2)
+        logarithmic(axes.yaxis)
         axes.set_xticks(ticks, [str(tick) for tick in ticks])
     handles, labels = panels[0].get_legend_handles_labels()
     handles.append(plt.Line2D([], [], color="#333333", lw=1.0, ls=":"))
@@ -228,13 +183,13 @@ def _rays(document: dict):
         mean = float(np.exp(np.mean(np.log(ratios))))
         label = f"{kind} rays, geometric mean {mean:.2f}, worst {min(ratios):.2f}"
         ratio.plot(ratios, rows, ls="", marker="o", markersize=5, color=colour, label=label)
-    speed.set_yticks(range(len(scenes)), [_label(scene) for scene in scenes], fontsize=8)
+    speed.set_yticks(range(len(scenes)), [label_of(scene) for scene in scenes], fontsize=8)
     speed.set_ylim(-0.6, len(scenes) - 0.4)
     speed.set(title="Speed", xlabel="Mray/s")
     ratio.set(title="Cubemap's speed over that of the boxes (more is better)", xlabel="ratio")
     ratio.axvline(1.0, color="#333333", lw=1)
     for axes, columns in ((speed, 3), (ratio, 1)):
-        _logarithmic(axes.xaxis)
+        logarithmic(axes.xaxis)
         axes.grid(axis="y", visible=False)
         for edge in range(1, len(scenes)):
             axes.axhline(edge - 0.5, color="#dddddd", lw=0.8)
@@ -266,9 +221,9 @@ def _placement(document: dict):
         axes.set(xlabel="trace time / that of the automatic place")
         share = f", {np.mean(np.array(everything) > 1.0):.0%} of the inside ones are slower" if everything else ""
         axes.set_title(f"{kind} rays{share}", fontsize=9)
-        _logarithmic(axes.xaxis, 2)
+        logarithmic(axes.xaxis, 2)
         axes.grid(axis="y", visible=False)
-    panels[0][0].set_yticks(range(len(scenes)), [_label(scene) for scene in scenes], fontsize=8)
+    panels[0][0].set_yticks(range(len(scenes)), [label_of(scene) for scene in scenes], fontsize=8)
     handles = [plt.Line2D([], [], ls="", marker="o", color=colour) for colour in _PLACE_COLOURS.values()]
     handles.append(plt.Line2D([], [], color="#555555", lw=1.4))
     figure.legend(
@@ -284,4 +239,5 @@ _DRAWERS = {
     "bins": _bins,
     "rays": _rays,
     "placement": _placement,
+    **benchmark_estimator_plots.DRAWERS,
 }

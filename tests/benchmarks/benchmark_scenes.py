@@ -67,7 +67,7 @@ class Subject:
     def __init__(
         self, name: str, scene: Scene, mapper: ProgressivePhotonMapper, library: ProgramLibrary, ray_count: int
     ) -> None:
-        self.name = name
+        self.name, self.scene = name, scene
         self.source = "made" if name in ROOMS else "sample" if name == SAMPLE else "shared"
         self.mapper, self.library, self.context = mapper, library, mapper.context
         self._ray_count = ray_count

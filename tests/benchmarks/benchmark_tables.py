@@ -2,8 +2,10 @@
 """Tables of all machines' figures, written between two marks of a README.md."""
 
 import json
-import math
 from pathlib import Path
+
+import benchmark_estimator_tables
+from benchmark_formats import geometric_mean, mebibytes, milliseconds, number, table
 
 BEGIN, END = "<!-- tables: begin (written by tests/benchmarks/run.py) -->", "<!-- tables: end -->"
 _TITLES = {
@@ -12,6 +14,12 @@ _TITLES = {
     "bins": "Depth bins",
     "rays": "Rays",
     "placement": "Placement",
+    "iterations": "Iterations",
+    "path_lengths": "Path lengths",
+    "photon_batches": "Photons of an iteration",
+    "resolutions": "Frame sizes",
+    "splat_radius": "Splat radius",
+    "roulette": "Splat roulette",
 }
 
 
@@ -25,10 +33,6 @@ def write_tables(folder: Path) -> None:
         raise ValueError(f"{path} lacks the lines {BEGIN} and {END}, between which the tables go")
     documents = [(file, json.loads(file.read_text(encoding="utf-8"))) for file in sorted(folder.glob("*/*.json"))]
     path.write_text(f"{before}{BEGIN}\n\n{_tables(documents)}\n{END}{after}", encoding="utf-8")
-
-
-def geometric_mean(values: list[float]) -> float:
-    return math.exp(sum(math.log(value) for value in values) / len(values))
 
 
 def _tables(documents: list[tuple[Path, dict]]) -> str:
@@ -45,13 +49,6 @@ def _tables(documents: list[tuple[Path, dict]]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _table(heads: list[str], lines: list[list[str]]) -> str:
-    rows = ["| " + " | ".join(heads) + " |", "|---" + "|---:" * (len(heads) - 1) + "|"]
-    if any(len(line) != len(heads) for line in lines):
-        raise ValueError(f"a table's lines are not as long as its head: {heads}")
-    return "\n".join(rows + ["| " + " | ".join(line) + " |" for line in lines])
-
-
 def _machines(documents: list[tuple[Path, dict]]) -> str:
     lines = []
     for file, document in documents:
@@ -65,22 +62,7 @@ def _machines(documents: list[tuple[Path, dict]]) -> str:
             lines[-1][5] += f"<br>{line[5]}"
         else:
             lines.append(line)
-    return _table(["folder", "device", "driver", "processor", "clock", "measured"], lines)
-
-
-def _milliseconds(seconds: float | None) -> str:
-    return "-" if seconds is None else f"{_number(1e3 * seconds)}"
-
-
-def _number(value: float) -> str:
-    """Three digits."""
-    if value == 0:
-        return "0"
-    return f"{value:,.{max(0, 2 - math.floor(math.log10(abs(value))))}f}"
-
-
-def _mebibytes(sizes: dict[str, int]) -> float:
-    return sum(sizes.values()) / 2**20
+    return table(["folder", "device", "driver", "processor", "clock", "measured"], lines)
 
 
 def _construction(document: dict) -> str:
@@ -90,17 +72,17 @@ def _construction(document: dict) -> str:
         boxes = scene["hierarchies"]
         line = [scene["scene"], f"{scene['triangles']:,}", str(raster.get("finest", "-"))]
         for route in (raster, compute):
-            line += [_milliseconds(route.get("first_seconds")), _milliseconds(route.get("rebuild_seconds"))]
+            line += [milliseconds(route.get("first_seconds")), milliseconds(route.get("rebuild_seconds"))]
         for name in ("SAH", "Embree"):
-            line.append(_milliseconds(boxes[name]["seconds"]) if name in boxes else "-")
+            line.append(milliseconds(boxes[name]["seconds"]) if name in boxes else "-")
             factor = scene["times_the_rebuild"].get(name)
-            line.append("-" if factor is None else f"{_number(factor)} x")
+            line.append("-" if factor is None else f"{number(factor)} x")
         line += [
             *(
-                _number(raster[key]) if key in raster else "-"
+                number(raster[key]) if key in raster else "-"
                 for key in ("fragments_per_triangle", "entries_per_triangle")
             ),
-            _number(_mebibytes(raster["memory_bytes"])) if "memory_bytes" in raster else "-",
+            number(mebibytes(raster["memory_bytes"])) if "memory_bytes" in raster else "-",
         ]
         lines.append(line)
     threads = {name: values["threads"] for scene in document["scenes"] for name, values in scene["hierarchies"].items()}
@@ -108,7 +90,7 @@ def _construction(document: dict) -> str:
     return (
         "Finest cells: along a face's side. Fragments: triangles in cells; entries: triangles in depth bins of cells. "
         f"Milliseconds; hierarchies of boxes are built by {note}; x: how many times the rebuild by rasterization.\n\n"
-        + _table(
+        + table(
             [
                 "scene",
                 "triangles",
@@ -133,7 +115,7 @@ def _construction(document: dict) -> str:
 def _nanoseconds(point: dict, rays: dict[str, int]) -> str:
     if "failure" in point:
         return "-"
-    return " / ".join(_number(1e9 * seconds / rays[kind]) for kind, seconds in point["trace_seconds"].items())
+    return " / ".join(number(1e9 * seconds / rays[kind]) for kind, seconds in point["trace_seconds"].items())
 
 
 def _differences(points: list[dict]) -> int:
@@ -152,13 +134,13 @@ def _sweep(document: dict, key: str, head: str) -> str:
                     f"{scene['triangles']:,}",
                     str(point[key] or "automatic"),
                     str(point["finest"]) if good else "-",
-                    _number(_mebibytes(point["memory_bytes"])) if good else "does not fit",
-                    _milliseconds(point.get("rebuild_seconds")),
+                    number(mebibytes(point["memory_bytes"])) if good else "does not fit",
+                    milliseconds(point.get("rebuild_seconds")),
                     _nanoseconds(point, scene["rays"]),
                 ]
             )
     wrong = _differences([point for scene in document["scenes"] for point in scene["points"]])
-    return f"Hits that differ from the hierarchy of boxes: {wrong}.\n\n" + _table(
+    return f"Hits that differ from the hierarchy of boxes: {wrong}.\n\n" + table(
         ["scene", "triangles", head, "finest cells", "memory, MiB", "rebuild, ms",
          "ns per ray: camera / diffuse / photon"],
         lines,
@@ -181,8 +163,8 @@ def _rays(document: dict) -> str:
             ratios.setdefault(kind, []).append((values["ratio"], scene["scene"]))
             wrong += values["differences"]
             line += [
-                _number(values["cubemap_rays_per_second"] / 1e6), _number(values["boxes_rays_per_second"] / 1e6),
-                _number(values["ratio"]),
+                number(values["cubemap_rays_per_second"] / 1e6), number(values["boxes_rays_per_second"] / 1e6),
+                number(values["ratio"]),
             ]  # fmt: skip
         lines.append(line)
     heads = ["scene", "triangles"]
@@ -190,14 +172,14 @@ def _rays(document: dict) -> str:
         heads += [f"{kind}: cubemap", "boxes", "ratio"]
     every = [ratio for kind in ratios.values() for ratio in kind]
     summary = [
-        [kind, _number(geometric_mean([ratio for ratio, _ in values])), f"{_number(min(values)[0])} ({min(values)[1]})"]
+        [kind, number(geometric_mean([ratio for ratio, _ in values])), f"{number(min(values)[0])} ({min(values)[1]})"]
         for kind, values in [*ratios.items(), ("all", every)]
     ]
     return (
         f"Mray/s; ratio: cubemap over boxes, more is better. Hits that differ: {wrong}.\n\n"
-        + _table(["ratio", "geometric mean", "worst"], summary)
+        + table(["ratio", "geometric mean", "worst"], summary)
         + "\n\n"
-        + _table(heads, [line + ["-"] * (len(heads) - len(line)) for line in lines])
+        + table(heads, [line + ["-"] * (len(heads) - len(line)) for line in lines])
     )
 
 
@@ -213,15 +195,15 @@ def _placement(document: dict) -> str:
             if not found:
                 cells.append("-")
             elif len(found) == 1:
-                cells.append(_number(found[0]))
+                cells.append(number(found[0]))
             else:
-                cells.append(f"{_number(min(found))} / {_number(geometric_mean(found))} / {_number(max(found))}")
+                cells.append(f"{number(min(found))} / {number(geometric_mean(found))} / {number(max(found))}")
         lines.append(cells)
     wrong = _differences([point for scene in document["scenes"] for point in scene["places"]])
     return (
         "Trace time relative to the automatic place (least / geometric mean / greatest over the places; geometric "
         f"mean over the kinds of rays); below 1 the automatic place is the slower. Hits that differ: {wrong}.\n\n"
-        + _table(["scene", "triangles", "camera", "middle", "on an emitter", "inside", "outside"], lines)
+        + table(["scene", "triangles", "camera", "middle", "on an emitter", "inside", "outside"], lines)
     )
 
 
@@ -231,4 +213,5 @@ _WRITERS = {
     "bins": _bins,
     "rays": _rays,
     "placement": _placement,
+    **benchmark_estimator_tables.WRITERS,
 }

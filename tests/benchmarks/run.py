@@ -1,6 +1,6 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures the deep cubemap: figures as JSON and PNG, and the tables of docs/benchmarks/README.md.
+"""Measures the deep cubemap and the estimator: figures as JSON and PNG, and the tables of docs/benchmarks/README.md.
 
 Needs moderngl, NumPy and numba. With the bpy module, Blender scenes are exported to out/benchmark_scenes
 first; without it, those that lie there are used. Without Matplotlib only the JSON is written, and
@@ -20,15 +20,8 @@ for folder in (ROOT, ROOT / "tests/gl", ROOT / "tests/benchmarks"):  # the check
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-from benchmark_figures import (  # noqa: E402
-    FIGURES,
-    MEASUREMENTS,
-    QUICK_SCENES,
-    ROUTES,
-    SCENES,
-    can_choose_bins,
-    make_cubemap,
-)
+from benchmark_catalogue import FIGURES, MEASUREMENTS, is_possible, scenes_of  # noqa: E402
+from benchmark_figures import ROUTES, make_cubemap  # noqa: E402
 from benchmark_machine import Clock, describe, slug  # noqa: E402
 from benchmark_scenes import NAMES, SceneStore, Subject, subjects  # noqa: E402
 from benchmark_tables import write_tables  # noqa: E402
@@ -69,16 +62,14 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     return options
 
 
-def wanted_scenes(options: argparse.Namespace) -> dict[str, list[str]]:
+def wanted_scenes(options: argparse.Namespace, is_software: bool) -> dict[str, list[str]]:
     """Figures that can be measured, by scene in their order."""
-    figures = list(dict.fromkeys(options.figures))
-    if "bins" in figures and not can_choose_bins():
-        log.warning("bins is left out: DeepCubemap takes no most_bins")
-        figures.remove("bins")
-    own = QUICK_SCENES if options.quick else SCENES
+    figures = [figure for figure in dict.fromkeys(options.figures) if is_possible(figure)]
     by_scene: dict[str, list[str]] = {}
     for name in NAMES:
-        found = [figure for figure in figures if name in (options.scenes or own[figure])]
+        found = [
+            figure for figure in figures if name in (options.scenes or scenes_of(figure, options.quick, is_software))
+        ]
         if found:
             by_scene[name] = found
     return by_scene
@@ -95,12 +86,12 @@ def warm_up(subject: Subject, clock: Clock) -> None:
 
 def measure(options: argparse.Namespace) -> list[Path]:
     """Measure all that is asked for; returns the JSON files."""
-    by_scene = wanted_scenes(options)
     store = SceneStore(options.scene_folder, options.saved_scenes)
     context = Context.create()
     library = ProgramLibrary(context)
     try:
         clock = Clock(context, options.quick)
+        by_scene = wanted_scenes(options, clock.is_software)
         machine = describe(context, clock, options.commit)
         count = options.rays or (QUICK_RAYS if options.quick else SOFTWARE_RAYS if clock.is_software else HARDWARE_RAYS)
         for subject in subjects(["room_1k"], store, context, library, 1024):
@@ -166,7 +157,7 @@ def main(arguments: list[str] | None = None) -> int:
     log.setLevel(logging.INFO)
     if options.export_only:
         store = SceneStore(options.scene_folder, options.saved_scenes)
-        missing = [name for name in wanted_scenes(options) if store.load(name) is None]
+        missing = [name for name in wanted_scenes(options, is_software=False) if store.load(name) is None]
         return 1 if missing else 0
     if options.plot is not None:
         files = options.plot or sorted(options.output.glob("*/*.json"))

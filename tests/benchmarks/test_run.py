@@ -8,7 +8,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from benchmark_statistics import fit_line, variances
 
 from rppm_addon.integrator.deep_cubemap import DeepCubemap
 
@@ -16,6 +18,8 @@ RUN = Path(__file__).with_name("run.py")
 FIGURES = ["construction", "resolution", "rays", "placement"]
 if "most_bins" in inspect.signature(DeepCubemap.__init__).parameters:
     FIGURES.append("bins")
+ESTIMATOR = {"iterations", "path_lengths", "photon_batches", "resolutions", "splat_radius", "roulette"}
+FIGURES += sorted(ESTIMATOR)
 KINDS = {"camera", "diffuse bounce", "photon"}
 
 
@@ -65,7 +69,7 @@ def test_every_figure_names_machine_and_scene(documents):
 
 
 def test_no_hit_differs(documents):
-    for figure in set(FIGURES) - {"construction"}:
+    for figure in set(FIGURES) - {"construction"} - ESTIMATOR:
         differences = list(numbers_below(documents[figure], "differences"))
         assert len(differences) >= 3, figure
         assert not any(differences), figure
@@ -106,6 +110,83 @@ def test_placement_tries_all_kinds_of_places(documents):
         "automatic", "camera", "middle", "emitter", "inside", "outside",
     }  # fmt: skip
     assert line["places"][0]["place"] == "automatic" and set(line["places"][0]["relative"].values()) == {1.0}
+
+
+def test_stages_add_up_to_the_iterations(documents):
+    stages = {"photon paths", "camera paths", "direct light", "direct splatting", "indirect splatting", "film", "other"}
+    for figure in ESTIMATOR - {"roulette"}:
+        (line,) = documents[figure]["scenes"]
+        assert line["size"][0] * line["size"][1] == pytest.approx(2048, rel=0.05) and line["photons"] == 2048
+        for point in line.get("blocks") or line["points"]:
+            assert stages <= set(point["seconds"])
+            total = sum(point["seconds"].values())
+            assert 0 < total < 10 and all(seconds >= 0 for seconds in point["seconds"].values())
+            # So little work leaves a GPU waiting for the host.
+            if documents[figure]["machine"]["software_driver"]:
+                assert point["seconds"]["other"] < 0.5 * total
+
+
+def test_iterations_cover_the_render_while_radii_shrink(documents):
+    (line,) = documents["iterations"]["scenes"]
+    blocks = line["blocks"]
+    assert [block["first"] for block in blocks] == [1] + [block["last"] + 1 for block in blocks[:-1]]
+    assert blocks[-1]["last"] == line["iterations"]
+    radii = [block["radius"] for block in blocks]
+    assert all(later < earlier for earlier, later in zip(radii, radii[1:]))
+
+
+def test_path_lengths_reach_the_renderer(documents):
+    (line,) = documents["path_lengths"]["scenes"]
+    first, *others = line["points"]
+    assert first["length"] == 1 and first["seconds"]["indirect splatting"] == 0  # there is no second segment
+    assert all(point["seconds"]["indirect splatting"] > 0 for point in others)
+
+
+@pytest.mark.parametrize(("figure", "key"), [("photon_batches", "photons"), ("resolutions", "pixels")])
+def test_lines_go_through_the_points(documents, figure, key):
+    (line,) = documents[figure]["scenes"]
+    fit, x = line["line"], np.array([point[key] for point in line["points"]])
+    seconds = np.array([sum(point["seconds"].values()) for point in line["points"]])
+    error = np.abs(fit["base_seconds"] + fit["slope_seconds"] * x - seconds) / seconds
+    assert error.max() == pytest.approx(fit["greatest_relative_error"], abs=1e-3)
+    if documents[figure]["machine"]["software_driver"]:  # to a GPU such batches and frames are all the same
+        assert fit["slope_seconds"] > 0
+
+
+def test_both_radii_follow_the_factor(documents):
+    (line,) = documents["splat_radius"]["scenes"]
+    for name in ("radius", "wide_radius"):
+        scaled = [point[name] / point["factor"] for point in line["points"]]
+        np.testing.assert_allclose(scaled, scaled[0], rtol=1e-3)
+
+
+def test_roulette_has_times_and_variances(documents):
+    (line,) = documents["roulette"]["scenes"]
+    for stage in ("direct splatting", "indirect splatting"):
+        assert line["seconds_without"][stage] > 0 and line["seconds_with"][stage] > 0
+    assert line["relative_variance"] > 0 and line["iterations_at_equal_time"] >= 1
+    ratio, error = line["variance_ratio"]["with"]
+    assert ratio > 1 and error > 0  # roulette's own noise adds to it
+
+
+def test_a_straight_line_is_found():
+    x = np.array([1.0, 10.0, 100.0, 1000.0])
+    fit = fit_line(x, 3.0 + 0.5 * x)
+    assert fit == pytest.approx({"base_seconds": 3.0, "slope_seconds": 0.5, "greatest_relative_error": 0.0}, abs=1e-9)
+
+
+def test_variance_of_roulette_doubles_that_of_independent_splats():
+    """Poisson numbers of splats, each kept twice or not at all; four times the iterations quarter the variance."""
+    rng = np.random.default_rng(5)
+    counts = rng.poisson(20.0, (8, 5, 60, 50))  # seeds, 1 iteration and then 4 more, rows, columns
+    kept = 2.0 * rng.binomial(counts, 0.5)
+    without, rejecting = (
+        np.stack([values[:, 0], values[:, 1:].mean(axis=1)], axis=1) for values in (counts.astype(float), kept)
+    )
+    variance, same_iterations, same_time = variances(without, rejecting)
+    assert variance == pytest.approx(1 / 20, rel=0.1)
+    for (ratio, error), expected in ((same_iterations, 2.0), (same_time, 0.5)):
+        assert abs(ratio - expected) < 4 * error < 0.2 * expected
 
 
 def test_tables_and_plots_follow_the_json(folder, documents):

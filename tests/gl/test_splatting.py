@@ -66,13 +66,43 @@ def test_direct_splats_are_all_pairs(mapper):
 def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
     """Also with the cubemap's centre on a wall, in a corner and on the planes between its faces."""
     monkeypatch.setattr(splatting, "_CUBE_RESOLUTION", resolution)
-    mapper.build(diffuse_room(camera_path_length=2))
-    if centre is not None:
-        mapper.centre = np.array(centre)
-    mapper.iterate()
     count = 24 * 24
+    gathered = []
+    for segments in (1, 2):  # the sums hold the direct splats, too
+        mapper.build(diffuse_room(camera_path_length=segments))
+        if centre is not None:
+            mapper.centre = np.array(centre)
+        mapper.iterate()
+        gathered.append(mapper._splatting.gathered.read(np.uint64, 3 * count).reshape(-1, 3))
     importons = mapper._importons.importons.read(IMPORTON.dtype, count)  # those seen in the mirror
     expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
-    got = mapper._splatting.gathered.read(np.float32, 3 * count).reshape(-1, 3)
+    got = (gathered[1] - gathered[0]) * mapper._splatting.quantum
     assert (expected > 0).any(axis=1).sum() > 15
     np.testing.assert_allclose(got, expected, rtol=2e-3, atol=2e-4 * expected.max())
+
+
+def gathered_picture(mapper, **settings) -> np.ndarray:
+    mapper.build(diffuse_room(camera_path_length=2, **settings))
+    for _ in range(2):
+        mapper.iterate()
+    return mapper.film.read_radiance()[..., :3].astype(np.float64)
+
+
+@pytest.mark.parametrize("shift", [12, 40])
+def test_sums_do_not_depend_on_what_they_count_in(mapper, monkeypatch, shift):
+    """Coarse quanta round by their share only; fine ones fill the high words."""
+    expected = gathered_picture(mapper)
+    monkeypatch.setattr(splatting, "_PHOTON_QUANTA", 1 << shift)
+    got = gathered_picture(mapper)
+    words = mapper._splatting.gathered.read(np.uint32, 6 * 24 * 24).reshape(-1, 2)
+    assert words[:, 1].any() == (shift == 40)
+    np.testing.assert_allclose(got, expected, rtol=1e-6, atol=2.0 ** -min(shift, 20) * expected.mean())
+
+
+def test_splat_roulette_keeps_the_mean(mapper):
+    """Half of the fragments end and the others count twice: the picture's mean stays, its noise grows."""
+    full = gathered_picture(mapper)
+    halves = [gathered_picture(mapper, splat_roulette=True, seed=0) for _ in range(2)]
+    assert (halves[0] == halves[1]).all()
+    assert (abs(halves[0] - full) > 0.01 * full.mean()).mean() > 0.5
+    assert halves[0].mean() == pytest.approx(full.mean(), rel=0.01)

@@ -21,6 +21,17 @@ def test_software_stages_are_timed_by_the_clock(context):
     assert timers.seconds == {}
 
 
+def test_software_stages_follow_the_clock_that_is_given(context):
+    if not context.is_software:
+        pytest.skip("the device is no software driver")
+    timers = StageTimers(context)
+    timers.clock = iter((1.0, 4.0, 10.0, 10.5)).__next__
+    for _ in range(2):
+        with timers.stage("work"):
+            pass
+    assert timers.seconds == {"work": 3.5}
+
+
 def test_queries_are_used_again(context, monkeypatch):
     monkeypatch.setattr(Context, "is_software", property(lambda self: False))
     timers = StageTimers(context)

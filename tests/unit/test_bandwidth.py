@@ -6,7 +6,15 @@ import math
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.bandwidth import EXPECTED_PHOTONS, radius_in_pixels, radius_limits, shrinkage, wide_radius
+from rppm_addon.integrator.bandwidth import (
+    EXPECTED_PHOTONS,
+    fitted_wide_radius,
+    radius_in_pixels,
+    radius_limits,
+    shrinkage,
+    wide_radius,
+    widest_radius,
+)
 from rppm_addon.scene import Camera, RenderSettings
 
 
@@ -46,4 +54,19 @@ def test_wide_radius_holds_the_expected_photons():
     cube = np.zeros(3), np.full(3, 10.0)
     radius = wide_radius(60000, *cube)
     assert 60000 / 600 * math.pi * radius**2 == pytest.approx(EXPECTED_PHOTONS)
-    assert wide_radius(0, *cube) == pytest.approx(0.05 * math.sqrt(300))
+
+
+def test_fitted_radius_would_find_the_expected_photons():
+    generator = np.random.default_rng(5)
+    density = 900.0  # photons per m^2
+    counts = generator.poisson(density * math.pi * 0.2**2, 4000)
+    assert density * math.pi * fitted_wide_radius(0.2, counts) ** 2 == pytest.approx(EXPECTED_PHOTONS, rel=0.02)
+    sparse = generator.poisson(0.2, 4000)
+    assert fitted_wide_radius(0.2, sparse) == pytest.approx(0.2 * math.sqrt(2 * EXPECTED_PHOTONS / 0.2), rel=0.05)
+    assert fitted_wide_radius(0.2, np.zeros(9)) == math.inf
+
+
+def test_widest_radius_follows_scene_and_view():
+    cube = np.zeros(3), np.full(3, 10.0)
+    assert widest_radius(np.zeros(4), *cube) == pytest.approx(0.05 * math.sqrt(300))
+    assert widest_radius(np.array([0.0, 0.01, 0.02, 0.5, np.inf]), *cube) == pytest.approx(0.2)

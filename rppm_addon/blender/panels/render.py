@@ -76,6 +76,7 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         settings = context.scene.rppm
         column = self.column()
         column.prop(settings, "seed")
+        column.prop(settings, "splat_roulette")
         column.prop(settings, "cubemap_resolution")
         column.prop(settings, "cubemap_centre_object")
 

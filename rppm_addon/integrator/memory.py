@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bytes on the device by group of buffers, and the PPM buffers against the paper's 32 R + 64 M L (section 5.1)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+PPM_BUFFERS = ("film", "gathered radiance", "photons")
+"""Running mean of radiance (16 R), sums of splats (24 bytes a pixel of one band of rows), photons (64 M L)."""
+
+
+@dataclass(frozen=True)
+class Memory:
+    """Bytes on the device of one scene."""
+
+    pixels: int
+    """R: pixels of the region that is rendered."""
+    photons: int
+    """M: photons of an iteration."""
+    segments: int
+    """L: segments of a photon path, the first leaving the light."""
+    ppm: dict[str, int]
+    """Bytes by buffer of what the paper counts."""
+    working: dict[str, dict[str, int]]
+    """Bytes by group and buffer of everything else."""
+
+    @property
+    def ppm_bytes(self) -> int:
+        return sum(self.ppm.values())
+
+    @property
+    def paper_bytes(self) -> int:
+        """What the paper's PPM buffers would take: 32 R + 64 M L."""
+        return 32 * self.pixels + 64 * self.photons * self.segments
+
+    @property
+    def working_bytes(self) -> dict[str, int]:
+        """Sums by group."""
+        return {name: sum(sizes.values()) for name, sizes in self.working.items()}
+
+    @property
+    def total_bytes(self) -> int:
+        return self.ppm_bytes + sum(self.working_bytes.values())
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain values for JSON."""
+        return {
+            "pixels": self.pixels,
+            "photons": self.photons,
+            "segments": self.segments,
+            "ppm": self.ppm,
+            "ppm_bytes": self.ppm_bytes,
+            "paper_bytes": self.paper_bytes,
+            "working": self.working,
+            "working_bytes": self.working_bytes,
+            "total_bytes": self.total_bytes,
+        }
+
+
+def reckon_memory(groups: Mapping[str, Mapping[str, int]], pixels: int, photons: int, segments: int) -> Memory:
+    """Take the PPM buffers out of ``groups``, bytes by group and buffer; what remains is working memory."""
+    everything = {name: size for sizes in groups.values() for name, size in sizes.items()}
+    ppm = {name: everything[name] for name in PPM_BUFFERS if name in everything}
+    working = {
+        group: {name: size for name, size in sizes.items() if name not in ppm} for group, sizes in groups.items()
+    }
+    return Memory(pixels, photons, segments, ppm, {group: sizes for group, sizes in working.items() if sizes})

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""rppm info: the device, and the memory that a scene takes."""
+
+import json
+
+
+def test_the_memory_of_a_saved_scene(tmp_path, rppm, saved_scene):
+    report = tmp_path / "new" / "info.json"
+    status, output, errors = rppm(
+        "info", "--scene", saved_scene, "--resolution", "40x30", "--json", report,
+        "--set", "rppm.photons=2000", "--set", "rppm.photon_path_length=3",
+    )  # fmt: skip
+    assert status == 0, errors
+    told = json.loads(report.read_text())
+    assert told["device"]["name"] in output
+    memory = told["memory"]
+    assert (memory["pixels"], memory["photons"], memory["segments"]) == (1200, 2000, 3)
+    assert memory["ppm"]["film"] == 16 * 1200
+    assert memory["ppm"]["photons"] == 64 * 2000 * 3
+    assert memory["paper_bytes"] == 32 * 1200 + 64 * 2000 * 3
+    assert memory["total_bytes"] == memory["ppm_bytes"] + sum(memory["working_bytes"].values())
+    assert "R = 1,200 pixels (40 x 30), M = 2,000 photons an iteration, L = 3 segments" in output
+    for size in (memory["ppm_bytes"], memory["paper_bytes"], memory["total_bytes"], *memory["working_bytes"].values()):
+        assert f"{size:,}" in output
+
+
+def test_the_memory_of_a_blend_file(tmp_path, rppm, blend_files):
+    status, output, errors = rppm("info", "--scene", blend_files[0], "--json", tmp_path / "info.json")
+    assert status == 0, errors
+    memory = json.loads((tmp_path / "info.json").read_text())["memory"]
+    assert (memory["pixels"], memory["photons"]) == (16 * 12, 1024)
+    assert "32 R + 64 M L" in output
+
+
+def test_options_of_a_scene_need_one(rppm):
+    for options in (("--resolution", "8x8"), ("--set", "rppm.photons=10"), ("--frame", "1")):
+        status, output, errors = rppm("info", *options)
+        assert (status, output) == (1, "") and "--scene" in errors
+
+
+def test_the_device_alone_as_json(tmp_path, rppm):
+    status, _, errors = rppm("info", "--json", tmp_path / "info.json")
+    assert status == 0, errors
+    told = json.loads((tmp_path / "info.json").read_text())
+    assert set(told) == {"blender", "device"} and told["device"]["limits"]

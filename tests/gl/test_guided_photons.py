@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guided photons: any guide leaves the emitted light as it is, and learning sends photons to what is seen."""
+
+import math
+
+import numpy as np
+import pytest
+import scenes
+from test_light_sources import LIGHTS, floor_scene
+
+from rppm_addon.integrator import guide, progressive
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.integrator.records import PHOTON_PATH, RAY
+from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, Scene, World
+
+
+@pytest.fixture
+def mapper(context, library):
+    mapper = ProgressivePhotonMapper(context, library)
+    yield mapper
+    mapper.release()
+
+
+def lit_floor(name: str, aimed: bool) -> Scene:
+    """A floor below one light, and where photons are to be aimed a ball that refracts nothing."""
+    world = World(np.array([1.0, 2.0, 3.0])) if name == "world" else None
+    scene = floor_scene(LIGHTS.get(name), DirectLight.PHOTONS, world)
+    if name == "image":
+        v, u = np.meshgrid((np.arange(16) + 0.5) / 16, (np.arange(32) + 0.5) / 32, indexing="ij")
+        glow = 0.2 + 20 * np.exp(-((u - 0.5) ** 2 + (v - 0.75) ** 2) / 0.02)
+        scene.images = [Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))]
+        scene.world = World(np.ones(3), 0)
+    if name == "mesh":
+        scene.meshes.append(scenes.sphere("lamp", 8, 4))
+        scene.materials.append(Material("lamp", [Lobe(LobeKind.EMISSION, color=(5, 5, 5))]))
+        scene.instances.append(Instance(1, scenes.placed(0, 0, 2, 0.3), [1]))
+    if aimed:
+        scene.materials.append(Material("air", [Lobe(LobeKind.REFRACTION, ior=1.0)]))
+        scene.meshes.append(scenes.sphere("ball"))
+        ball, air = len(scene.meshes) - 1, len(scene.materials) - 1
+        scene.instances.append(Instance(ball, scenes.placed(0.2, 0.1, 0.5, 0.2), [air]))
+    return scene
+
+
+def emitted_moments(mapper, iterations: int) -> np.ndarray:
+    """(iterations, 19) sums of flux, of flux times origin, direction, and both, over the photons of an iteration."""
+    moments = []
+    for iteration in range(iterations):
+        mapper._photons._emit(mapper._stages, iteration)
+        count = mapper._photons.photon_count
+        flux = mapper._photons._paths.read(PHOTON_PATH.dtype, count)["flux"][:, 0].astype(np.float64)
+        rays = mapper._photons._rays.read(RAY.dtype, count)
+        used = flux > 0
+        o, d = rays["origin"][used].astype(np.float64), rays["direction"][used].astype(np.float64)
+        terms = [np.ones((len(o), 1)), o, d, (o[:, :, None] * d[:, None, :]).reshape(-1, 9), d * d]
+        moments.append(flux[used] @ np.concatenate(terms, axis=1))
+    return np.array(moments)
+
+
+@pytest.mark.parametrize("aimed", [False, True])
+@pytest.mark.parametrize("name", [*LIGHTS, "world", "image", "mesh"])
+def test_any_guide_emits_the_same_light(mapper, name, aimed):
+    """Cells chosen at random a hundred times more or less often: the light field's moments stay."""
+    mapper.build(lit_floor(name, aimed))
+    plain = emitted_moments(mapper, 8)
+    count = int(np.prod(mapper._emission._guide._cells[0]))
+    assert len(mapper._emission._guide._cells) == 1 and count >= 1024
+    estimate = 10.0 ** np.random.default_rng(3).uniform(-4, 0, count)
+    mapper._emission._guide._starts.upload(guide.starts(guide.probabilities(estimate)))
+    guided = emitted_moments(mapper, 8)
+    error = np.sqrt((plain.var(axis=0, ddof=1) + guided.var(axis=0, ddof=1)) / 8)
+    difference = guided.mean(axis=0) - plain.mean(axis=0)
+    print(
+        name,
+        aimed,
+        np.round(guided.mean(axis=0)[:7] / plain.mean(axis=0)[0], 4),
+        "worst",
+        abs(difference / error).max(),
+    )
+    assert (error < 0.02 * plain[:, 0].mean() * np.maximum(1.0, abs(plain.mean(axis=0) / plain[:, 0].mean()))).all()
+    assert (abs(difference) < 5 * error + 1e-5 * plain[:, 0].mean()).all()
+
+
+def lit_through_a_hole() -> Scene:
+    """A closed room of side 2 in the sun, with a hole of 2 % of its ceiling: few photons get in."""
+    scene = scenes.room(16, photons=16384, iterations=32, radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0)
+    scene.instances = scene.instances[:5]
+    h = math.sqrt(0.02)
+    corners = [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1), (-h, -h, 1), (h, -h, 1), (h, h, 1), (-h, h, 1)]
+    faces = [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
+    scene.meshes[1] = scenes.polygons("ceiling", np.array(corners), faces)
+    scene.lights = [Light("sun", LightKind.SUN, np.eye(4), np.full(3, 100.0))]
+    front = scenes.rectangle("front", (-1, -1, -1), (-1, -1, 1), (1, -1, 1), (1, -1, -1))
+    scene.meshes.append(front)
+    scene.instances.append(Instance(len(scene.meshes) - 1, np.eye(4), [0]))
+    scene.camera.matrix = scenes.looking((0, -0.9, 0), (0, 1, 0))
+    scene.camera.window = (-1.0, 1.0, -1.0, 1.0)
+    return scene
+
+
+def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
+    """The picture's mean stays, its variance falls, and so does the radius that the diffused photons need."""
+    results = {}
+    for learning in (0, guide.LEARNING_ITERATIONS):
+        monkeypatch.setattr(guide, "LEARNING_ITERATIONS", learning)
+        monkeypatch.setattr(progressive, "LEARNING_ITERATIONS", learning)
+        means, useful = [], 0.0
+        for seed in range(4):
+            scene = lit_through_a_hole()
+            scene.settings.seed = seed
+            mapper.build(scene)
+            for _ in range(32):
+                mapper.iterate()
+            photons = mapper.read_photons()
+            useful += float(((photons["contributed"] != 0) & (photons["flags"] & 1 != 0)).any(axis=0).mean()) / 4
+            means.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
+        results[learning] = np.mean(means), np.std(means, ddof=1) / 2, useful, mapper._wide_radius
+        print(learning, results[learning])
+    (plain, plain_error, plain_useful, plain_radius), (guided, guided_error, useful, radius) = results.values()
+    assert abs(guided - plain) < 4 * math.hypot(plain_error, guided_error) + 0.01 * plain
+    assert useful > 5 * plain_useful
+    assert radius < plain_radius

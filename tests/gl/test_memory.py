@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bytes on the device against the paper's 32 R + 64 M L (section 5.1)."""
+
+import dataclasses
+
+import pytest
+import scenes
+
+from rppm_addon.integrator.gbuffer import MAXIMUM_BAND_PIXELS
+
+SETTINGS = {"photons": 3000, "photon_path_length": 5, "camera_path_length": 2, "iterations": 1}
+
+
+@pytest.mark.parametrize("length", [1, 5])
+def test_photons_take_64_bytes_a_segment(renderer, length):
+    memory = renderer.memory(scenes.room(16, **SETTINGS | {"photon_path_length": length}))
+    assert (memory.pixels, memory.photons, memory.segments) == (256, 3000, length)
+    assert memory.ppm["photons"] == 64 * 3000 * length
+    assert memory.paper_bytes == 32 * 256 + 64 * 3000 * length
+
+
+def test_a_megapixel_takes_no_more_than_in_the_paper(renderer):
+    memory = renderer.memory(scenes.room(1024, **SETTINGS))
+    assert memory.pixels == 1 << 20
+    assert memory.ppm["film"] == 16 << 20
+    assert memory.ppm["gathered radiance"] == 24 * MAXIMUM_BAND_PIXELS
+    assert memory.ppm_bytes - memory.ppm["photons"] <= 32 << 20
+    assert memory.ppm_bytes <= memory.paper_bytes
+
+
+def test_all_buffers_of_a_render_are_reckoned(renderer):
+    """None twice, none forgotten, and the lists as long as the first iteration makes them."""
+    scene = scenes.room(16, **SETTINGS)
+    memory = renderer.memory(scene)
+    told = renderer.render(scene).statistics.memory_bytes
+    groups = [memory.ppm, *memory.working.values()]
+    assert {name: size for sizes in groups for name, size in sizes.items()} == told
+    assert sum(map(len, groups)) == len(told)
+    assert memory.total_bytes == sum(told.values())
+    assert told["stored photons"] > 4 * 3000 * 5 and told["splat jobs"] > 16 * 3000
+
+
+def test_buffers_of_the_camera_have_the_size_of_a_band(renderer):
+    """Twice the rows beyond a band's pixels double the film and nothing else."""
+    scene = scenes.room(16, **SETTINGS | {"photons": 64})
+    wide = dataclasses.replace(scene.camera, width=2048, height=MAXIMUM_BAND_PIXELS // 2048)
+    one = renderer.memory(dataclasses.replace(scene, camera=wide))
+    two = renderer.memory(dataclasses.replace(scene, camera=dataclasses.replace(wide, height=2 * wide.height)))
+    assert two.ppm["film"] == 2 * one.ppm["film"]
+    assert {**two.ppm, "film": 0} == {**one.ppm, "film": 0}
+    assert {**two.working, "passes": 0} == {**one.working, "passes": 0}
