@@ -5,13 +5,19 @@ The kernel 2 (1 - x^2) / pi has second moment 1/6 per axis and squared integral 
 iteration of radius r is biased by r^2 / 12 times the Laplacian, and independent photons of flux f make the variance
 4 f E / (3 pi r^2) of irradiance E. Over N iterations of Eq. 2 the bias falls as N^-(1 - alpha), the variance as
 N^-alpha. All scenes have albedo 1 where the camera looks, straight down on z = 0: radiance is E / pi.
+
+The first iterations guide photons and fit the wide radius to what they find, so predictions take each iteration's
+radius and the flux of its photons as they were; Eq. 2 alone is compared with the limits.
 """
 
 import numpy as np
 import pytest
 import scenes
 from scipy.interpolate import CubicSpline
+from scipy.stats import norm as normal
+from scipy.stats import t as student
 
+from rppm_addon.integrator import bandwidth
 from rppm_addon.integrator.bandwidth import shrinkage
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import PHOTON_DIFFUSED, PHOTON_STORED
@@ -29,7 +35,7 @@ from rppm_addon.scene import (
     Scene,
 )
 
-CHECKPOINTS = (1, 2, 4, 8, 16, 32, 64, 128)
+CHECKPOINTS = (1, 2, 4, 8, 16, 32, 64)
 SLOPE = slice(CHECKPOINTS.index(4), None)
 SECOND_MOMENT, SQUARE_INTEGRAL = 1 / 6, 4 / (3 * np.pi)
 
@@ -75,24 +81,28 @@ def lamp_radiance(distance: np.ndarray) -> np.ndarray:
     return (1 + distance**2) ** -1.5
 
 
-LENS_HEIGHT, LENS_CURVATURE, LENS_INDEX, LENS_HALF = 1.5, 1.0, 1.5, 0.7
+LENS_HEIGHT, LENS_CURVATURE, LENS_INDEX, LENS_HALF, LENS_CELLS = 1.5, 1.0, 1.5, 0.52, 96
 
 
-def lens(photons: int, radius: float, alpha: float = 0.7) -> Scene:
-    """Sun of 1 W/m^2 straight down through one refracting paraboloid; the camera is between it and the floor."""
-    at = np.linspace(-LENS_HALF, LENS_HALF, 129)
+def lens(photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scene:
+    """Sun of 1 W/m^2 straight down through one refracting paraboloid; the camera is between it and the floor.
+
+    The paraboloid's facets darken the caustic by 5e-5, a four-hundredth of the bias that is looked for.
+    """
+    corners = LENS_CELLS + 1
+    at = np.linspace(-LENS_HALF, LENS_HALF, corners)
     x, y = (axis.ravel() for axis in np.meshgrid(at, at))
     positions = np.stack([x, y, LENS_HEIGHT - 0.5 * LENS_CURVATURE * (x**2 + y**2)], 1).astype(np.float32)
     normals = np.stack([LENS_CURVATURE * x, LENS_CURVATURE * y, np.ones_like(x)], 1)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    corner = (np.arange(128)[:, None] * 129 + np.arange(128)).reshape(-1, 1)
-    triangles = (corner + [[0, 1, 130, 0, 130, 129]]).reshape(-1, 3).astype(np.int32)
+    corner = (np.arange(LENS_CELLS)[:, None] * corners + np.arange(LENS_CELLS)).reshape(-1, 1)
+    triangles = (corner + [[0, 1, corners + 1, 0, corners + 1, corners]]).reshape(-1, 3).astype(np.int32)
     vertices, slots = np.arange(len(positions), dtype=np.int32), np.zeros(len(triangles), np.int32)
     sheet = Mesh("lens", positions, vertices, normals.astype(np.float32), triangles, slots)
     glass = Material("glass", [Lobe(LobeKind.REFRACTION, ior=LENS_INDEX)])
     sun = Light("sun", LightKind.SUN, scenes.placed(0, 0, 4), np.ones(3))
     return Scene(
-        camera_down(0.3, 0.08, 8), [floor(1.3), sheet], [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])],
+        camera_down(0.3, 0.08, size), [floor(LENS_HALF), sheet], [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])],
         [scenes.diffuse(1, 1, 1), glass], [sun], settings=settings(photons, radius, alpha, 2),
     )  # fmt: skip
 
@@ -114,20 +124,22 @@ def lens_radiance(distance: np.ndarray) -> np.ndarray:
     return _LENS_ENTRY(distance) * _LENS_ENTRY(distance, 1) / (distance * np.pi)
 
 
-CEILING, SPOT = 0.7, 0.35
+CEILING, SPOT = 0.5, 0.3
 
 
-def bounce(photons: int, bounds: float, alpha: float = 0.7) -> Scene:
+def bounce(photons: int, alpha: float = 0.7) -> Scene:
     """A spot of half angle 45 degrees below a white ceiling shines up: the floor gets what the ceiling scatters.
 
-    ``bounds`` of the floor sets how wide the automatic radius of diffused photons is.
+    The wide radius is a twentieth of the diagonal, 0.28 m, at first, as ``radius_scale`` bounds it no further.
     """
     ceiling = scenes.rectangle("ceiling", (-1, -1, CEILING), (-1, 1, CEILING), (1, 1, CEILING), (1, -1, CEILING))
     up = scenes.looking((0, 0, SPOT), (0, 0, 1))
     light = Light("spot", LightKind.SPOT, up, np.ones(3), spot_angle=np.pi / 2, visible_to_camera=False)
+    options = settings(photons, 0.01, alpha, 2)
+    options.radius_scale = 1000.0
     return Scene(
-        camera_down(0.3, 0.3, 8), [floor(bounds), ceiling], [Instance(i, np.eye(4), [0]) for i in (0, 1)],
-        [scenes.diffuse(1, 1, 1)], [light], settings=settings(photons, 0.01, alpha, 2),
+        camera_down(0.3, 0.3, 8), [floor(2), ceiling], [Instance(i, np.eye(4), [0]) for i in (0, 1)],
+        [scenes.diffuse(1, 1, 1)], [light], settings=options,
     )  # fmt: skip
 
 
@@ -199,9 +211,11 @@ def laplacian(radiance, points: np.ndarray) -> np.ndarray:
     return total / (12 * step**2)
 
 
-def predicted_variance(squares: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """(checkpoints,) variance of the running mean of radiance if photons were independent, mean over pixels."""
-    each = squares / np.pi**2 * SQUARE_INTEGRAL / radii**2
+def predicted_variance(scene: Scene, radiance, squares: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """(checkpoints,) variance of the running mean of radiance if photons were independent, mean over pixels: an
+    iteration's is the mean square of what its photons add, less the square of their mean."""
+    mean_square = (radiance(np.linalg.norm(pixel_points(scene), axis=-1)) ** 2).mean()
+    each = squares / np.pi**2 * SQUARE_INTEGRAL / radii**2 - mean_square / scene.settings.photons
     return np.array([each[:n].sum() / n**2 for n in CHECKPOINTS])
 
 
@@ -210,34 +224,49 @@ def slope(values: np.ndarray) -> float:
     return float(np.polyfit(np.log(CHECKPOINTS[SLOPE]), np.log(values[SLOPE]), 1)[0])
 
 
+def surely(seeds: int) -> float:
+    """Standard errors, themselves estimated from so few seeds, that are as rarely exceeded as 4 known ones are."""
+    return float(student.isf(normal.sf(4), seeds - 1))
+
+
+def resampled(runs: np.ndarray) -> list[np.ndarray]:
+    """Bootstrap: 200 times as many of the runs (seeds, ...), drawn with replacement."""
+    rng = np.random.default_rng(1)
+    return [runs[rng.integers(0, len(runs), len(runs))] for _ in range(200)]
+
+
+def assert_slope(measured: float, deviation: float, expected: float, limit: float) -> None:
+    print(f"slope {measured:.3f} +- {deviation:.3f}, predicted {expected:.3f}, limit {limit:.3f}")
+    assert deviation < 0.1  # enough photons to tell
+    assert abs(measured - expected) < 4 * deviation
+
+
 def variance(means: np.ndarray) -> np.ndarray:
+    """(checkpoints,) over seeds, the pixels' mean."""
     return means.var(axis=0, ddof=1).mean((1, 2))
 
 
 def assert_bias(means: np.ndarray, exact: np.ndarray, bias: np.ndarray, alpha: float) -> None:
-    """The bias measured, as a multiple of the predicted one, is 1 within 4 standard errors of the seeds' mean."""
+    """The bias measured, as a multiple of the predicted one, is 1 within the noise of the seeds' mean."""
     share = ((means - exact) * bias).sum((2, 3)) / (bias**2).sum((1, 2))
     mean, error = share.mean(0), share.std(0, ddof=1) / np.sqrt(len(share))
     size = np.sqrt((bias**2).mean((1, 2))) / exact.mean()
     for n, *row in zip(CHECKPOINTS, size, mean, error, strict=True):
         print("N {:3d}: predicted bias {:.4%} of the radiance; measured over it {:.4f} +- {:.4f}".format(n, *row))
-    slopes = slope(size * mean), slope(size)
-    print("slope of the bias {:.3f}, predicted {:.3f}, limit {:.3f}".format(*slopes, alpha - 1))
-    assert (error < 0.25).all()  # enough photons to tell
-    assert (abs(mean - 1) < 4 * error).all()
+    assert error[-1] < 0.05  # enough photons to tell
+    assert (abs(mean - 1) < surely(len(share)) * error).all()
+    slopes = np.std([slope(size * some.mean(0)) for some in resampled(share)])
+    assert_slope(slope(size * mean), slopes, slope(size), alpha - 1)
 
 
 def assert_variance(means: np.ndarray, expected: np.ndarray, alpha: float) -> None:
     """The variance is that of independent photons at each N, and its slope is theirs, within 4 bootstrap deviations."""
-    rng = np.random.default_rng(1)
-    resampled = [variance(means[rng.integers(0, len(means), len(means))]) for _ in range(200)]
-    measured, deviation = variance(means), np.std(resampled, axis=0)
-    slopes = np.std([slope(values) for values in resampled])
-    ratio, spread = measured / expected, deviation / expected
-    print("variance over that of independent photons", np.round(ratio, 3), "+-", np.round(spread, 3))
-    print(f"slope {slope(measured):.3f} +- {slopes:.3f}, predicted {slope(expected):.3f}, limit {-alpha:.3f}")
+    others = [variance(some) for some in resampled(means)]
+    measured, deviation = variance(means), np.std(others, axis=0)
+    print("variance over that of independent photons", np.round(measured / expected, 3))
+    print("+-", np.round(deviation / expected, 3))
     assert (abs(measured - expected) < 4 * deviation).all()
-    assert abs(slope(measured) - slope(expected)) < 4 * slopes
+    assert_slope(slope(measured), np.std([slope(other) for other in others]), slope(expected), -alpha)
 
 
 @pytest.mark.parametrize("alpha", [0.7, 0.5])
@@ -266,17 +295,19 @@ def test_bias_of_direct_light(mapper, alpha):
 
 
 def test_bias_of_a_caustic(mapper):
-    scene = lens(8192, 0.16)
+    scene = lens(4096, 0.16)
     points = pixel_points(scene)
-    means, _, radii = running_means(mapper, scene, 6)
+    means, _, radii = running_means(mapper, scene, 8)
     bias = predicted_bias(lens_radiance, points, radii)
     assert_bias(means, lens_radiance(np.linalg.norm(points, axis=-1)), bias, 0.7)
 
 
-def test_bias_of_interreflection(mapper):
-    scene = bounce(8192, 6.0)
+def test_bias_of_interreflection(mapper, monkeypatch):
+    """With a wide radius that holds a thousand photons: with eight, noise would hide the bias."""
+    monkeypatch.setattr(bandwidth, "EXPECTED_PHOTONS", 1000)
+    scene = bounce(4096)
     points = pixel_points(scene)
-    means, _, radii = running_means(mapper, scene, 6)
+    means, _, radii = running_means(mapper, scene, 8)
     print("wide radius", radii[0], radii[-1])
     bias = predicted_bias(bounce_radiance, points, radii)
     assert_bias(means, bounce_radiance(np.linalg.norm(points, axis=-1)), bias, 0.7)
@@ -286,32 +317,31 @@ def test_bias_of_interreflection(mapper):
 # many the variance is up to hundreds of times smaller than that of independent photons, and falls more slowly.
 @pytest.mark.parametrize("alpha", [0.7, 0.5])
 def test_variance_of_direct_light(mapper, alpha):
-    means, squares, radii = running_means(mapper, lamp(0.5, 512, 0.06, alpha, 16), 24)
-    assert_variance(means, predicted_variance(squares, radii), alpha)
+    scene = lamp(0.5, 512, 0.06, alpha, 16)
+    means, squares, radii = running_means(mapper, scene, 24)
+    assert_variance(means, predicted_variance(scene, lamp_radiance, squares, radii), alpha)
 
 
 def test_variance_of_a_caustic(mapper):
-    means, squares, radii = running_means(mapper, lens(512, 0.01), 24)
-    assert_variance(means, predicted_variance(squares, radii), 0.7)
+    scene = lens(512, 0.003, size=16)
+    means, squares, radii = running_means(mapper, scene, 24)
+    assert_variance(means, predicted_variance(scene, lens_radiance, squares, radii), 0.7)
 
 
-def test_variance_of_interreflection(mapper):
-    means, squares, radii = running_means(mapper, bounce(2048, 0.8), 16)
-    print("wide radius", radii[0], radii[-1])
-    assert_variance(means, predicted_variance(squares, radii), 0.7)
-
-
-def test_total_error_is_bias_and_noise(mapper):
-    """Mean squared error at each N; its slope lies between twice the bias' and the variance's."""
-    scene = lamp(0.9, 8192, 0.3)
+def test_total_error_of_interreflection(mapper, monkeypatch):
+    """Both: the squared error is the predicted bias' square and the predicted variance, none of them small."""
+    monkeypatch.setattr(bandwidth, "EXPECTED_PHOTONS", 100)
+    scene = bounce(2048)
     points = pixel_points(scene)
     means, squares, radii = running_means(mapper, scene, 16)
-    bias2 = (predicted_bias(lamp_radiance, points, radii) ** 2).mean((1, 2))
-    expected = bias2 + predicted_variance(squares, radii)
-    squared = ((means - lamp_radiance(np.linalg.norm(points, axis=-1))) ** 2).mean((2, 3))
+    print("wide radius", radii[0], radii[-1])
+    noise = predicted_variance(scene, bounce_radiance, squares, radii)
+    assert_variance(means, noise, 0.7)
+    bias2 = (predicted_bias(bounce_radiance, points, radii) ** 2).mean((1, 2))
+    squared = ((means - bounce_radiance(np.linalg.norm(points, axis=-1))) ** 2).mean((2, 3))
     measured, error = squared.mean(0), squared.std(0, ddof=1) / np.sqrt(len(squared))
+    expected = bias2 + noise
     print("squared error over that of theory", np.round(measured / expected, 3), "+-", np.round(error / expected, 3))
     print("share of the bias", np.round(bias2 / expected, 3))
-    print(f"slope {slope(measured):.3f}, predicted {slope(expected):.3f}")
-    assert (abs(measured - expected) < 4 * error).all()
-    assert slope(expected - bias2) < slope(measured) < slope(bias2)
+    assert (bias2 > 0.1 * expected).all() and (noise > 0.1 * expected).all()
+    assert (abs(measured - expected) < surely(len(squared)) * error).all()

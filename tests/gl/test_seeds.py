@@ -10,16 +10,17 @@ from test_convergence import blurred, lamp, lamp_radiance, pixel_points
 
 from rppm_addon.integrator import gbuffer
 from rppm_addon.integrator.gbuffer import filter_offsets
+from rppm_addon.integrator.guide import LEARNING_ITERATIONS
 from rppm_addon.scene import DirectLight, Lobe, LobeKind, Material, Scene
 from rppm_addon.session.renderer import Renderer
 
 
 def busy_room(direct_light: DirectLight, seed: int = 3) -> Scene:
     """Splats onto the camera's view and in a mirror and through glass, of direct, caustic and scattered light, and a
-    glossy wall that stores photons."""
+    glossy wall that stores photons; a few iterations more than those that learn."""
     scene = scenes.room(
-        32, direct_light=direct_light, seed=seed, iterations=3, photons=8192, camera_path_length=4,
-        photon_path_length=4, radius_scale=100.0,
+        32, direct_light=direct_light, seed=seed, iterations=LEARNING_ITERATIONS + 4, photons=2048,
+        camera_path_length=4, photon_path_length=4, radius_scale=100.0,
     )  # fmt: skip
     rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)
     scene.materials[1] = Material("rough", [rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1))])
