@@ -38,6 +38,11 @@ def settings(radius: float, segments: int = 1, **others: object) -> RenderSettin
     )
 
 
+def photons_for(radius: float) -> int:
+    """The fewer the wider kernels are, so that each holds hundreds."""
+    return 4096 if radius > 0.3 else 16384
+
+
 def view(position: tuple, target: tuple, half: float, size: int = 32) -> Camera:
     camera = Camera(scenes.looking(position, target), (-half, half, -half, half), size, size, True)
     camera.clip_start = 1e-5
@@ -80,7 +85,7 @@ def picture(renderer, scene: Scene) -> np.ndarray:
 def test_a_closed_box_with_walls_of_a_millimetre_is_black_outside(renderer, direct_light, mirrored):
     """With both radii a hundred times the walls' thickness; photons of up to eight diffuse bounces."""
     meshes = [box("inside", 0.5, inwards=True), box("outside", 0.501)]
-    options = settings(0.1, 8, direct_light=direct_light, camera_path_length=2)
+    options = settings(0.1, 8, photons=4096, direct_light=direct_light, camera_path_length=2)
     camera = view((2, 1.4, 1.1), (0, 0, 0), 1.0)
     scene = scene_of(camera, meshes, [point_lamp(0.1, -0.1, 0.2)], options)
     scene.materials[0] = scenes.diffuse(0.9, 0.9, 0.9)
@@ -140,10 +145,10 @@ def test_the_kernel_beyond_a_line():
 def test_a_floor_is_darkened_at_its_rim_and_in_corners(renderer, radius, corner):
     """By the share of the kernel that lies beyond the edge: the sum over the floor is 8 / (15 pi) radii wide. In a
     corner the same, as the wall's photons, here none, do not count on the floor nor the floor's on the wall."""
-    meshes = [sheet("floor", (0, -3), (3, 3))]
+    meshes = [sheet("floor", (0, -1.5), (1.5, 1.5))]
     if corner:
-        meshes.append(scenes.rectangle("wall", (0, -3, 0), (0, 3, 0), (0, 3, 2), (0, -3, 2)))
-    options = settings(radius, photons=65536)
+        meshes.append(scenes.rectangle("wall", (0, -1.5, 0), (0, 1.5, 0), (0, 1.5, 1.2), (0, -1.5, 1.2)))
+    options = settings(radius, photons=photons_for(radius))
     camera = view((0.5, 0, 2.5), (0.5, 0, 0), 0.5)
     camera.matrix[:3, :3] = np.eye(3)
     floor = picture(renderer, scene_of(camera, meshes, [sun(0, 0, -1)], options))[..., 0] * math.pi
@@ -176,12 +181,12 @@ def test_faces_that_meet_at_a_shallow_edge(renderer, radius, lit):
     """
     slope = math.radians(30)
     sine, cosine = math.sin(slope), math.cos(slope)
-    ramp = scenes.rectangle("ramp", (0, -3, 0), (3 * cosine, -3, -3 * sine), (3 * cosine, 3, -3 * sine), (0, 3, 0))
+    ramp = scenes.rectangle("ramp", (0, -1, 0), (cosine, -1, -sine), (cosine, 1, -sine), (0, 1, 0))
     light = sun(0, 0, -1) if lit else sun(cosine, 0, -sine)
     camera = view((0.25 * cosine, 0, 3), (0.25 * cosine, 0, 0), 0.25 * cosine)
     camera.matrix[:3, :3] = np.eye(3)
-    meshes = [sheet("floor", (-3, -3), (0, 3)), ramp]
-    options = settings(radius, photons=65536)
+    meshes = [sheet("floor", (-1, -1), (0, 1)), ramp]
+    options = settings(radius, photons=photons_for(radius))
     means = []
     for options.seed in range(4):
         means.append(picture(renderer, scene_of(camera, meshes, [light], options))[..., 0].mean(0) * math.pi / cosine)
@@ -227,7 +232,7 @@ def test_a_ball_is_estimated_as_its_closed_form_tells(renderer, light, radius):
     angle between their normals, r^2 / 12 in the mean. Beyond 0.7 the tolerances cut off more and more.
     """
     ball = scenes.sphere("ball", 128, 64)
-    options = settings(radius)
+    options = settings(radius, photons=16384 if radius < 0.5 else 4096)
     scene = scene_of(view((0, 0, 3), (0, 0, 0), 0.15, 16), [ball], [sun(0, 0, -1)], options)
     truth = 1 / math.pi
     if light == "world":

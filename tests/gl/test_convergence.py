@@ -102,7 +102,7 @@ def lens(photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scen
     glass = Material("glass", [Lobe(LobeKind.REFRACTION, ior=LENS_INDEX)])
     sun = Light("sun", LightKind.SUN, scenes.placed(0, 0, 4), np.ones(3))
     return Scene(
-        camera_down(0.3, 0.08, size), [floor(LENS_HALF), sheet], [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])],
+        camera_down(0.3, 0.08, size), [floor(LENS_HALF), sheet], [Instance(i, np.eye(4), [i]) for i in (0, 1)],
         [scenes.diffuse(1, 1, 1), glass], [sun], settings=settings(photons, radius, alpha, 2),
     )  # fmt: skip
 
@@ -143,7 +143,7 @@ def bounce(photons: int, alpha: float = 0.7) -> Scene:
     )  # fmt: skip
 
 
-def bounce_radiance(distance: np.ndarray) -> np.ndarray:
+def _ceiling_light(distance: np.ndarray) -> np.ndarray:
     """Quadrature over the lit disk of the ceiling: Gauss-Legendre across, even steps around."""
     node, weight = np.polynomial.legendre.leggauss(24)
     high = CEILING - SPOT
@@ -154,6 +154,10 @@ def bounce_radiance(distance: np.ndarray) -> np.ndarray:
     apart2 = aside**2 + across**2 - 2 * aside * across * np.cos(around)[:, None]
     transfer = CEILING**2 / (CEILING**2 + apart2) ** 2
     return (transfer * lit * across * weight).sum((-1, -2)) * (2 * np.pi / 48) / np.pi
+
+
+_DISTANCES = np.linspace(0, 1, 501)
+bounce_radiance = CubicSpline(_DISTANCES, _ceiling_light(_DISTANCES), bc_type="clamped")
 
 
 def pixel_points(scene: Scene) -> np.ndarray:
