@@ -301,7 +301,7 @@ def test_bias_of_direct_light(mapper, alpha):
 def test_bias_of_a_caustic(mapper):
     scene = lens(4096, 0.16)
     points = pixel_points(scene)
-    means, _, radii = running_means(mapper, scene, 8)
+    means, _, radii = running_means(mapper, scene, 6)
     bias = predicted_bias(lens_radiance, points, radii)
     assert_bias(means, lens_radiance(np.linalg.norm(points, axis=-1)), bias, 0.7)
 
