@@ -109,8 +109,9 @@ void main() {
         path.primary_distance = closure.distance;
         path.primary_radius = first_radius(ray.direction, closure.distance, geometric);
     }
-    // Eq. 4, with the limits that shrink as the radius does.
-    float radius = path.primary_radius * path.total_length / max(path.primary_distance, 1e-12);
+    // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
+    float growth = camera.orthographic != 0u ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
+    float radius = path.primary_radius * growth;
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
     // Caustics that gathering rays find are bright and rare: a wide disk makes them less so.
     if (gathered) radius = max(radius, parameters.wide_radius);

@@ -8,7 +8,19 @@ import pytest
 import scenes
 
 from rppm_addon.integrator.records import IMPORTON
-from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, RenderSettings, Scene
+from rppm_addon.scene import (
+    Camera,
+    Image,
+    Instance,
+    Light,
+    LightKind,
+    Lobe,
+    LobeKind,
+    Material,
+    Mesh,
+    RenderSettings,
+    Scene,
+)
 
 SIZE = 24
 TANGENT = 0.4  # of half the vertical aperture
@@ -65,10 +77,150 @@ def test_radii_are_those_of_equations_3_and_4(mapper, orthographic):
         return scale * np.sqrt(4 * half**2 * distance**2 * front**3 / (math.pi * SIZE**2 * facing))
 
     np.testing.assert_allclose(direct["radius"][on_floor], equation_3(to_floor, abs(ray[:, 2]))[on_floor], rtol=2e-3)
-    # In the mirror: Eq. 3 at the mirror, grown with the whole path's length. The mirrored path to the
-    # floor is as long as the straight one to the floor's plane.
-    grown = equation_3(to_mirror, abs(ray[:, 0])) * to_floor / to_mirror
+    # In the mirror: Eq. 3 at the mirror, grown with the whole path's length unless the rays are parallel. The
+    # mirrored path to the floor is as long as the straight one to the floor's plane.
+    grown = equation_3(to_mirror, abs(ray[:, 0])) * (1.0 if orthographic else to_floor / to_mirror)
     np.testing.assert_allclose(mirrored["radius"][on_mirror], grown[on_mirror], rtol=2e-3)
+
+
+class Plane:
+    """A mirror, or where ``index`` (behind over before) is given a refracting surface, or at the end what is hit."""
+
+    def __init__(self, point: tuple, normal: tuple, index: float = 0.0) -> None:
+        self.point, self.index = np.array(point, float), index
+        self.normal = np.array(normal, float) / np.linalg.norm(normal)
+
+    def hit(self, origin: np.ndarray, ray: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Distances (...,) and normals (..., 3) where rays (..., 3) meet it."""
+        distance = ((self.point - origin) @ self.normal) / (ray @ self.normal)
+        return distance, np.broadcast_to(self.normal, ray.shape)
+
+    def rectangle(self, name: str, half: float, flip: bool = False) -> Mesh:
+        aside = np.cross(self.normal, [0.3, 0.9, 0.1])
+        aside *= half / np.linalg.norm(aside)
+        corners = [
+            self.point + a * aside + b * np.cross(self.normal, aside) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        ]
+        return scenes.rectangle(name, *(corners[::-1] if flip else corners))
+
+
+class Ball:
+    """A mirroring sphere."""
+
+    index = 0.0
+
+    def __init__(self, centre: tuple, radius: float) -> None:
+        self.centre, self.radius = np.array(centre, float), radius
+
+    def hit(self, origin: np.ndarray, ray: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        offset = origin - self.centre
+        along = (offset * ray).sum(-1)
+        distance = -along - np.sqrt(along**2 - (offset**2).sum(-1) + self.radius**2)
+        return distance, (offset + distance[..., None] * ray) / self.radius
+
+
+def trace(origin: np.ndarray, ray: np.ndarray, surfaces: list) -> tuple[np.ndarray, list, list]:
+    """Rays along a chain in float64: landing points, and each surface's segment length and cosine, (...,)."""
+    lengths, cosines = [], []
+    for surface in surfaces:
+        distance, normal = surface.hit(origin, ray)
+        origin = origin + distance[..., None] * ray
+        cosine = (ray * normal).sum(-1)
+        lengths.append(distance)
+        cosines.append(abs(cosine))
+        if surface.index:
+            facing = -np.sign(cosine)[..., None] * normal
+            inside = np.sqrt(1 - (1 - cosine**2) / surface.index**2)
+            ray = ray / surface.index + (abs(cosine) / surface.index - inside)[..., None] * facing
+        else:
+            ray = ray - 2 * cosine[..., None] * normal
+    return origin, lengths, cosines
+
+
+def chain_footprints(mapper, surfaces: list, meshes: list, position: tuple, target: tuple, orthographic: bool):
+    """Of all pixels whose path goes along the chain: the landing parallelogram's area by ray differentials and the
+    area pi (r / s_r)^2 that the renderer's radius stands for, m^2, and each surface's segment lengths and cosines."""
+    half = 0.3 if orthographic else 0.05
+    camera = Camera(scenes.looking(position, target), (-half, half, -half, half), SIZE, SIZE, orthographic)
+    materials = [scenes.diffuse(0.5, 0.5, 0.5), Material("mirror", [Lobe(LobeKind.GLOSSY)])]
+    materials.append(Material("glass", [Lobe(LobeKind.REFRACTION, ior=1.5)]))
+    kinds = [0 if surface is surfaces[-1] else 2 if surface.index else 1 for surface in surfaces]
+    settings = RenderSettings(
+        photons=64, filter_width=0.0, radius_minimum=1e-9, radius_maximum=1e9, camera_path_length=len(surfaces)
+    )
+    sun = Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
+    instances = [Instance(index, np.eye(4), [kind]) for index, kind in enumerate(kinds)]
+    mapper.build(Scene(camera, meshes, instances, materials, [sun], settings=settings))
+    mapper.iterate()
+    importons = mapper._importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
+
+    right, up, forward = camera.matrix[:3, 0], camera.matrix[:3, 1], -camera.matrix[:3, 2]
+    step = 2 * half / SIZE
+    x, y = np.meshgrid(*2 * [step * (np.arange(SIZE) + 0.5) - half])
+    # The pixel's centre, and points a tenth of a pixel beside it.
+    x = x.ravel() + step * np.array([0, 0.1, -0.1, 0, 0])[:, None]
+    y = y.ravel() + step * np.array([0, 0, 0, 0.1, -0.1])[:, None]
+    aside = x[..., None] * right + y[..., None] * up
+    if orthographic:
+        origin, ray = camera.matrix[:3, 3] + aside, np.broadcast_to(forward, aside.shape)
+    else:
+        origin, ray = np.broadcast_to(camera.matrix[:3, 3], aside.shape), forward + aside
+        ray = ray / np.linalg.norm(ray, axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore"):  # rays beside the ball
+        landed, lengths, cosines = trace(origin, ray, surfaces)
+    area = np.linalg.norm(np.cross(landed[1] - landed[2], landed[3] - landed[4]), axis=-1) / 0.2**2
+    there = (importons["radius"] > 0) & (np.linalg.norm(importons["position"] - landed[0], axis=-1) < 0.01)
+    assert there.sum() > 50
+    estimated = np.pi * (importons["radius"] / (10.0 * SIZE / 1024)) ** 2
+    return area[there], estimated[there], [a[0, there] for a in lengths], [a[0, there] for a in cosines]
+
+
+GROUND = Plane((0, 0, 0), (0, 0, 1))
+
+
+@pytest.mark.parametrize("orthographic", [False, True])
+def test_planar_mirrors_leave_only_the_cosine_of_the_last_surface(mapper, orthographic):
+    """Eq. 4 keeps the slant of the first surface, and takes it for that of the last."""
+    first = Plane((3, 0, 2), (-1, 0.4, 0.3))
+    away = np.array([-0.6, 0.64, 0.48])  # where the first mirror sends the view's middle
+    down = np.array([0.2, 0.3, -0.93])
+    second = Plane(first.point + 1.5 * away, down / np.linalg.norm(down) - away)
+    surfaces = [first, second, GROUND]
+    meshes = [first.rectangle("first", 0.8), second.rectangle("second", 1.2), GROUND.rectangle("ground", 9)]
+    area, estimated, _, cosines = chain_footprints(mapper, surfaces, meshes, (0, 0, 2), (3, 0, 2), orthographic)
+    np.testing.assert_allclose(estimated * cosines[0] / cosines[-1], area, rtol=2e-3)
+
+
+def test_a_glass_slab_shortens_the_path(mapper):
+    """In glass rays spread more slowly: straight through, a slab of thickness t counts as t / index. Eq. 4 counts t."""
+    entry, exit = Plane((0, 0, 2.5), (0, 0, 1), 1.5), Plane((0, 0, 0.5), (0, 0, 1), 1 / 1.5)
+    meshes = [entry.rectangle("entry", 9), exit.rectangle("exit", 9, flip=True), GROUND.rectangle("ground", 9)]
+    area, estimated, lengths, _ = chain_footprints(
+        mapper, [entry, exit, GROUND], meshes, (0, 0, 4), (0.01, 0, 0), False
+    )
+    before, within, after = lengths
+    neglected = ((before + within / 1.5 + after) / (before + within + after)) ** 2
+    print("slab: true area over that of Eq. 4", (area / estimated).min(), (area / estimated).max())
+    np.testing.assert_allclose(area / estimated, neglected, rtol=5e-3)
+    assert neglected.max() < 0.72  # what Eq. 4 neglects here
+
+
+def test_a_curved_mirror_spreads_more_than_equation_4_tells(mapper):
+    """Coddington's equations: a sphere of radius R adds 2 l0 l1 / R to the spread of l0 + l1, divided by the cosine
+    in the plane of incidence, times the cosine across it."""
+    ball = Ball((3, 0, 2), 0.5)
+    mesh = scenes.sphere("ball", 512, 256)
+    mesh.positions = (mesh.positions * 0.5 + np.array([3, 0, 2])).astype(np.float32)
+    meshes = [mesh, GROUND.rectangle("ground", 9)]
+    area, estimated, lengths, cosines = chain_footprints(mapper, [ball, GROUND], meshes, (0, 0, 2), (3, 0, 1.68), False)
+    (l0, l1), (first, last) = lengths, cosines
+    bent = 2 * l0 * l1 / 0.5
+    spread = (l0 + l1 + bent / first) * (l0 + l1 + bent * first) / (l0 + l1) ** 2
+    ratio = area / (estimated * first / last)
+    print("ball: true area over that of Eq. 4, cosines apart", ratio.min(), ratio.max())
+    # Facets slant up to 0.4 degrees off the sphere, and Eq. 3 takes their cosine.
+    np.testing.assert_allclose(ratio, spread, rtol=0.03)
+    assert ratio.min() > 10
 
 
 def texture(kind: str) -> tuple[Image, np.ndarray]:

@@ -62,15 +62,11 @@ def test_any_guide_emits_the_same_light(mapper, name, aimed):
     guided = emitted_moments(mapper, 8)
     error = np.sqrt((plain.var(axis=0, ddof=1) + guided.var(axis=0, ddof=1)) / 8)
     difference = guided.mean(axis=0) - plain.mean(axis=0)
-    print(
-        name,
-        aimed,
-        np.round(guided.mean(axis=0)[:7] / plain.mean(axis=0)[0], 4),
-        "worst",
-        abs(difference / error).max(),
-    )
+    limit = 5 * error + 1e-5 * plain[:, 0].mean()  # a point light's origin does not vary but for rounding
+    worst = (abs(difference) / limit).max()
+    print(name, aimed, np.round(guided.mean(axis=0)[:7] / plain.mean(axis=0)[0], 4), f"worst {worst:.2f} of its limit")
     assert (error < 0.02 * plain[:, 0].mean() * np.maximum(1.0, abs(plain.mean(axis=0) / plain[:, 0].mean()))).all()
-    assert (abs(difference) < 5 * error + 1e-5 * plain[:, 0].mean()).all()
+    assert worst < 1
 
 
 def lit_through_a_hole() -> Scene:
