@@ -108,7 +108,7 @@ def scene_of(
     settings = RenderSettings(
         iterations=iterations, photons=photons, direct_light=mode, photon_path_length=photon_path_length,
         camera_path_length=camera_path_length, radius_minimum=0.03, radius_maximum=0.03, filter_width=0.0,
-        specular_roughness=CUT,
+        specular_roughness=CUT, final_gather=False,
         radius_scale=100.0,  # bounds the wide radius in pixels, which are few here
     )  # fmt: skip
     return Scene(
@@ -179,7 +179,7 @@ def two_bounces(first: str | float, second: str | float, mode: DirectLight, radi
     splats = not gathered_on_floor or (mode is PHOTONS and first != TRACED)
     if gathered_on_floor:
         scattering_alone = mode is PHOTONS and first == TRACED
-        traced_only(scene, 128 if scattering_alone else 32 if splats else 44, 1024 if splats else 64)
+        traced_only(scene, 192 if scattering_alone else 32 if splats else 44, 1024 if splats else 64)
     origin, directions = quadrature.camera_rays(scene.camera)
     points = WALL.hit(origin, directions)
     scatters = scattering(first), scattering(second)

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether the photon mapper's mean over independent seeds is what quadrature says a class of light paths shows."""
 
+import dataclasses
 import zlib
 from pathlib import Path
 
 import numpy as np
+import pytest
 from parity.comparison import write_pair
-from path_classes import Case
+from path_classes import Case, traced_only
 
+from rppm_addon.integrator import final_gather, importons
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import Scene
+from rppm_addon.scene import DirectLight, Scene
 
 BLOCKS, SEEDS = 3, 6
 """Blocks along a side, independent seeds."""
@@ -57,11 +60,11 @@ def block_errors(by_seed: np.ndarray, level: np.ndarray) -> np.ndarray:
     """(BLOCKS, BLOCKS) standard errors of the mean over seeds of block means (seeds, BLOCKS, BLOCKS).
 
     The variance goes with the level, as that of counted photons does; what goes beyond is common to all blocks, for
-    few seeds tell little of a single one.
+    few seeds tell little of a single one, unless it is noisier than that.
     """
     variance = by_seed.var(axis=0, ddof=1)
     level = np.maximum(level, 0.1 * level.mean())
-    return np.sqrt(level * np.mean(variance / level) / len(by_seed))
+    return np.sqrt(np.maximum(level * np.mean(variance / level), variance) / len(by_seed))
 
 
 def judge(name: str, pictures: np.ndarray, right: np.ndarray) -> None:
@@ -88,9 +91,26 @@ def judge(name: str, pictures: np.ndarray, right: np.ndarray) -> None:
     assert (np.abs(difference) <= allowed).all()
 
 
+def gathering(case: Case, monkeypatch: pytest.MonkeyPatch, found: bool) -> Case:
+    """The case with final gather, nothing shared; ``found``: its last surface gets its light by the gathering ray."""
+    for module in (final_gather, importons):
+        monkeypatch.setattr(module, "SHARED_RADIUS", 0.0)
+    settings = case.scene.settings
+    changed = settings.with_values(final_gather=True, camera_path_length=settings.camera_path_length + 1)
+    scene = dataclasses.replace(case.scene, settings=changed)
+    if found:  # seldom: what the rays look for is small
+        traced_only(scene, 64, 64 if settings.direct_light is DirectLight.RAYS else 2048)
+        scene.settings.radius_scale = 10.0  # photons where the rays end have disks of a few centimetres
+    return dataclasses.replace(case, scene=scene, gathers=None if found else case.gathers)
+
+
 def compare(mapper: ProgressivePhotonMapper, name: str, case: Case) -> None:
     """Render a class, whose name tells its seeds, so that no two share their noise, and judge it."""
     first = zlib.crc32(name.encode()) & 0xFFFFFFF
     renders = [render(mapper, case.scene, first + k) for k in range(SEEDS)]
     square = np.mean([square for _, square in renders], axis=0)
-    judge(name, np.array([picture for picture, _ in renders]), gathered(case, square))
+    right = gathered(case, square)
+    pictures = np.array([picture for picture, _ in renders])
+    finer = pictures.shape[1] // len(right)  # what is smooth across a pixel is as bright at its parts
+    pictures = pictures.reshape(SEEDS, len(right), finer, len(right), finer, 3).mean(axis=(2, 4))
+    judge(name, pictures, right)

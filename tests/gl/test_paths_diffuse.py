@@ -27,7 +27,7 @@ from path_classes import (
     two_bounces,
     view,
 )
-from path_comparison import compare
+from path_comparison import compare, gathering
 from path_quadrature import Plane
 
 from rppm_addon.scene import DirectLight, Instance, Material
@@ -39,6 +39,8 @@ CLASSES: dict[str, Build] = {
     "LSSDE": lambda mode: two_mirrors(mode),
     "LDSE": lambda mode: then_mirror(mode),
 }
+FOUND = {"LDDE"}
+"""Where the last surface gets indirect light: from one that stores photons."""
 
 
 def two_mirrors(mode: DirectLight) -> Case:
@@ -78,3 +80,10 @@ def then_mirror(mode: DirectLight) -> Case:
 @pytest.mark.parametrize("name", CLASSES)
 def test_diffuse_paths_are_rendered_once(mapper, name, mode):
     compare(mapper, f"{name} {mode.value}", CLASSES[name](mode))
+
+
+@pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.value)
+@pytest.mark.parametrize("name", CLASSES)
+def test_diffuse_paths_are_gathered_once(mapper, monkeypatch, name, mode):
+    case = gathering(CLASSES[name](mode), monkeypatch, name in FOUND)
+    compare(mapper, f"{name} gathered {mode.value}", case)

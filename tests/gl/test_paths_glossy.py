@@ -33,7 +33,7 @@ from path_classes import (
     two_bounces,
     view,
 )
-from path_comparison import compare
+from path_comparison import compare, gathering
 from path_quadrature import Spot
 
 from rppm_addon.scene import DirectLight
@@ -55,6 +55,8 @@ CLASSES: dict[str, Build] = {
     "LGGE stored traced": lambda mode: two_bounces(STORED, TRACED, mode, EXTENT),
     "LGGE stored stored": lambda mode: two_bounces(STORED, STORED, mode, EXTENT),
 }
+FOUND = {"LGDE stored", "LDGE stored", "LGDGE stored", "LGGE stored stored"}
+"""Where the last surface gets indirect light: from one that stores photons."""
 WITHOUT_EXTENT: dict[str, Build] = {
     "LGE point": lambda mode: straight(TRACED, mode),
     "LGGE point": lambda mode: two_bounces(TRACED, TRACED, mode),
@@ -107,3 +109,10 @@ def test_glossy_paths_are_rendered_once(mapper, name, mode):
 @pytest.mark.parametrize("name", WITHOUT_EXTENT)
 def test_a_light_without_extent_is_found_by_rays(mapper, name):
     compare(mapper, name, WITHOUT_EXTENT[name](RAYS))
+
+
+@pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.value)
+@pytest.mark.parametrize("name", CLASSES)
+def test_glossy_paths_are_gathered_once(mapper, monkeypatch, name, mode):
+    case = gathering(CLASSES[name](mode), monkeypatch, name in FOUND)
+    compare(mapper, f"{name} gathered {mode.value}", case)

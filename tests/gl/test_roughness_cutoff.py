@@ -150,7 +150,7 @@ def swept_sheet(path: str, kind: LobeKind, mode: DirectLight, roughness: float, 
     settings = RenderSettings(
         iterations=32 if alone else 8, photons=64 if alone else 4096 if path == "LGDE" else 16384,
         direct_light=mode, photon_path_length=3, camera_path_length=3,
-        radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0, specular_roughness=cut,
+        radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0, specular_roughness=cut, final_gather=False,
     )  # fmt: skip
     materials = [Material("sheet", [lobe]), scenes.diffuse(0.8, 0.8, 0.8)]
     meshes, instances = [sheet], [Instance(0, np.eye(4), [0])]

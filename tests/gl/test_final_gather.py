@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What gathering rays find is shared among pixels without a change of its mean."""
+
+import numpy as np
+import scenes
+
+from rppm_addon.integrator import final_gather, importons
+from rppm_addon.integrator.records import GATHERING_VERTEX
+from rppm_addon.scene import Lobe, LobeKind, Material
+
+SIZE, SEEDS = 48, 8
+
+
+def indirect_pictures(mapper, monkeypatch, radius: float) -> np.ndarray:
+    """(SEEDS, SIZE, SIZE) radiance of a diffuse room, shared within so many Eq. 3 radii."""
+    for module in (final_gather, importons):
+        monkeypatch.setattr(module, "SHARED_RADIUS", radius)
+    pictures = []
+    for seed in range(SEEDS):
+        scene = scenes.room(SIZE, iterations=4, photons=2048, seed=seed, radius_scale=60.0, filter_width=0.0)
+        scene.instances = scene.instances[:5]
+        mapper.build(scene)
+        for _ in range(scene.settings.iterations):
+            mapper.iterate()
+        pictures.append(mapper.film.read_radiance()[..., :3].mean(axis=-1, dtype=np.float64))
+    return np.array(pictures)
+
+
+def test_sharing_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
+    """Blocks keep their means within 4 standard errors and 0.5 %: shared light is that of a disk around."""
+    alone = indirect_pictures(mapper, monkeypatch, 0.0)
+    shared = indirect_pictures(mapper, monkeypatch, 2.0)
+    assert shared.var(axis=0, ddof=1).mean() < 0.5 * alone.var(axis=0, ddof=1).mean()
+    by_block = (shared - alone).reshape(SEEDS, 4, SIZE // 4, 4, SIZE // 4).mean(axis=(2, 4))
+    level = alone.mean()
+    error = by_block.std(axis=0, ddof=1) / np.sqrt(SEEDS)
+    print(np.round(by_block.mean(axis=0) / level, 4), np.round(error / level, 4))
+    assert error.mean() < 0.01 * level
+    # The t distribution of few seeds.
+    assert (abs(by_block.mean(axis=0)) < 8.5 * error + 0.005 * level).all()
+    assert abs(by_block.mean()) < 4 * by_block.mean(axis=(1, 2)).std(ddof=1) / np.sqrt(SEEDS) + 0.005 * level
+
+
+def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
+    scene = scenes.room(SIZE, photons=64)
+    scene.materials.append(Material("rough", [Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=0.8)]))
+    scene.instances[0].materials = [len(scene.materials) - 1]
+    mapper.build(scene)
+    mapper.iterate()
+    vertices = mapper._final_gather.vertices.read(GATHERING_VERTEX.dtype, SIZE * SIZE)
+    assert (vertices["radius"] == 0).sum() > 50
+    assert (vertices["radius"] > 0).sum() > 500
+    assert (vertices["weight"][vertices["radius"] >= 0] >= 0).all()
