@@ -9,7 +9,9 @@ from ..scene.camera import Camera
 from ..scene.settings import RenderSettings
 
 _REFERENCE_PIXELS = 1 << 20
-EXPECTED_PHOTONS = 8
+EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 4
+"""Diffused photons in the wide radius: where the camera looks, and at the ends of gathering rays, which are many."""
+_MOST_CAUSTIC_RADII = 3.0
 
 
 def shrinkage(iteration: int, alpha: float) -> float:
@@ -23,26 +25,26 @@ def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
     return settings.radius_scale * math.sqrt(camera.width * camera.height / _REFERENCE_PIXELS)
 
 
-def wide_radius(diffused_photons: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
+def wide_radius(diffused_photons: int, expected: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
     """Radius of the first iteration for photons that a diffuse surface has scattered, metres.
 
     Such light varies slowly, and its photons are spread over all of the scene: the disk holds
-    EXPECTED_PHOTONS of them where they lie evenly on surfaces as large as the bounds' six sides. Once photons
+    the ``expected`` number of them where they lie evenly on surfaces as large as the bounds' six sides. Once photons
     have been seen, fitted_wide_radius follows them.
     """
     x, y, z = bounds_high - bounds_low
     area = 2.0 * (x * y + y * z + z * x)
-    return math.sqrt(EXPECTED_PHOTONS * area / (math.pi * max(diffused_photons, 1)))
+    return math.sqrt(expected * area / (math.pi * max(diffused_photons, 1)))
 
 
-def fitted_wide_radius(radius: float, counts: np.ndarray) -> float:
-    """The radius, metres, with which half of the view would find EXPECTED_PHOTONS or more; infinite if none are found.
+def fitted_wide_radius(radius: float, expected: int, counts: np.ndarray) -> float:
+    """The radius, metres, with which half of the view would find ``expected`` photons or more.
 
-    ``counts`` (n,) are those that pixels with an importon found with ``radius``. Where half of the view finds next
-    to none, the mean tells more than the median.
+    Infinite if none are found. ``counts`` (n,) are those that pixels with an importon found with ``radius``. Where half
+    of the view finds next to none, the mean tells more than the median.
     """
     found = max(float(np.median(counts)), 0.5 * float(np.mean(counts))) if len(counts) else 0.0
-    return radius * math.sqrt(EXPECTED_PHOTONS / found) if found > 0 else math.inf
+    return radius * math.sqrt(expected / found) if found > 0 else math.inf
 
 
 def widest_radius(footprints: np.ndarray, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
@@ -54,6 +56,14 @@ def widest_radius(footprints: np.ndarray, bounds_low: np.ndarray, bounds_high: n
     widest = 0.05 * float(np.linalg.norm(bounds_high - bounds_low))
     seen = _seen(footprints)
     return min(widest, 10.0 * float(np.median(seen))) if len(seen) else widest
+
+
+def radius_by_ray(narrow: float, wide: float) -> float:
+    """Radius, metres, for caustics at the ends of gathering rays, from r_max and the wide radius.
+
+    They are bright and rare there, which a wider disk makes them less.
+    """
+    return min(max(narrow, wide), _MOST_CAUSTIC_RADII * narrow)
 
 
 def _seen(footprints: np.ndarray) -> np.ndarray:

@@ -28,7 +28,7 @@ Record(
     shrinkage="float",
     radius_minimum="float",
     radius_maximum="float",
-    wide_radius="float",
+    radius_by_ray="float",
     shared_radius="float",
 )
 
@@ -94,7 +94,7 @@ class Importons:
         radius_scale: float,
         shrinkage: float,
         limits: tuple[float, float],
-        wide_radius: float,
+        radius_by_ray: float,
         vertices: moderngl.Buffer,
     ) -> None:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
@@ -126,7 +126,7 @@ class Importons:
                 "shrinkage": shrinkage,
                 "radius_minimum": limits[0],
                 "radius_maximum": limits[1],
-                "wide_radius": wide_radius,
+                "radius_by_ray": radius_by_ray,
                 "shared_radius": SHARED_RADIUS,
             },
         )

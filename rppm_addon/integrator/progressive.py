@@ -13,7 +13,17 @@ from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
-from .bandwidth import fitted_wide_radius, radius_in_pixels, radius_limits, shrinkage, wide_radius, widest_radius
+from .bandwidth import (
+    EXPECTED_BY_RAY,
+    EXPECTED_PHOTONS,
+    fitted_wide_radius,
+    radius_by_ray,
+    radius_in_pixels,
+    radius_limits,
+    shrinkage,
+    wide_radius,
+    widest_radius,
+)
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
@@ -143,6 +153,10 @@ class ProgressivePhotonMapper:
         return self.scene.settings.final_gather and self.scene.settings.camera_path_length > 1
 
     @property
+    def _expected(self) -> int:
+        return EXPECTED_BY_RAY if self._gathers else EXPECTED_PHOTONS
+
+    @property
     def splat_radii(self) -> tuple[float, float]:
         """r_max of the current iteration and the wide radius of diffused photons, metres."""
         return self._limits[1] * self._shrinkage, self._wide_radius * self._shrinkage
@@ -233,7 +247,9 @@ class ProgressivePhotonMapper:
                 self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, first
             )
         if self.iteration == 1:
-            spread = wide_radius(self._splatting.diffused_count, self._geometry.bounds_low, self._geometry.bounds_high)
+            spread = wide_radius(
+                self._splatting.diffused_count, self._expected, self._geometry.bounds_low, self._geometry.bounds_high
+            )
             self._wide_radius = min(spread, self._widest_radius)
         self._splatting.count_in(
             radiance_quantum(self._emission.photon_flux, max(self.splat_radii)),
@@ -249,7 +265,7 @@ class ProgressivePhotonMapper:
             shrunk = self._wide_radius * shrinkage(before, self.scene.settings.alpha)
             counts = np.concatenate(self._diffused_photons)[self._leaves_importon]
             # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, counts) / math.sqrt(min(gain, 4.0))
+            fitted = fitted_wide_radius(shrunk, self._expected, counts) / math.sqrt(min(gain, 4.0))
             self._wide_radius = min(fitted, self._widest_radius)
             self._diffused_photons = []
 
@@ -297,7 +313,7 @@ class ProgressivePhotonMapper:
                 self._radius_scale,
                 shrink,
                 limits,
-                self._wide_radius * shrink,
+                radius_by_ray(limits[1], self._wide_radius) * shrink,
                 self._final_gather.vertices.buffer,
             )
 
@@ -335,7 +351,7 @@ class ProgressivePhotonMapper:
                 self._importons.importons.buffer,
                 self._count,
                 self.centre,
-                (max(narrow, wide) if self._gathers else narrow, wide),
+                (radius_by_ray(narrow, wide) if self._gathers else narrow, wide),
             )
 
     def _share_gathered_light(self) -> None:

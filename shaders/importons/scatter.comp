@@ -113,8 +113,7 @@ void main() {
     float growth = camera.orthographic != 0u ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
     float radius = path.primary_radius * growth;
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
-    // Caustics that gathering rays find are bright and rare: a wide disk makes them less so.
-    if (gathered) radius = max(radius, parameters.wide_radius);
+    if (gathered) radius = max(radius, parameters.radius_by_ray);
 
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_IMPORTONS << 24u));

@@ -52,7 +52,7 @@ def test_limits_follow_the_view_and_the_user():
 
 def test_wide_radius_holds_the_expected_photons():
     cube = np.zeros(3), np.full(3, 10.0)
-    radius = wide_radius(60000, *cube)
+    radius = wide_radius(60000, EXPECTED_PHOTONS, *cube)
     assert 60000 / 600 * math.pi * radius**2 == pytest.approx(EXPECTED_PHOTONS)
 
 
@@ -60,10 +60,12 @@ def test_fitted_radius_would_find_the_expected_photons():
     generator = np.random.default_rng(5)
     density = 900.0  # photons per m^2
     counts = generator.poisson(density * math.pi * 0.2**2, 4000)
-    assert density * math.pi * fitted_wide_radius(0.2, counts) ** 2 == pytest.approx(EXPECTED_PHOTONS, rel=0.02)
+    fitted = fitted_wide_radius(0.2, EXPECTED_PHOTONS, counts)
+    assert density * math.pi * fitted**2 == pytest.approx(EXPECTED_PHOTONS, rel=0.02)
     sparse = generator.poisson(0.2, 4000)
-    assert fitted_wide_radius(0.2, sparse) == pytest.approx(0.2 * math.sqrt(2 * EXPECTED_PHOTONS / 0.2), rel=0.05)
-    assert fitted_wide_radius(0.2, np.zeros(9)) == math.inf
+    fitted = fitted_wide_radius(0.2, EXPECTED_PHOTONS, sparse)
+    assert fitted == pytest.approx(0.2 * math.sqrt(2 * EXPECTED_PHOTONS / 0.2), rel=0.05)
+    assert fitted_wide_radius(0.2, EXPECTED_PHOTONS, np.zeros(9)) == math.inf
 
 
 def test_widest_radius_follows_scene_and_view():
