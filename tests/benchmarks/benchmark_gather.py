@@ -14,7 +14,8 @@ BLOCKS = (1, 4, 16)
 def final_gather(subject: Subject, clock: Clock, quick: bool) -> dict:
     """Relative error by block against iterations and seconds, with and without final gather.
 
-    The reference is a long render of another seed with final gather, whose photons' radii matter least.
+    The reference is a long render of another seed with final gather, whose photons' radii matter least. As a gathering
+    ray is one more bounce, photon paths without it are longer by one.
     """
     scale = scale_of(clock, quick)
     with Rendering(subject, clock, scale) as rendering:
@@ -25,7 +26,8 @@ def final_gather(subject: Subject, clock: Clock, quick: bool) -> dict:
         curves = {}
         longest = 0.0
         for gathers in (True, False):
-            rendering.start(final_gather=gathers)
+            length = rendering.description["photon_path_length"] + (0 if gathers else 1)
+            rendering.start(final_gather=gathers, photon_path_length=length)
             seconds, curve = 0.0, []
             while rendering.mapper.iteration < scale.reference_iterations // 4 if gathers else seconds < longest:
                 seconds += sum(rendering.iterate().values())
