@@ -24,6 +24,7 @@ Record(
     first_pixel="uint",
     taps="uint",
     radius_in_pixels="float",
+    shared_radius="float",
     seed="uint",
     iteration="uint",
 )
@@ -85,6 +86,7 @@ class FinalGather:
                 "first_pixel": first_pixel,
                 "taps": min(_MOST_TAPS, math.ceil(math.pi * radius**2)) if radius >= 0.5 else 0,
                 "radius_in_pixels": radius,
+                "shared_radius": SHARED_RADIUS,
                 "seed": seed,
                 "iteration": iteration,
             },

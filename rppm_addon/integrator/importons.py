@@ -10,7 +10,6 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..scene.settings import DirectLight
 from .emission import LIGHT_PARAMETERS
-from .final_gather import SHARED_RADIUS
 from .records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
 from .stages import Stages
 
@@ -29,7 +28,6 @@ Record(
     radius_minimum="float",
     radius_maximum="float",
     radius_by_ray="float",
-    shared_radius="float",
 )
 
 
@@ -127,7 +125,6 @@ class Importons:
                 "radius_minimum": limits[0],
                 "radius_maximum": limits[1],
                 "radius_by_ray": radius_by_ray,
-                "shared_radius": SHARED_RADIUS,
             },
         )
 

@@ -288,7 +288,8 @@ class ProgressivePhotonMapper:
         with self.timers.stage("gbuffer"):
             self._importons.begin()
             self._splatting.begin()
-            self._final_gather.begin()
+            if self._gathers:
+                self._final_gather.begin()
             self._begin_band(view, first_row)
 
     def _trace_importons(self, segment: int) -> None:

@@ -126,11 +126,14 @@ IMPORTON = Record(
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
 the path's throughput. ``direction`` points back to the viewer; ``next`` links lists of the splat
-cubemap; ``gathers`` is one of the values of shaders/common/importon.glsl."""
+cubemap; ``gathers`` is one of the values below."""
+
+GATHERS_ALL, GATHERS_BY_RAY, GATHERED_BY_RAY = range(3)
+"""What importons gather, as in shaders/common/gathering.glsl."""
 
 GATHERING_VERTEX = Record("GatheringVertex", position="vec3", radius="float", weight="vec3", normal="uint")
-"""Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. What the ray
-finds is shared within ``radius``, metres; 0 is not shared, less than 0 marks none."""
+"""Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
+the importon's, metres; 0 where what the ray finds is not shared, less than 0 marks none."""
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 """Kinds of lights, as in shaders/emission/lights.glsl."""

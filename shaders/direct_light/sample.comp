@@ -35,9 +35,10 @@ uint choose_light(float u) {
 vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, vec3 shading, vec3 wo, vec3 wi, float light_density) {
     vec3 value = dot(shading, wi) > 0.0 ? closure.diffuse / PI : vec3(0.0);
     float cosine = clamp(dot(shading, wo), 0.0, 1.0);
-    vec4 shares = specular_shares(closure, throughput, cosine, parameters.specular_alpha);
+    vec4 shares = camera_path_shares(closure, throughput, cosine, parameters.specular_alpha, false);
     float total = sum(shares);
-    if (parameters.final_gather != 0u && !gathered) total += sum(stored_shares(closure, throughput, cosine, parameters.specular_alpha));
+    if (parameters.final_gather != 0u && !gathered)
+        total += sum(camera_path_shares(closure, throughput, cosine, parameters.specular_alpha, true));
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (!lobe_stores(lobe, gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha))) continue;

@@ -59,6 +59,12 @@ uint search_emissive_triangle(float u) {
     return low;
 }
 
+void triangle_corners(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
+    v0 = triangle_vertices[3u * triangle].xyz;
+    v1 = triangle_vertices[3u * triangle + 1u].xyz;
+    v2 = triangle_vertices[3u * triangle + 2u].xyz;
+}
+
 // Probability of choosing a triangle among the emissive ones.
 float emissive_triangle_share(uint index) {
     return emissive_triangles[index].cumulated - (index == 0u ? 0.0 : emissive_triangles[index - 1u].cumulated);
@@ -70,9 +76,8 @@ struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance;
 TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
     uint index = search_emissive_triangle(u_triangle);
     EmissiveTriangle emissive = emissive_triangles[index];
-    vec3 v0 = triangle_vertices[3u * emissive.triangle].xyz;
-    vec3 v1 = triangle_vertices[3u * emissive.triangle + 1u].xyz;
-    vec3 v2 = triangle_vertices[3u * emissive.triangle + 2u].xyz;
+    vec3 v0, v1, v2;
+    triangle_corners(emissive.triangle, v0, v1, v2);
     float root = sqrt(u.x);
     vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
     return TrianglePoint(position, normalize(cross(v1 - v0, v2 - v0)), emissive.triangle, emissive.radiance,
@@ -208,9 +213,8 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
     if (light.kind == LIGHT_MESH) {
         uint index = search_emissive_triangle(u_choice);
         EmissiveTriangle emissive = emissive_triangles[index];
-        vec3 v0 = triangle_vertices[3u * emissive.triangle].xyz;
-        vec3 v1 = triangle_vertices[3u * emissive.triangle + 1u].xyz;
-        vec3 v2 = triangle_vertices[3u * emissive.triangle + 2u].xyz;
+        vec3 v0, v1, v2;
+        triangle_corners(emissive.triangle, v0, v1, v2);
         float solid_angle = triangle_solid_angle(point, v0, v1, v2);
         if (solid_angle <= 0.0) return result;
         to_light = sample_spherical_triangle(point, v0, v1, v2, solid_angle, u);
@@ -240,9 +244,8 @@ float scattered_share(float scatter_density, float light_density) {
 // Density in 1/sr with which sample_light gives a direction from the point to a triangle of emissive meshes
 // whose material emits so much, the choice of the meshes included.
 float emissive_triangle_density(vec3 point, uint triangle, float emitted) {
-    vec3 v0 = triangle_vertices[3u * triangle].xyz;
-    vec3 v1 = triangle_vertices[3u * triangle + 1u].xyz;
-    vec3 v2 = triangle_vertices[3u * triangle + 2u].xyz;
+    vec3 v0, v1, v2;
+    triangle_corners(triangle, v0, v1, v2);
     float area = 0.5 * length(cross(v1 - v0, v2 - v0)), solid_angle = triangle_solid_angle(point, v0, v1, v2);
     return solid_angle > 0.0 ? parameters.mesh_density * emitted * area / solid_angle : 0.0;
 }

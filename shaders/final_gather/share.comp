@@ -23,9 +23,10 @@ void main() {
     if (index >= parameters.count) return;
     GatheringVertex vertex = gathering_vertices[index];
     if (vertex.radius < 0.0) return;
+    float radius = parameters.shared_radius * vertex.radius;
     vec3 sum = found_radiances[index].rgb, normal = unpack_unit_vector(vertex.normal);
     float total = 1.0;
-    uint taps = vertex.radius > 0.0 ? parameters.taps : 0u;
+    uint taps = radius > 0.0 ? parameters.taps : 0u;
     vec4 turn = progressive_random(parameters.seed, parameters.iteration, STAGE_GATHERING, 0u, parameters.first_pixel + index);
     ivec2 size = ivec2(parameters.width, parameters.count / parameters.width);
     ivec2 pixel = ivec2(index % parameters.width, index / parameters.width);
@@ -38,8 +39,8 @@ void main() {
         GatheringVertex other = gathering_vertices[other_index];
         if (!(other.radius > 0.0)) continue;
         vec3 apart = other.position - vertex.position;
-        float distance2 = dot(apart, apart) / (vertex.radius * vertex.radius);
-        if (distance2 >= 1.0 || abs(dot(apart, normal)) > PLANE_TOLERANCE * vertex.radius) continue;
+        float distance2 = dot(apart, apart) / (radius * radius);
+        if (distance2 >= 1.0 || abs(dot(apart, normal)) > PLANE_TOLERANCE * radius) continue;
         if (dot(normal, unpack_unit_vector(other.normal)) < NORMAL_TOLERANCE) continue;
         float share = 1.0 - distance2;
         sum += share * found_radiances[other_index].rgb;

@@ -124,8 +124,9 @@ void main() {
 
     if (parameters.last_segment != 0u) return;
     float cosine = clamp(dot(shading, viewer), 0.0, 1.0);
-    vec4 shares = specular_shares(closure, path.throughput, cosine, parameters.specular_alpha);
-    vec4 gathering_shares = gathers ? stored_shares(closure, path.throughput, cosine, parameters.specular_alpha) : vec4(0.0);
+    vec4 shares = camera_path_shares(closure, path.throughput, cosine, parameters.specular_alpha, false);
+    vec4 gathering_shares = vec4(0.0);
+    if (gathers) gathering_shares = camera_path_shares(closure, path.throughput, cosine, parameters.specular_alpha, true);
     float gathering = sum(gathering_shares), total = sum(shares) + gathering;
     if (total <= 0.0) return;
     float survival = path_survival(total);
@@ -171,8 +172,7 @@ void main() {
     path.throughput *= weight * (total / (probability * survival));
     if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
-        float shared_radius = diffuse ? parameters.shared_radius * radius : 0.0;
-        gathering_vertices[index] = GatheringVertex(closure.position, shared_radius, path.throughput, closure.shading_normal);
+        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, closure.shading_normal);
         path.throughput = vec3(1.0);
     }
     float side = dot(direction, geometric);

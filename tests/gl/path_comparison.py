@@ -10,7 +10,7 @@ import pytest
 from parity.comparison import write_pair
 from path_classes import Case, traced_only
 
-from rppm_addon.integrator import final_gather, importons
+from rppm_addon.integrator import final_gather
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DirectLight, Scene
 
@@ -93,8 +93,7 @@ def judge(name: str, pictures: np.ndarray, right: np.ndarray) -> None:
 
 def gathering(case: Case, monkeypatch: pytest.MonkeyPatch, found: bool) -> Case:
     """The case with final gather, nothing shared; ``found``: its last surface gets its light by the gathering ray."""
-    for module in (final_gather, importons):
-        monkeypatch.setattr(module, "SHARED_RADIUS", 0.0)
+    monkeypatch.setattr(final_gather, "SHARED_RADIUS", 0.0)
     settings = case.scene.settings
     changed = settings.with_values(final_gather=True, camera_path_length=settings.camera_path_length + 1)
     scene = dataclasses.replace(case.scene, settings=changed)

@@ -4,7 +4,7 @@
 import numpy as np
 import scenes
 
-from rppm_addon.integrator import final_gather, importons
+from rppm_addon.integrator import final_gather
 from rppm_addon.integrator.records import GATHERING_VERTEX
 from rppm_addon.scene import Lobe, LobeKind, Material
 
@@ -13,8 +13,7 @@ SIZE, SEEDS = 48, 8
 
 def indirect_pictures(mapper, monkeypatch, radius: float) -> np.ndarray:
     """(SEEDS, SIZE, SIZE) radiance of a diffuse room, shared within so many Eq. 3 radii."""
-    for module in (final_gather, importons):
-        monkeypatch.setattr(module, "SHARED_RADIUS", radius)
+    monkeypatch.setattr(final_gather, "SHARED_RADIUS", radius)
     pictures = []
     for seed in range(SEEDS):
         scene = scenes.room(SIZE, iterations=4, photons=2048, seed=seed, radius_scale=60.0, filter_width=0.0)

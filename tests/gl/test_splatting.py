@@ -7,10 +7,15 @@ import scenes
 from test_geometry import unpack
 
 from rppm_addon.integrator import splatting
-from rppm_addon.integrator.records import IMPORTON, PHOTON_DIFFUSED, PHOTON_INDIRECT, PHOTON_STORED
+from rppm_addon.integrator.records import (
+    GATHERED_BY_RAY,
+    GATHERS_BY_RAY,
+    IMPORTON,
+    PHOTON_DIFFUSED,
+    PHOTON_INDIRECT,
+    PHOTON_STORED,
+)
 from rppm_addon.scene import DirectLight
-
-GATHERS_BY_RAY, GATHERED_BY_RAY = 1, 2
 
 
 def brute_force(importons, photons, wide):

@@ -22,24 +22,15 @@ bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) { return lobe.k
 // Smoother lobes cannot be evaluated towards a light, only followed.
 const float SMOOTHEST_LIT = 1e-4;
 
-// How a camera path goes on: the shares of the transparent part and of the three lobes, where they
-// are specular.
-vec4 specular_shares(Closure closure, vec3 throughput, float cosine, float specular_alpha) {
-    vec4 shares = vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0);
+// How a camera path goes on: the shares of the transparent part and of the three lobes, where they are
+// specular; or, stored, of the diffuse part and of the lobes that store photons, by which a path that gathers
+// goes on once.
+vec4 camera_path_shares(Closure closure, vec3 throughput, float cosine, float specular_alpha, bool stored) {
+    vec4 shares = vec4(largest(throughput * (stored ? closure.diffuse : closure.transparent)), 0.0, 0.0, 0.0);
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (lobe_is_specular(lobe, specular_alpha)) shares[1 + k] = largest(throughput * lobe_albedo(lobe, cosine));
-    }
-    return shares;
-}
-
-// The shares of the diffuse part and of the three lobes, where they store photons: a camera path that
-// gathers goes on by these once.
-vec4 stored_shares(Closure closure, vec3 throughput, float cosine, float specular_alpha) {
-    vec4 shares = vec4(largest(throughput * closure.diffuse), 0.0, 0.0, 0.0);
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (lobe_stores(lobe, specular_alpha)) shares[1 + k] = largest(throughput * lobe_albedo(lobe, cosine));
+        if (stored ? lobe_stores(lobe, specular_alpha) : lobe_is_specular(lobe, specular_alpha))
+            shares[1 + k] = largest(throughput * lobe_albedo(lobe, cosine));
     }
     return shares;
 }
