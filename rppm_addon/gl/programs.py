@@ -171,11 +171,18 @@ class ProgramLibrary:
         self._cache = BinaryCache(context)
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
 
-    def compute(self, path: str, defines: Mapping[str, object] | None = None) -> ComputeProgram:
-        """The compute program of a .comp file. Raises ShaderError with file and line."""
-        return self._get(
-            (path, tuple(sorted((defines or {}).items()))), lambda: self._compute(path, dict(defines or {}))
-        )
+    def compute(
+        self,
+        path: str,
+        defines: Mapping[str, object] | None = None,
+        inserts: Mapping[str, str] | None = None,
+    ) -> ComputeProgram:
+        """The compute program of a .comp file; ``inserts`` are texts that stand for files that it includes.
+
+        Raises ShaderError with file and line.
+        """
+        key = (path, *(tuple(sorted((given or {}).items())) for given in (defines, inserts)))
+        return self._get(key, lambda: self._compute(path, dict(defines or {}), dict(inserts or {})))
 
     def draw(
         self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None, geometry: str | None = None
@@ -191,8 +198,8 @@ class ProgramLibrary:
             log.debug("%s ready in %.3f s", key[0], time.perf_counter() - start)
         return self._programs[key]
 
-    def _compute(self, path: str, defines: dict) -> ComputeProgram:
-        return ComputeProgram(self.context, self._cache, expand(path, defines))
+    def _compute(self, path: str, defines: dict, inserts: dict) -> ComputeProgram:
+        return ComputeProgram(self.context, self._cache, expand(path, defines, inserts))
 
     def _draw(self, vertex: str, fragment: str, geometry: str | None, defines: dict) -> DrawProgram:
         geometry_source = expand(geometry, defines) if geometry else None

@@ -75,6 +75,10 @@ class Record:
         members = " ".join(f"{m.kind} {m.name};" for m in self.members)
         return f"struct {self.name} {{ {members} }};"
 
+    def offset(self, name: str) -> int:
+        """Bytes before a member."""
+        return self.dtype.fields[name][1]
+
     def zeros(self, count: int) -> np.ndarray:
         """(count,) array of zeroed records."""
         return np.zeros(count, self.dtype)

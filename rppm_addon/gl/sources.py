@@ -57,11 +57,12 @@ class Source:
         return "\n".join(_POSITION.sub(name, line, count=1) for line in message.splitlines())
 
 
-def expand(path: str, defines: dict[str, object] | None = None) -> Source:
+def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[str, str] | None = None) -> Source:
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include <Ray>`` inserts the struct of the
-    record of that name once. Defines go after #version. Raises ShaderError.
+    record of that name once. Defines go after #version; ``inserts`` are texts of files that are made
+    at run time, by name. Raises ShaderError.
     """
     files: list[str] = []
     seen_records: set[str] = set()
@@ -71,7 +72,7 @@ def expand(path: str, defines: dict[str, object] | None = None) -> Source:
         if name in files:
             return
         try:
-            text = (SHADER_FOLDER / name).read_text(encoding="utf-8")
+            text = (inserts or {}).get(name) or (SHADER_FOLDER / name).read_text(encoding="utf-8")
         except OSError as error:
             raise ShaderError(f"{includer}: cannot include {name} ({error.strerror})") from error
         number = len(files)

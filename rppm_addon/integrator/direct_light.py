@@ -33,13 +33,19 @@ class DirectLight:
         self._rays = GrowingBuffer(context, "shadow rays")
         self._contributions = GrowingBuffer(context, "direct light")
         self._visibility = GrowingBuffer(context, "visibility")
+        self._triangles = GrowingBuffer(context, "triangles of sampled lights")
         self._rays.require(RAY.size * pixels)
         self._contributions.require(16 * pixels)
         self._visibility.require(4 * pixels)
+        self._triangles.require(4 * pixels)
+
+    @property
+    def _buffers(self) -> tuple[GrowingBuffer, ...]:
+        return self._rays, self._contributions, self._visibility, self._triangles
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {buffer.name: buffer.size for buffer in (self._rays, self._contributions, self._visibility)}
+        return {buffer.name: buffer.size for buffer in self._buffers}
 
     def run(
         self,
@@ -67,6 +73,7 @@ class DirectLight:
                 "CameraPaths": importons.paths.buffer,
                 "ShadowRays": self._rays.buffer,
                 "Contributions": self._contributions.buffer,
+                "LightTriangles": self._triangles.buffer,
                 "Materials": stages.materials.buffers["Materials"],
             },
             {
@@ -77,6 +84,9 @@ class DirectLight:
                 "specular_alpha": stages.settings.specular_roughness**2,
                 "final_gather": stages.settings.final_gather,
             },
+        )
+        stages.emission.emitters.tint_contributions(
+            stages.resolve, self._rays.buffer, self._triangles.buffer, self._contributions.buffer, count, iteration
         )
         stages.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, count)
         self._add.run(
@@ -91,5 +101,5 @@ class DirectLight:
         )
 
     def release(self) -> None:
-        for buffer in (self._rays, self._contributions, self._visibility):
+        for buffer in self._buffers:
             buffer.release()

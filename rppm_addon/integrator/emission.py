@@ -10,13 +10,16 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..materials.tables import MaterialTables
 from ..scene.errors import SceneError
 from ..scene.lights import Light, LightKind
 from ..scene.scene import Scene
+from .emitters import Emitters
 from .environment import Environment
 from .geometry import Geometry
 from .guide import Guide, learns_after
-from .records import ELLIPSE, EMISSIVE_TRIANGLE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
+from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
+from .resolve import Resolve
 from .targets import caustic_targets
 
 _VISIBLE, _SOFT = 1, 2
@@ -30,15 +33,14 @@ LIGHT_PARAMETERS = {
     "environment_width": "uint",
     "environment_height": "uint",
     "emissive_triangle_count": "uint",
-    "mesh_density": "float",
+    "mesh_selection": "float",
     "world_selection": "float",
     "seed": "uint",
     "iteration": "uint",
     "count": "uint",
 }
-"""Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_density`` times a
-triangle's emitted radiance is the density per area of choosing a point on it for direct light;
-``world_selection`` is the probability of choosing the world."""
+"""Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_selection`` and
+``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light."""
 
 Record("EmitParameters", **LIGHT_PARAMETERS, target_count="uint")
 Record("SoftFalloffParameters", **LIGHT_PARAMETERS)
@@ -96,7 +98,7 @@ class Emission:
         self._program = library.compute("emission/emit.comp")
         self._soft_program = library.compute("emission/soft_falloff.comp")
         self._lights = GrowingBuffer(context, "lights")
-        self._emissive = GrowingBuffer(context, "emissive triangles")
+        self.emitters = Emitters(context, library)
         self._targets = GrowingBuffer(context, "photon targets")
         self._target_count = 0
         self.environment = Environment(context)
@@ -113,7 +115,7 @@ class Emission:
         """Storage blocks of emission/lights.glsl."""
         return {
             "Lights": self._lights.buffer,
-            "EmissiveTriangles": self._emissive.buffer,
+            "EmissiveTriangles": self.emitters.triangles.buffer,
             "Triangles": self._triangles,
             "EnvironmentDistribution": self.environment.distribution.buffer,
         }
@@ -122,7 +124,7 @@ class Emission:
     def memory_bytes(self) -> dict[str, int]:
         return {
             "lights": self._lights.size,
-            "emissive triangles": self._emissive.size,
+            **self.emitters.memory_bytes,
             "photon targets": self._targets.size,
             "environment": self.environment.memory_bytes,
             **self._guide.memory_bytes,
@@ -132,10 +134,8 @@ class Emission:
         """Values of LIGHT_PARAMETERS."""
         return {**self._parameters, "seed": seed, "iteration": iteration, "count": count}
 
-    def build(self, scene: Scene, geometry: Geometry, emitted: np.ndarray) -> None:
+    def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
         """Lay out all lights and share the photons of an iteration among them.
-
-        ``emitted`` (materials, 3) is the radiance of each material, W/(m^2 sr).
 
         Raises SceneError when nothing in the scene emits light.
         """
@@ -153,16 +153,10 @@ class Emission:
         for light in scene.lights:
             entry, power = _light_entry(light, radius)
             add(entry, power, light.photon_share)
-        emissive = _emissive_triangles(scene, geometry, emitted)
-        mesh_weight = 1.0
-        if len(emissive):
-            weight = np.mean(emissive["radiance"], axis=1).astype(np.float64) * emissive["area"]
-            emissive["cumulated"] = np.cumsum(weight) / weight.sum()
-            emissive["cumulated"][-1] = 1.0
-            mesh_weight = float(weight.sum())
-            entry = LIGHT.zeros(1)[0]
-            entry["kind"] = MESH
-            add(entry, 2 * math.pi * (emissive["radiance"].T.astype(np.float64) @ emissive["area"]))
+        self.emitters.build(scene, geometry, materials, resolve)
+        entry = LIGHT.zeros(1)[0]
+        entry["kind"] = MESH
+        add(entry, self.emitters.power)
         self.environment.build(scene)
         entry = LIGHT.zeros(1)[0]
         entry["kind"] = WORLD
@@ -186,7 +180,6 @@ class Emission:
         self._share_photons(self._weights)
         self._guide.build(table, scene.settings.photons)
         self._lights.upload(table)
-        self._emissive.upload(emissive if len(emissive) else EMISSIVE_TRIANGLE.zeros(1))
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
@@ -201,8 +194,8 @@ class Emission:
             "world_rotation": rotation,
             "environment_width": self.environment.width,
             "environment_height": self.environment.height,
-            "emissive_triangle_count": len(emissive),
-            "mesh_density": float(selection[table["kind"] == MESH].sum()) / mesh_weight,
+            "emissive_triangle_count": self.emitters.count,
+            "mesh_selection": float(selection[table["kind"] == MESH].sum()),
             "world_selection": float(selection[table["kind"] == WORLD].sum()),
         }
 
@@ -259,7 +252,7 @@ class Emission:
 
     def release(self) -> None:
         self._lights.release()
-        self._emissive.release()
+        self.emitters.release()
         self._targets.release()
         self._guide.release()
         self.environment.release()
@@ -317,25 +310,3 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     entry["spread_tangent"], entry["spread_scale"] = tangent, scale
     entry["cosine_cone"] = math.cos(math.atan(tangent))
     return entry, strength * area * _spread_share(tangent, scale)
-
-
-def _emissive_triangles(scene: Scene, geometry: Geometry, radiance: np.ndarray) -> np.ndarray:
-    """EMISSIVE_TRIANGLE records of all world triangles whose material emits."""
-    found = []
-    for placement in geometry.placements:
-        instance = placement.instance
-        mesh = scene.meshes[instance.mesh]
-        slots = [radiance[m] if 0 <= m < len(radiance) else np.zeros(3) for m in instance.materials]
-        if not slots or not np.any(slots):
-            continue
-        emitted = np.array(slots)[np.minimum(mesh.triangle_slots, len(slots) - 1)]
-        which = np.nonzero(emitted.max(axis=1) > 0)[0]
-        corners = mesh.positions[mesh.corner_vertices[mesh.triangle_corners[which]]].astype(np.float64)
-        corners = corners @ instance.matrix[:3, :3].T
-        area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-        good = np.isfinite(area) & (area > 0)
-        records = EMISSIVE_TRIANGLE.zeros(int(good.sum()))
-        records["radiance"], records["area"] = emitted[which[good]], area[good]
-        records["triangle"] = placement.first_triangle + which[good]
-        found.append(records)
-    return np.concatenate(found) if found else EMISSIVE_TRIANGLE.zeros(0)

@@ -30,7 +30,7 @@ INSTANCE_ENTRY = Record(
     mesh_uv="uint",
     first_slot="uint",
     slot_count="uint",
-    object_index="uint",
+    unused="uint",
 )
 Record("GatherParameters", fallback_point="vec3", triangle_count="uint", instance_count="uint")
 
@@ -60,7 +60,8 @@ class Placement:
 class Geometry:
     """World-space triangles of a scene in GPU buffers.
 
-    ``triangles`` holds three vec4 a triangle, ``attributes`` a TriangleAttributes each;
+    ``triangles`` holds three vec4 a triangle (see shaders/emission/lights.glsl for the fourth components),
+    ``attributes`` a TriangleAttributes each;
     ``placements`` lists the instances that have triangles; ``bounds_low`` and
     ``bounds_high`` (3,) enclose them, metres.
     """
@@ -143,7 +144,6 @@ class Geometry:
             materials = [m if 0 <= m < len(scene.materials) else default_material for m in instance.materials]
             entry["first_slot"], entry["slot_count"] = len(slots), max(1, len(materials))
             slots.extend(materials or [default_material])
-            entry["object_index"] = instance.object_index
             first += meshes[mesh].triangle_count
             corners = np.array(np.meshgrid(*zip(*bounds[mesh], strict=True))).reshape(3, -1)
             world = instance.matrix[:3, :3] @ corners + instance.matrix[:3, 3:]

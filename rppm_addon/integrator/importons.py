@@ -70,15 +70,7 @@ class Importons:
     def resolve(self, stages: Stages, count: int, iteration: int, segment: int) -> None:
         """Hits to closures."""
         stages.resolve.run(
-            stages.geometry,
-            stages.materials,
-            self.rays.buffer,
-            self.hits.buffer,
-            self.closures.buffer,
-            count,
-            stages.settings.seed,
-            iteration,
-            segment,
+            self.rays.buffer, self.hits.buffer, self.closures.buffer, count, iteration, segment, self.paths.buffer
         )
 
     def scatter(

@@ -59,15 +59,7 @@ class Photons:
                     stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
             with timers.stage("photon resolve"):
                 stages.resolve.run(
-                    stages.geometry,
-                    stages.materials,
-                    self._rays.buffer,
-                    self._hits.buffer,
-                    self._closures.buffer,
-                    self.photon_count,
-                    settings.seed,
-                    iteration,
-                    segment,
+                    self._rays.buffer, self._hits.buffer, self._closures.buffer, self.photon_count, iteration, segment
                 )
             with timers.stage("photon scattering"):
                 self._scatter.run(
@@ -95,6 +87,9 @@ class Photons:
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with stages.timers.stage("emission"):
             stages.emission.run(rays, paths, self.photon_count, stages.settings.seed, iteration)
+            stages.emission.emitters.tint_photons(
+                stages.resolve, rays, hits, self._closures.buffer, paths, self.photon_count, iteration
+            )
         with stages.timers.stage("photon tracing"):
             stages.deep_cubemap.trace(rays, hits, self.photon_count)
             if stages.emission.has_soft_lights:

@@ -57,7 +57,7 @@ class ProgressivePhotonMapper:
         self._materials = MaterialTables(context)
         self._emission = Emission(context, library)
         self._deep_cubemap = DeepCubemap(context, library)
-        self._resolve = Resolve(library)
+        self._resolve = Resolve(context, library)
         self.iteration = 0
         self.build_seconds = 0.0
         self._views: list = []
@@ -72,7 +72,8 @@ class ProgressivePhotonMapper:
         start = time.perf_counter()
         settings = scene.settings
         self._gather(scene)
-        self._emission.build(scene, self._geometry, self._materials.emitted)
+        self._resolve.build(scene, self._geometry, self._materials)
+        self._emission.build(scene, self._geometry, self._materials, self._resolve)
         with self.timers.stage("deep cubemap"):
             self._build_deep_cubemap()
         width, height = scene.camera.resolution
@@ -176,6 +177,7 @@ class ProgressivePhotonMapper:
             "scene": self._geometry.memory_bytes | self._materials.memory_bytes | self._emission.memory_bytes,
             "deep cubemap": self._deep_cubemap.memory_bytes,
             "photon paths": self._photons.memory_bytes,
+            "resolve": self._resolve.memory_bytes,
             "camera paths": {"visibility buffer": self._gbuffer.memory_bytes} | self._importons.memory_bytes,
             "direct light": self._direct_light.memory_bytes,
             "final gather": self._final_gather.memory_bytes,
@@ -384,5 +386,5 @@ class ProgressivePhotonMapper:
     def release(self) -> None:
         """Give all buffers back."""
         self._release_views()
-        for part in (self._geometry, self._materials, self._emission, self._deep_cubemap):
+        for part in (self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve):
             part.release()

@@ -21,10 +21,10 @@ TRIANGLE_ATTRIBUTES = Record(
     uv0="vec2",
     uv1="vec2",
     uv2="vec2",
-    object_index="uint",
+    instance="uint",
     unused="uint",
 )
-"""Shading normals (octahedral, two 16-bit parts), UV and material of a world triangle."""
+"""Shading normals (octahedral, two 16-bit parts), UV, material and instance of a world triangle."""
 
 MICROFACET_LOBE = Record(
     "MicrofacetLobe",
@@ -165,8 +165,16 @@ unit axes, ``selection_end`` the cumulated probability of choosing this or an ea
 ``first_cell`` those of integrator/guide.py."""
 
 EMISSIVE_TRIANGLE = Record(
-    "EmissiveTriangle", radiance="vec3", triangle="uint", area="float", cumulated="float", pad0="float", pad1="float"
+    "EmissiveTriangle",
+    radiance="vec3",
+    triangle="uint",
+    area="float",
+    cumulated="float",
+    share="float",
+    uneven="float",
 )
+"""A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
+choosing it, and that of choosing it or one before."""
 
 CAMERA_VIEW = Record(
     "CameraView",

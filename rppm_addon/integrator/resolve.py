@@ -2,44 +2,130 @@
 """Hits become closures in one batched pass (DIRT's deferred fetch)."""
 
 import moderngl
+import numpy as np
 
-from ..gl.programs import ProgramLibrary
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ComputeProgram, ProgramLibrary
 from ..gl.records import Record
-from ..materials import records as material_records  # noqa: F401  declares what the shader includes
 from ..materials.tables import MaterialTables
+from ..scene.scene import Scene
 from .geometry import Geometry
+from .records import CAMERA_PATH
+from .surface_attributes import SurfaceAttributes
 
-Record("ResolveParameters", count="uint", seed="uint", iteration="uint", segment="uint")
+Record(
+    "ResolveParameters",
+    world_to_camera="mat4",
+    window="vec4",
+    count="uint",
+    seed="uint",
+    iteration="uint",
+    segment="uint",
+    program="uint",
+    path_stride="uint",
+    path_flags="uint",
+    attribute_count="uint",
+    orthographic="uint",
+    pixel_size="float",
+)
+
+_NO_PROGRAM = 0xFFFFFFFF
+_RANGE_SIZE = 8
 
 
 class Resolve:
-    """Rays and their hits to closures."""
+    """Rays and their hits to closures: the hits are ordered by program, and each program resolves its own."""
 
-    def __init__(self, library: ProgramLibrary) -> None:
-        self._program = library.compute("resolve/resolve.comp")
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._library = library
+        self._count = library.compute("resolve/count.comp")
+        self._allocate = library.compute("resolve/allocate.comp")
+        self._order_hits = library.compute("resolve/order.comp")
+        self._order = GrowingBuffer(context, "hits by material", "lower the resolution or the photons per iteration")
+        self._surface_attributes = SurfaceAttributes(context)
+        self._programs: list[ComputeProgram] = []
+        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._parameters: dict[str, object] = {}
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        return {self._order.name: self._order.size, **self._surface_attributes.memory_bytes}
+
+    def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
+        """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
+
+        Raises ShaderError, and DeviceError when the device cannot hold the attributes.
+        """
+        self._programs = [
+            self._library.compute("resolve/resolve.comp", inserts={"materials/generated.glsl": text})
+            for text in materials.programs
+        ]
+        self._surface_attributes.build(scene, geometry, materials.attribute_names)
+        self._buffers = {
+            "Triangles": geometry.triangles.buffer,
+            "Attributes": geometry.attributes.buffer,
+            **self._surface_attributes.buffers,
+            **materials.buffers,
+        }
+        camera = scene.camera
+        width, _ = camera.resolution
+        self._parameters = {
+            "world_to_camera": np.linalg.inv(camera.matrix),
+            "window": camera.window,
+            "orthographic": camera.orthographic,
+            "pixel_size": (camera.window[1] - camera.window[0]) / camera.width,
+            "seed": scene.settings.seed,
+            "attribute_count": self._surface_attributes.count,
+            "path_flags": CAMERA_PATH.offset("flags") // 4,
+        }
 
     def run(
         self,
-        geometry: Geometry,
-        materials: MaterialTables,
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
         closures: moderngl.Buffer,
         count: int,
-        seed: int,
         iteration: int,
         segment: int,
+        camera_paths: moderngl.Buffer | None = None,
     ) -> None:
-        """Fill ``count`` closures; inactive rays and misses give closures without a triangle."""
-        self._program.run(
-            count,
-            {
-                "Rays": rays,
-                "Hits": hits,
-                "Closures": closures,
-                "Triangles": geometry.triangles.buffer,
-                "Attributes": geometry.attributes.buffer,
-                **materials.buffers,
-            },
-            {"count": count, "seed": seed, "iteration": iteration, "segment": segment},
-        )
+        """Fill ``count`` closures; inactive rays and misses give closures without a triangle.
+
+        camera_paths: tell the nodes that ask what kind of rays these are; without them they are photons'.
+        """
+        self._order.require(4 * (_RANGE_SIZE * len(self._programs) + count))
+        buffers = {
+            **self._buffers,
+            "Rays": rays,
+            "Hits": hits,
+            "Closures": closures,
+            "HitOrder": self._order.buffer,
+            "PathFlags": rays if camera_paths is None else camera_paths,
+        }
+        parameters = {
+            **self._parameters,
+            "count": count,
+            "iteration": iteration,
+            "segment": segment,
+            "program": _NO_PROGRAM,
+            "path_stride": 0 if camera_paths is None else CAMERA_PATH.size // 4,
+        }
+
+        def of(program: ComputeProgram) -> dict[str, moderngl.Buffer]:
+            return {name: buffers[name] for name in program.blocks}
+
+        if len(self._programs) == 1:
+            self._programs[0].run(count, of(self._programs[0]), parameters)
+            return
+        self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
+        self._count.run(count, of(self._count), {"count": count})
+        self._allocate.run(1, of(self._allocate), {"count": len(self._programs)})
+        self._order_hits.run(count, of(self._order_hits), {"count": count})
+        for number, program in enumerate(self._programs):
+            place = 4 * (_RANGE_SIZE * number + 4)
+            program.run_indirect(self._order.buffer, place, of(program), {**parameters, "program": number})
+
+    def release(self) -> None:
+        self._order.release()
+        self._surface_attributes.release()

@@ -3,7 +3,9 @@
 
 import numpy as np
 
-from ..scene.materials import Lobe, LobeKind, Material
+from ..materials.nodes import KINDS
+from ..scene.materials import Material
+from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 from ..scene.scene import Scene
 from .geometry import Geometry
 
@@ -12,12 +14,45 @@ _SHARPEST_ROUGHNESS = 0.22
 _LARGEST = 0.5
 
 
-def _makes_caustics(lobe: Lobe) -> bool:
-    if lobe.roughness > _SHARPEST_ROUGHNESS or lobe.weight < 0.05:
+_LEAST = 0.05
+"""Weight of a shader, and share of metal or glass in a Principled one, from which on it counts."""
+
+_SPECULAR = {"bsdf_glass", "bsdf_refraction", "bsdf_glossy", "bsdf_metallic", "bsdf_principled"}
+
+
+def _number(node: ShaderNode, name: str, unknown: float) -> float:
+    """A constant input; what varies counts as ``unknown``."""
+    value = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
+    return unknown if isinstance(value, Link) else float(np.mean(value))
+
+
+def _makes_caustics(node: ShaderNode) -> bool:
+    if node.kind not in _SPECULAR or _number(node, "roughness", 0.0) > _SHARPEST_ROUGHNESS:
         return False
-    if lobe.kind is LobeKind.PRINCIPLED:
-        return lobe.alpha * max(lobe.metallic, lobe.transmission) > 0.1
-    return lobe.kind in (LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.GLOSSY)
+    if node.kind != "bsdf_principled":
+        return True
+    share = max(_number(node, name, 1.0) for name in ("metallic", "transmission_weight"))
+    return _number(node, "alpha", 1.0) * share > 2 * _LEAST
+
+
+def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
+    """Shader nodes whose weight, as far as it is constant, is not next to nothing."""
+    found, pending = [], [(graph.surface, 1.0)]
+    while pending:
+        link, weight = pending.pop()
+        if not isinstance(link, Link) or weight < _LEAST:
+            continue
+        node = graph.nodes[link.node]
+        shaders = node.inputs.get("shader"), node.inputs.get("shader_001")
+        if node.kind == "mix_shader":
+            factor = node.inputs.get("fac", 0.5)
+            shares = (1.0, 1.0) if isinstance(factor, Link) else (1.0 - factor, factor)
+            pending += [(shader, weight * share) for shader, share in zip(shaders, shares, strict=True)]
+        elif node.kind == "add_shader":
+            pending += [(shader, weight) for shader in shaders]
+        else:
+            found.append(node)
+    return found
 
 
 def caustic_targets(scene: Scene, geometry: Geometry) -> np.ndarray:
@@ -25,7 +60,7 @@ def caustic_targets(scene: Scene, geometry: Geometry) -> np.ndarray:
     specular lobes. Objects half as large as the scene are none: photons meet them anyway."""
 
     def sharp(material: Material) -> bool:
-        return any(_makes_caustics(lobe) for lobe in material.lobes)
+        return any(_makes_caustics(node) for node in _visible_shaders(material.graph))
 
     casters = [sharp(material) for material in scene.materials]
     spheres = []

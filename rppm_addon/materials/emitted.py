@@ -1,31 +1,64 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What materials emit."""
+"""Which node graphs emit light."""
 
-import numpy as np
+import enum
 
-from ..scene.images import Image
-from ..scene.materials import Lobe, LobeKind, Material
+from ..scene.node_graphs import Link, NodeGraph, ShaderNode
+from .nodes import KINDS
 
-
-def image_means(images: list[Image]) -> list[np.ndarray]:
-    """Mean colour of each image, (3,), in the image's own encoding."""
-
-    def mean(image: Image) -> np.ndarray:
-        scale = 255.0 if image.pixels.dtype == np.uint8 else 1.0
-        return image.pixels.reshape(-1, 4).mean(axis=0, dtype=np.float64)[:3] / scale
-
-    return [mean(image) for image in images]
+_EMITTING = {
+    "emission": ("color", "strength"),
+    "background": ("color", "strength"),
+    "bsdf_principled": ("emission_color", "emission_strength"),
+}
+"""Shader nodes that emit where all of these inputs are above 0."""
 
 
-def emitted_radiance(material: Material, image_means: list[np.ndarray]) -> np.ndarray:
-    """(3,) radiance that a material emits, W/(m^2 sr); textures count by their mean."""
+class Emits(enum.Enum):
+    """How a graph emits, as far as its structure and constants tell."""
 
-    def of(lobe: Lobe) -> np.ndarray:
-        if lobe.kind is LobeKind.EMISSION:
-            texture = image_means[lobe.color_image] if lobe.color_image >= 0 else 1.0
-            return lobe.weight * np.asarray(lobe.color) * texture
-        if lobe.kind is LobeKind.PRINCIPLED:
-            return lobe.weight * lobe.alpha * np.asarray(lobe.emission)
-        return np.zeros(3)
+    NOTHING = "nothing"
+    EVENLY = "evenly"
+    """The same everywhere and in all directions."""
+    VARYING = "varying"
 
-    return np.maximum(sum((of(lobe) for lobe in material.lobes), np.zeros(3)), 0.0)
+
+def reachable(graph: NodeGraph, start: Link | None) -> set[int]:
+    """Indices of the nodes that a link depends on."""
+    found: set[int] = set()
+    pending = [] if start is None else [start.node]
+    while pending:
+        index = pending.pop()
+        if index not in found:
+            found.add(index)
+            pending += [value.node for value in graph.nodes[index].inputs.values() if isinstance(value, Link)]
+    return found
+
+
+def emits(graph: NodeGraph) -> Emits:
+    """Whether a graph may emit light, and whether what it emits depends on place or direction."""
+    nodes = reachable(graph, graph.surface)
+    if not any(_may_emit(graph.nodes[index]) for index in nodes):
+        return Emits.NOTHING
+    # Layers above the emission of a Principled surface, and mixes with other shaders by place.
+    varying = any(KINDS[graph.nodes[index].kind].surface for index in nodes) or any(
+        graph.nodes[index].kind == "bsdf_principled" and _is_layered(graph.nodes[index]) for index in nodes
+    )
+    return Emits.VARYING if varying else Emits.EVENLY
+
+
+def _may_emit(node: ShaderNode) -> bool:
+    names = _EMITTING.get(node.kind, ())
+    return bool(names) and all(_is_positive(node, name) for name in names)
+
+
+def _is_positive(node: ShaderNode, name: str) -> bool:
+    value = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
+    if isinstance(value, Link):
+        return True
+    return value > 0.0 if isinstance(value, int | float) else max(value) > 0.0
+
+
+def _is_layered(node: ShaderNode) -> bool:
+    inputs = KINDS[node.kind].inputs
+    return any(name in inputs and _is_positive(node, name) for name in ("coat_weight", "sheen_weight"))

@@ -30,18 +30,19 @@ class NodeKind:
     ClosureBuilder builder, float weight``; an int for each option, the place of its value in the option's tuple
     (always a literal, so that the compiler folds it); a uint for each resource; the inputs; ``out`` the outputs.
 
-    Inputs are named as the identifiers of Blender's sockets, options as the properties of its nodes and their
-    values as its enumerations, in lower case with underscores for blanks where Blender has capitals and blanks.
+    Inputs and outputs are named as the identifiers of Blender's sockets, in lower case with underscores for blanks;
+    options as the properties of its nodes, with Blender's own values.
     """
 
     source: str
     inputs: dict[str, tuple[SocketType, object]] = field(default_factory=dict)
-    """Type and default value by name; the value is a float or three."""
+    """Type and default value by name; the value is a float, three, or "normal" or "tangent" of the surface."""
     outputs: dict[str, SocketType] = field(default_factory=dict)
     options: dict[str, tuple] = field(default_factory=dict)
     """Values that each option can take: they select code."""
     resources: tuple[str, ...] = ()
-    """"table": where the node's table starts in material_data; "image": the number of its image."""
+    """What the node needs besides: "table", where its table starts in material_data; "image", the number of its
+    image; "attribute", the number of its mesh attribute."""
     surface: bool = False
 
     @property

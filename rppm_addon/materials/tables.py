@@ -6,13 +6,20 @@ import numpy as np
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..scene.images import Image
-from ..scene.materials import Lobe, LobeKind, Material
+from ..scene.materials import Material
+from ..scene.node_graphs import NodeGraph
 from . import albedo_tables
-from .emitted import emitted_radiance, image_means
-from .records import IMAGE_ENTRY, MATERIAL, MATERIAL_LOBE, NO_IMAGE
+from .compiler import CompiledGraph, Resource, compile_graph
+from .emitted import Emits, emits
+from .records import IMAGE_ENTRY, MATERIAL
 
-DEFAULT_MATERIAL = Material("default", [Lobe(LobeKind.DIFFUSE, color=(0.8, 0.8, 0.8))])
-"""What faces without a material look like, as in Blender."""
+
+def default_material() -> Material:
+    """What faces without a material look like, as in Blender."""
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=(0.8, 0.8, 0.8))
+    return Material("default", graph)
+
 
 _SRGB, _BYTES, _HALVES = 0, 1, 2
 
@@ -26,16 +33,23 @@ def _texels(image: Image) -> tuple[np.ndarray, int]:
 
 
 class MaterialTables:
-    """The buffers Materials, MaterialLobes, Images, Texels and AlbedoTables."""
+    """The buffers Materials, MaterialData, Images, Texels and AlbedoTables, and the GLSL of the graphs.
+
+    ``programs`` lists the distinct texts that materials need, ``attribute_names`` the mesh attributes that their
+    nodes read, ``emits`` says of each material whether it emits light; faces without a material have the
+    ``default_material``, the last.
+    """
 
     def __init__(self, context: Context) -> None:
-        names = ("Materials", "MaterialLobes", "Images", "Texels", "AlbedoTables")
+        names = ("Materials", "MaterialData", "Images", "Texels", "AlbedoTables")
         self._buffers = {
             name: GrowingBuffer(context, f"material {name}", "use smaller or fewer image textures") for name in names
         }
         self._buffers["AlbedoTables"].upload(albedo_tables.load())
         self.default_material = 0
-        self.emitted = np.zeros((1, 3))
+        self.programs: list[str] = []
+        self.attribute_names: list[str] = []
+        self.emits: list[Emits] = []
 
     @property
     def buffers(self) -> dict:
@@ -47,54 +61,92 @@ class MaterialTables:
         return {buffer.name: buffer.size for buffer in self._buffers.values()}
 
     def build(self, materials: list[Material], images: list[Image]) -> None:
-        """Upload the materials, and the images that their lobes use.
+        """Compile the materials' graphs and upload their constants, and the images that they use.
 
-        ``default_material`` is afterwards the index of the material for faces without one, and
-        ``emitted`` (materials + 1, 3) the radiance of each, W/(m^2 sr).
+        Raises GraphError when a graph is not well formed.
         """
         self.default_material = len(materials)
-        lobes = [lobe for material in [*materials, DEFAULT_MATERIAL] for lobe in material.lobes]
-        used = sorted({lobe.color_image for lobe in lobes if lobe.color_image >= 0})
-        place = {image: index for index, image in enumerate(used)}
-        entries = IMAGE_ENTRY.zeros(max(1, len(used)))
-        texels, first = [], 0
-        for entry, image in zip(entries, used, strict=False):
-            data, kind = _texels(images[image])
-            height, width = images[image].pixels.shape[:2]
-            entry["first_texel"], entry["width"], entry["height"], entry["format"] = first, width, height, kind
-            texels.append(data)
-            first += len(data)
-
-        means = image_means(images)
-        self.emitted = np.array([emitted_radiance(material, means) for material in [*materials, DEFAULT_MATERIAL]])
-        material_records = MATERIAL.zeros(len(materials) + 1)
-        lobe_records = MATERIAL_LOBE.zeros(max(1, len(lobes)))
-        material_records["emitted"] = self.emitted.mean(axis=1)
-        position = 0
-        for record, material in zip(material_records, [*materials, DEFAULT_MATERIAL], strict=True):
+        materials = [*materials, default_material()]
+        compiled = [compile_graph(material.graph) for material in materials]
+        self.emits = [emits(material.graph) for material in materials]
+        self.programs = list(dict.fromkeys(graph.text for graph in compiled))
+        number = {text: index for index, text in enumerate(self.programs)}
+        layout = _Layout(images)
+        records = MATERIAL.zeros(len(materials))
+        for record, material, graph in zip(records, materials, compiled, strict=True):
             record["absorption"] = np.maximum(material.absorption, 0.0)
-            record["first_lobe"], record["lobe_count"] = position, len(material.lobes)
-            for lobe in material.lobes:
-                _fill_lobe(lobe_records[position], lobe, place.get(lobe.color_image, NO_IMAGE))
-                position += 1
-        self._buffers["Materials"].upload(material_records)
-        self._buffers["MaterialLobes"].upload(lobe_records)
-        self._buffers["Images"].upload(entries)
-        self._buffers["Texels"].upload(np.concatenate(texels) if texels else np.zeros(1, np.uint32))
+            record["program"] = number[graph.text]
+            record["first_constant"] = layout.add(material.graph, graph)
+        self.attribute_names = list(layout.attributes)
+        self._buffers["Materials"].upload(records)
+        self._buffers["MaterialData"].upload(layout.data())
+        self._buffers["Images"].upload(layout.image_entries())
+        self._buffers["Texels"].upload(layout.texels())
 
     def release(self) -> None:
         for buffer in self._buffers.values():
             buffer.release()
 
 
-def _fill_lobe(record: np.ndarray, lobe: Lobe, image: int) -> None:
-    """Clamp what a user may have typed to what the formulas take."""
-    record["kind"], record["color_image"], record["weight"] = int(lobe.kind), image, lobe.weight
-    record["color"] = np.maximum(lobe.color, 0.0)
-    record["specular_tint"], record["emission"] = np.maximum(lobe.specular_tint, 0.0), np.maximum(lobe.emission, 0.0)
-    record["roughness"] = np.clip(lobe.roughness, 0.0, 1.0)
-    record["ior"] = np.clip(lobe.ior, 1e-3, 1e3)
-    record["specular_level"] = max(lobe.specular_level, 0.0)
-    for name in ("metallic", "transmission", "alpha"):
-        record[name] = np.clip(getattr(lobe, name), 0.0, 1.0)
-    record["multiscatter"] = lobe.multiscatter
+class _Layout:
+    """Constants of all materials one after the other, and then their tables."""
+
+    def __init__(self, images: list[Image]) -> None:
+        self._images = images
+        self._numbers: list[float] = []
+        self._tables: list[np.ndarray] = []
+        self._pending: list[tuple[int, int]] = []
+        """Where the start of which table goes."""
+        self._used: dict[int, int] = {}
+        self.attributes: dict[str, int] = {}
+
+    def add(self, graph: NodeGraph, compiled: CompiledGraph) -> int:
+        """Take the constants of a graph; returns where they start."""
+        first = len(self._numbers)
+        for constant in compiled.constants:
+            self._numbers.append(self._number(graph, constant) if isinstance(constant, Resource) else constant)
+        return first
+
+    def _number(self, graph: NodeGraph, resource: Resource) -> float:
+        node = graph.nodes[resource.node]
+        if resource.what == "image":
+            return float(self._image(node.image))
+        if resource.what == "attribute":
+            return float(self.attributes.setdefault(node.attribute, len(self.attributes)))
+        table = np.zeros(4, np.float32) if node.table is None else np.asarray(node.table, np.float32)
+        if node.kind == "tex_image_tiles":
+            table = np.array([-1.0 if image < 0 else self._image(int(image)) for image in table.ravel()], np.float32)
+        self._pending.append((len(self._numbers), len(self._tables)))
+        self._tables.append(table.ravel())
+        return 0.0
+
+    def _image(self, image: int) -> int:
+        return self._used.setdefault(image if 0 <= image < len(self._images) else -1, len(self._used))
+
+    def data(self) -> np.ndarray:
+        """(n,) float32 of constants and tables."""
+        starts = len(self._numbers) + np.concatenate([[0], np.cumsum([len(table) for table in self._tables])])
+        for place, table in self._pending:
+            self._numbers[place] = float(starts[table])
+        return np.concatenate([np.array(self._numbers or [0.0], np.float32), *self._tables]).astype(np.float32)
+
+    def image_entries(self) -> np.ndarray:
+        """(n,) IMAGE_ENTRY records of the images in use; one that is missing is magenta."""
+        entries = IMAGE_ENTRY.zeros(max(1, len(self._used)))
+        first = 0
+        for entry, image in zip(entries, self._used, strict=False):
+            data, kind = _texels(self._image_of(image))
+            height, width = self._image_of(image).pixels.shape[:2]
+            entry["first_texel"], entry["width"], entry["height"], entry["format"] = first, width, height, kind
+            first += len(data)
+        return entries
+
+    def texels(self) -> np.ndarray:
+        """(n,) uint32, the images in use one after the other."""
+        return np.concatenate([_texels(self._image_of(image))[0] for image in self._used] or [np.zeros(1, np.uint32)])
+
+    def _image_of(self, image: int) -> Image:
+        return _MISSING if image < 0 else self._images[image]
+
+
+_MISSING = Image("missing", np.array([[[255, 0, 255, 255]]], np.uint8), "LINEAR")

@@ -4,25 +4,30 @@
 from .camera import Camera
 from .images import Image
 from .lights import Light, LightKind, World
-from .materials import Lobe, LobeKind, Material
-from .meshes import Instance, Mesh
+from .materials import Material
+from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle
+from .node_graphs import Link, NodeGraph, ShaderNode
 from .scene import Scene
 from .settings import DirectLight, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
+    "AttributeDomain",
     "Camera",
     "DirectLight",
     "Image",
     "Instance",
     "Light",
     "LightKind",
-    "Lobe",
-    "LobeKind",
+    "Link",
     "Material",
     "Mesh",
+    "MeshAttribute",
+    "NodeGraph",
+    "Particle",
     "RenderSettings",
     "Scene",
+    "ShaderNode",
     "World",
     "load_scene",
     "save_scene",

@@ -1,9 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Indexed geometry and its placements."""
 
+import enum
 from dataclasses import dataclass, field
 
 import numpy as np
+
+
+class AttributeDomain(enum.Enum):
+    """What an attribute has a value for."""
+
+    POINT = "point"
+    CORNER = "corner"
+    TRIANGLE = "triangle"
+
+
+@dataclass
+class MeshAttribute:
+    """Values over a mesh that shading nodes may read."""
+
+    domain: AttributeDomain
+    values: np.ndarray
+    """(elements of the domain, 1 to 4) float32; colours are linear Rec.709."""
 
 
 @dataclass
@@ -26,10 +44,28 @@ class Mesh:
     """(triangles,) int32, material slot of each triangle."""
     corner_uv: np.ndarray | None = None
     """(corners, 2) float32 of the UV map in use, or None."""
+    attributes: dict[str, MeshAttribute] = field(default_factory=dict)
+    """By name, those that the materials in use ask for."""
 
     @property
     def triangle_count(self) -> int:
         return len(self.triangle_corners)
+
+
+@dataclass
+class Particle:
+    """What the Particle Info node tells of the particle that an instance stands for."""
+
+    index: float = 0.0
+    random: float = 0.0
+    age: float = 0.0
+    """Frames."""
+    lifetime: float = 0.0
+    """Frames."""
+    size: float = 0.0
+    location: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass
@@ -44,3 +80,10 @@ class Instance:
     """Index into Scene.materials of each material slot; slots beyond the end take the last."""
     object_name: str = ""
     object_index: int = 0
+    color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    """The object's colour and alpha, for the Object Info node."""
+    random: float = 0.0
+    """0 to 1, one number for each instance."""
+    particle: Particle | None = None
+    attributes: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    """Values of attributes that the object or its instancer has as a whole, in place of those of the mesh."""

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from .errors import SceneError
+from .node_graphs import Link
 from .scene import Scene
 
-FORMAT = 1
+FORMAT = 2
 
 
 def save_scene(scene: Scene, path: str | Path) -> None:
@@ -30,6 +31,8 @@ def save_scene(scene: Scene, path: str | Path) -> None:
             return {f.name: encode(getattr(value, f.name), f"{key}.{f.name}") for f in dataclasses.fields(value)}
         if isinstance(value, list | tuple):
             return [encode(item, f"{key}.{index}") for index, item in enumerate(value)]
+        if isinstance(value, dict):
+            return {name: encode(item, f"{key}.{name}") for name, item in value.items()}
         if isinstance(value, np.generic):
             return value.item()
         return value
@@ -56,7 +59,13 @@ def load_scene(path: str | Path) -> Scene:
     def decode(value: object, kind: object) -> object:
         if isinstance(value, dict) and set(value) == {"array"}:
             return arrays[value["array"]]
+        if kind is object:  # an input or option of a shader node
+            if isinstance(value, dict):
+                return decode(value, Link)
+            return tuple(value) if isinstance(value, list) else value
         origin = typing.get_origin(kind)
+        if origin is dict:
+            return {name: decode(item, typing.get_args(kind)[1]) for name, item in value.items()}
         if origin is list:
             return [decode(item, typing.get_args(kind)[0]) for item in value]
         if origin is tuple:

@@ -17,6 +17,7 @@ layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) readonly buffer CameraPaths { CameraPath camera_paths[]; };
 layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(std430, binding = 9) writeonly buffer LightTriangles { uint light_triangles[]; };
 layout(std430, binding = 8) writeonly buffer Contributions { vec4 contributions[]; };
 
 uint choose_light(float u) {
@@ -55,6 +56,7 @@ void main() {
     if (index >= parameters.count) return;
     shadow_rays[index].maximum_distance = 0.0;
     contributions[index] = vec4(0.0);
+    light_triangles[index] = NO_TRIANGLE;
     Ray ray = rays[index];
     Closure closure = closures[index];
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
@@ -72,6 +74,7 @@ void main() {
     vec3 radiance = throughput * scattered * sampled.weight * (abs(cosine) / light.selection_probability);
     if (!(largest(radiance) > 0.0)) return;
     contributions[index] = vec4(radiance, gathered ? 1.0 : 0.0);
+    light_triangles[index] = sampled.triangle;
     vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
     Ray shadow = Ray(origin, closure.triangle, sampled.direction, INFINITY_DISTANCE);
     if (sampled.distance < INFINITY_DISTANCE) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light sources: samples of them from a point, and what a ray sees of them.
-// Needs the members scene_centre, scene_radius and mesh_density of the parameters.
+// Needs the members scene_centre, scene_radius and mesh_selection of the parameters.
 
 #include <Light>
 #include <EmissiveTriangle>
@@ -8,6 +8,7 @@
 #include "common/spherical_triangle.glsl"
 layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
+// Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
 layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]; };
 
 // The numbers of rppm_addon/integrator/records.py and emission.py.
@@ -65,10 +66,8 @@ void triangle_corners(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
     v2 = triangle_vertices[3u * triangle + 2u].xyz;
 }
 
-// Probability of choosing a triangle among the emissive ones.
-float emissive_triangle_share(uint index) {
-    return emissive_triangles[index].cumulated - (index == 0u ? 0.0 : emissive_triangles[index - 1u].cumulated);
-}
+// What varies is asked for later, where a place has been sampled (emission/emitters.comp).
+vec3 sampled_radiance(EmissiveTriangle emissive) { return emissive.uneven > 0.0 ? vec3(1.0) : emissive.radiance; }
 
 struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float density; };
 
@@ -80,8 +79,8 @@ TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
     triangle_corners(emissive.triangle, v0, v1, v2);
     float root = sqrt(u.x);
     vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
-    return TrianglePoint(position, normalize(cross(v1 - v0, v2 - v0)), emissive.triangle, emissive.radiance,
-                         emissive_triangle_share(index) / max(emissive.area, 1e-30));
+    return TrianglePoint(position, normalize(cross(v1 - v0, v2 - v0)), emissive.triangle, sampled_radiance(emissive),
+                         emissive.share / max(emissive.area, 1e-30));
 }
 
 // Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
@@ -218,8 +217,8 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
         float solid_angle = triangle_solid_angle(point, v0, v1, v2);
         if (solid_angle <= 0.0) return result;
         to_light = sample_spherical_triangle(point, v0, v1, v2, solid_angle, u);
-        radiance = emissive.radiance;
-        result.density = emissive_triangle_share(index) / solid_angle;
+        radiance = sampled_radiance(emissive);
+        result.density = emissive.share / solid_angle;
         result.triangle = emissive.triangle;
     } else {
         if (dot(point - light.position, light.normal) <= 0.0) return result;
@@ -241,13 +240,13 @@ float scattered_share(float scatter_density, float light_density) {
     return scatter_density > 0.0 ? 1.0 - first_way_share(light_density, scatter_density) : 1.0;
 }
 
-// Density in 1/sr with which sample_light gives a direction from the point to a triangle of emissive meshes
-// whose material emits so much, the choice of the meshes included.
-float emissive_triangle_density(vec3 point, uint triangle, float emitted) {
+// Density in 1/sr with which sample_light gives a direction from the point to a triangle of the emissive meshes, the
+// choice of the meshes included.
+float emissive_triangle_density(vec3 point, uint triangle) {
     vec3 v0, v1, v2;
     triangle_corners(triangle, v0, v1, v2);
-    float area = 0.5 * length(cross(v1 - v0, v2 - v0)), solid_angle = triangle_solid_angle(point, v0, v1, v2);
-    return solid_angle > 0.0 ? parameters.mesh_density * emitted * area / solid_angle : 0.0;
+    float solid_angle = triangle_solid_angle(point, v0, v1, v2);
+    return solid_angle > 0.0 ? parameters.mesh_selection * triangle_vertices[3u * triangle + 1u].w / solid_angle : 0.0;
 }
 
 // Radiance of a light object that a ray passes within its length, and the density in 1/sr with which

@@ -44,7 +44,8 @@ bool reasonable(vec3 p) {
 void main() {
     uint triangle = invocation_index();
     if (triangle >= parameters.triangle_count) return;
-    InstanceEntry instance = instances[instance_of(triangle)];
+    uint number = instance_of(triangle);
+    InstanceEntry instance = instances[number];
     uint local = instance.mesh_triangle + triangle - instance.first_triangle;
     mat3 linear = transpose(mat3(instance.row0.xyz, instance.row1.xyz, instance.row2.xyz));
     vec3 origin = vec3(instance.row0.w, instance.row1.w, instance.row2.w);
@@ -77,5 +78,5 @@ void main() {
         triangle_vertices[3u * triangle + k] = vec4(finite ? points[k] : parameters.fallback_point, 0.0);
     uint slot = min(triangle_slots[local], instance.slot_count - 1u);
     attributes[triangle] = TriangleAttributes(normals[0], normals[1], normals[2], slot_materials[instance.first_slot + slot],
-                                              uvs[0], uvs[1], uvs[2], instance.object_index, 0u);
+                                              uvs[0], uvs[1], uvs[2], number, 0u);
 }

@@ -97,7 +97,7 @@ void main() {
     if (largest(closure.emission) > 0.0 && !gathered) {
         float share = 1.0;
         if (path.scatter_density > 0.0)
-            share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle, materials[closure.material].emitted));
+            share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle));
         seen.rgb += path.throughput * closure.emission * share;
     }
     radiances[index] += seen;
@@ -167,8 +167,11 @@ void main() {
         direction = sampled.direction;
         weight = sampled.weight;
         transmitted = sampled.transmitted;
-        path.flags &= ~PATH_STRAIGHT;
+        path.flags &= ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR);
+        if (transmitted) path.flags |= PATH_TRANSMITTED;
+        if (lobe.alpha <= SMOOTHEST_LIT) path.flags |= PATH_SINGULAR;
     }
+    if (diffuse) path.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_DIFFUSE;
     path.throughput *= weight * (total / (probability * survival));
     if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.

@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a material's lobes to a closure, seen from one side: what Cycles' shader nodes set up.
+// From shader nodes to a closure, seen from one side: what Cycles' shader nodes set up.
 
-#include <Material>
-#include <MaterialLobe>
 #include "common/bsdf/closure.glsl"
 #include "materials/albedo_tables.glsl"
-#include "materials/textures.glsl"
-
-layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 6) readonly buffer MaterialLobes { MaterialLobe material_lobes[]; };
-
-// The numbers of scene.LobeKind.
-const uint KIND_DIFFUSE = 0u, KIND_GLOSSY = 1u, KIND_GLASS = 2u, KIND_REFRACTION = 3u,
-           KIND_TRANSPARENT = 4u, KIND_EMISSION = 5u, KIND_PRINCIPLED = 6u;
 
 struct ClosureBuilder { Closure closure; int lobes; float cosine; bool backfacing; float u_choice; };
 
@@ -79,54 +69,4 @@ void add_glass(inout ClosureBuilder builder, vec3 reflected, vec3 passed, float 
 float index_from_reflectance(float f0) {
     float root = sqrt(clamp(f0, 0.0, 0.99));
     return (1.0 + root) / (1.0 - root);
-}
-
-void add_principled(inout ClosureBuilder builder, MaterialLobe lobe, vec3 color) {
-    float cosine = builder.cosine, roughness = lobe.roughness;
-    builder.closure.transparent += vec3(lobe.weight * (1.0 - lobe.alpha));
-    float weight = lobe.weight * lobe.alpha;
-    builder.closure.emission += weight * lobe.emission;
-    if (lobe.metallic > 0.0) {
-        vec3 edge = vec3(1.0);
-        vec3 average = mix(color, edge, 1.0 / 21.0);  // cosine-weighted mean of Schlick's Fresnel
-        vec3 factor = lobe.multiscatter != 0u ? multiscatter_factor(roughness, cosine, average) : vec3(1.0);
-        add_lobe(builder, MicrofacetLobe(weight * lobe.metallic * factor, LOBE_METAL, color, roughness * roughness, 1.0));
-        weight *= 1.0 - lobe.metallic;
-    }
-    if (lobe.transmission > 0.0) {
-        float share = weight * lobe.transmission;
-        add_glass(builder, share * lobe.specular_tint, share * sqrt(max(color, vec3(0.0))), roughness, lobe.ior, lobe.multiscatter != 0u);
-        weight *= 1.0 - lobe.transmission;
-    }
-    if (weight <= 0.0) return;
-    float f0 = normal_reflectance(lobe.ior) * 2.0 * lobe.specular_level;
-    float ior = index_from_reflectance(f0);
-    if (lobe.ior < 1.0 || builder.backfacing) ior = 1.0 / ior;
-    vec3 below = vec3(weight);
-    if (f0 > 0.0) {
-        vec3 tinted = min(f0 * lobe.specular_tint, vec3(1.0));
-        float outside = max(ior, 1.0 / ior);
-        // Cycles does not compensate this lobe: what it loses passes to the layer below.
-        vec3 albedo = tinted * white_albedo(roughness, cosine)
-                    + (1.0 - tinted) * dielectric_grazing_albedo(outside, roughness, cosine);
-        add_lobe(builder, MicrofacetLobe(vec3(weight), LOBE_DIELECTRIC, tinted, roughness * roughness, outside));
-        below *= 1.0 - largest(albedo);
-    }
-    builder.closure.diffuse += max(below, vec3(0.0)) * color;
-}
-
-void add_material_lobe(inout ClosureBuilder builder, MaterialLobe lobe, vec2 uv) {
-    vec3 color = lobe.color;
-    if (lobe.color_image != NO_IMAGE) color *= sample_image(lobe.color_image, uv).rgb;
-    vec3 weighted = lobe.weight * color;
-    bool multiscatter = lobe.multiscatter != 0u;
-    if (lobe.kind == KIND_DIFFUSE) builder.closure.diffuse += weighted;
-    else if (lobe.kind == KIND_GLOSSY) add_mirror(builder, lobe.weight, color, lobe.roughness, multiscatter);
-    else if (lobe.kind == KIND_GLASS) add_glass(builder, weighted, weighted, lobe.roughness, lobe.ior, multiscatter);
-    else if (lobe.kind == KIND_REFRACTION)
-        add_lobe(builder, MicrofacetLobe(weighted, LOBE_REFRACTION, vec3(0.0), lobe.roughness * lobe.roughness,
-                                         builder.backfacing ? 1.0 / lobe.ior : lobe.ior));
-    else if (lobe.kind == KIND_TRANSPARENT) builder.closure.transparent += weighted;
-    else if (lobe.kind == KIND_EMISSION) builder.closure.emission += weighted;
-    else if (lobe.kind == KIND_PRINCIPLED) add_principled(builder, lobe, color);
 }

@@ -1,37 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bilinear, repeating lookups in the common texel buffer.
+// Lookups in the common texel buffer.
 
 #include <ImageEntry>
 layout(std430, binding = 7) readonly buffer Images { ImageEntry images[]; };
 layout(std430, binding = 8) readonly buffer Texels { uint texels[]; };
 
-const uint NO_IMAGE = 0xffffffffu;
-const uint FORMAT_SRGB = 0u;
-const uint FORMAT_HALF = 2u;
+const uint FORMAT_SRGB = 0u, FORMAT_BYTES = 1u, FORMAT_HALF = 2u;
+const int EXTENSION_REPEAT = 0, EXTENSION_EXTEND = 1, EXTENSION_CLIP = 2, EXTENSION_MIRROR = 3;
+const int INTERPOLATION_LINEAR = 0, INTERPOLATION_CLOSEST = 1, INTERPOLATION_CUBIC = 2, INTERPOLATION_SMART = 3;
 
 vec3 srgb_to_linear(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
-vec4 image_texel(ImageEntry image, ivec2 at) {
-    ivec2 size = ivec2(image.width, image.height);
-    at -= size * ivec2(floor(vec2(at) / vec2(size)));  // GLSL leaves % of negative numbers undefined
-    at = clamp(at, ivec2(0), size - 1);
-    uint index = uint(at.y * size.x + at.x);
-    if (image.format == FORMAT_HALF) {
-        index = image.first_texel + 2u * index;
-        return vec4(unpackHalf2x16(texels[index]), unpackHalf2x16(texels[index + 1u]));
-    }
-    vec4 color = unpackUnorm4x8(texels[image.first_texel + index]);
-    return image.format == FORMAT_SRGB ? vec4(srgb_to_linear(color.rgb), color.a) : color;
+// GLSL leaves % of negative numbers undefined.
+int wrapped(int i, int size) {
+    i -= size * int(floor(float(i) / float(size)));
+    return clamp(i, 0, size - 1);
 }
 
-vec4 sample_image(uint number, vec2 uv) {
-    ImageEntry image = images[number];
-    vec2 p = uv * vec2(image.width, image.height) - 0.5;
-    vec2 cell = floor(p);
-    vec2 f = p - cell;
+int extended(int i, int size, int extension) {
+    if (extension == EXTENSION_REPEAT) return wrapped(i, size);
+    if (extension == EXTENSION_MIRROR) {
+        i = wrapped(i, 2 * size);
+        return i < size ? i : 2 * size - 1 - i;
+    }
+    return clamp(i, 0, size - 1);
+}
+
+vec4 image_texel(ImageEntry image, ivec2 at, int extension) {
+    ivec2 size = ivec2(image.width, image.height);
+    bool outside = extension == EXTENSION_CLIP && (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size)));
+    at = ivec2(extended(at.x, size.x, extension), extended(at.y, size.y, extension));
+    uint index = uint(at.y * size.x + at.x);
+    vec4 color;
+    if (image.format == FORMAT_HALF) {
+        index = image.first_texel + 2u * index;
+        color = vec4(unpackHalf2x16(texels[index]), unpackHalf2x16(texels[index + 1u]));
+    } else color = unpackUnorm4x8(texels[image.first_texel + index]);
+    return outside ? vec4(0.0) : color;
+}
+
+vec4 cubic_weights(float t) {
+    float t2 = t * t, t3 = t2 * t;
+    return vec4(1.0 - 3.0 * t + 3.0 * t2 - t3, 4.0 - 6.0 * t2 + 3.0 * t3, 1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3, t3) / 6.0;
+}
+
+vec4 filter_image(ImageEntry image, vec2 uv, int interpolation, int extension) {
+    vec2 p = uv * vec2(image.width, image.height);
+    if (interpolation == INTERPOLATION_CLOSEST) return image_texel(image, ivec2(floor(p)), extension);
+    vec2 cell = floor(p - 0.5), f = p - 0.5 - cell;
     ivec2 i = ivec2(cell);
-    return mix(mix(image_texel(image, i), image_texel(image, i + ivec2(1, 0)), f.x),
-               mix(image_texel(image, i + ivec2(0, 1)), image_texel(image, i + ivec2(1, 1)), f.x), f.y);
+    if (interpolation == INTERPOLATION_CUBIC || interpolation == INTERPOLATION_SMART) {
+        vec4 across = cubic_weights(f.x), upward = cubic_weights(f.y), sum = vec4(0.0);
+        for (int k = 0; k < 16; ++k)
+            sum += across[k & 3] * upward[k >> 2] * image_texel(image, i + ivec2((k & 3) - 1, (k >> 2) - 1), extension);
+        return sum;
+    }
+    return mix(mix(image_texel(image, i, extension), image_texel(image, i + ivec2(1, 0), extension), f.x),
+               mix(image_texel(image, i + ivec2(0, 1), extension), image_texel(image, i + ivec2(1, 1), extension), f.x), f.y);
+}
+
+// As Cycles does it: filtered while still encoded and multiplied by alpha, then divided where alpha is used on its own.
+vec4 sample_image(uint number, vec2 uv, int interpolation, int extension, int divide) {
+    ImageEntry image = images[number];
+    vec4 color = filter_image(image, uv, interpolation, extension);
+    if (divide != 0 && color.a != 1.0 && color.a != 0.0) color.rgb /= color.a;
+    if (image.format == FORMAT_SRGB) color.rgb = srgb_to_linear(color.rgb);
+    return color;
 }

@@ -15,6 +15,7 @@ import numpy as np
 from benchmark_machine import ROOT, Clock
 from bounding_volumes import BoundingVolumes, build_nodes
 from deep_cubemap_scenes import room_with_meshes
+from lobes import Lobe, LobeKind, material
 from ray_sets import different, photon_origins, record_rays, triangles
 
 from rppm_addon.gl.context import Context
@@ -26,7 +27,6 @@ from rppm_addon.integrator.records import HIT
 from rppm_addon.scene import Camera, Scene, load_scene
 from rppm_addon.scene.errors import RppmError
 from rppm_addon.scene.lights import Light, LightKind
-from rppm_addon.scene.materials import Lobe, LobeKind, Material
 from rppm_addon.scene.meshes import Instance, Mesh
 
 log = logging.getLogger("benchmark")
@@ -211,7 +211,7 @@ def room_scene(triangle_count: int) -> Scene:
         camera=Camera(camera_matrix, (-0.8, 0.8, -0.6, 0.6), 640, 480, clip_start=0.01),
         meshes=[mesh],
         instances=[Instance(0, np.eye(4), [0], "room")],
-        materials=[Material("grey", [Lobe(LobeKind.DIFFUSE, color=(0.7, 0.7, 0.7))])],
+        materials=[material("grey", Lobe(LobeKind.DIFFUSE, color=(0.7, 0.7, 0.7)))],
         lights=[Light("square", LightKind.AREA, light_matrix, np.full(3, 10.0), size=(0.4, 0.4))],
     )
 

@@ -7,8 +7,6 @@ import pytest
 from blender_scenes import add_mesh, add_node, export, export_lobes, link, new_material, to_surface
 from test_export_lights import cycles_radiance
 
-from rppm_addon.scene import LobeKind
-
 
 def new_image(name, pixels, is_float=False, space=None):
     """pixels: (height, width, 4), as Blender stores them."""

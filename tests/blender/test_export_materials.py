@@ -7,7 +7,6 @@ import pytest
 from blender_scenes import add_mesh, add_node, export, export_lobes, link, new_material, to_surface
 
 from rppm_addon.blender.export.constants import blackbody, mean_fresnel
-from rppm_addon.scene import LobeKind
 
 RED = (1.0, 0.0, 0.0, 1.0)
 OCHRE = (0.5, 0.25, 0.125, 1.0)

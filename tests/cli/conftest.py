@@ -6,20 +6,9 @@ import sys
 
 import numpy as np
 import pytest
+from lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import (
-    Camera,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    Mesh,
-    RenderSettings,
-    Scene,
-    save_scene,
-)
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Mesh, RenderSettings, Scene, save_scene
 
 
 def start_rppm(*arguments):
@@ -62,7 +51,7 @@ def floor_scene():
         Camera(down, (-0.5, 0.5, -0.375, 0.375), 16, 12),
         meshes=[floor],
         instances=[Instance(0, np.eye(4), [0], "Floor")],
-        materials=[Material("Grey", [Lobe(LobeKind.DIFFUSE, color=(0.5, 0.5, 0.5))])],
+        materials=[material("Grey", Lobe(LobeKind.DIFFUSE, color=(0.5, 0.5, 0.5)))],
         lights=[Light("Lamp", LightKind.POINT, lamp, np.full(3, 10.0))],
         settings=RenderSettings(iterations=3, photons=1024),
     )

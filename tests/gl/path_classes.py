@@ -12,21 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 import path_quadrature as quadrature
 import scenes
+from lobes import Lobe, LobeKind, material
 from path_quadrature import Plane, Spot
 
-from rppm_addon.scene import (
-    Camera,
-    DirectLight,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    Mesh,
-    RenderSettings,
-    Scene,
-)
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 
 SIZE = 24
 """Pixels along a side."""
@@ -115,7 +104,7 @@ def scene_of(
         camera,
         [mesh for mesh, _ in surfaces],
         [Instance(index, np.eye(4), [index]) for index in range(len(surfaces))],
-        [Material(mesh.name, [lobe]) for mesh, lobe in surfaces],
+        [material(mesh.name, lobe) for mesh, lobe in surfaces],
         [light] if light else [],
         settings=settings,
     )

@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from lobes import Lobe, LobeKind
 from path_classes import facing_down, level
 from path_quadrature import Spot
 
-from rppm_addon.scene import Lobe, LobeKind, Mesh
+from rppm_addon.scene import Mesh
 
 AIR, INDEX = 1.0, 1.5
 INTERFACE = 0.6

@@ -2,8 +2,9 @@
 """Small scenes made of arrays, without Blender."""
 
 import numpy as np
+from lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Lobe, LobeKind, Material, Mesh, RenderSettings, Scene
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, Mesh, RenderSettings, Scene
 
 
 def polygons(name: str, positions: np.ndarray, faces: list[tuple[int, ...]], smooth: bool = False) -> Mesh:
@@ -60,7 +61,7 @@ def looking(position: tuple[float, float, float], target: tuple[float, float, fl
 
 
 def diffuse(*color: float) -> Material:
-    return Material("diffuse", [Lobe(LobeKind.DIFFUSE, color=color)])
+    return material("diffuse", Lobe(LobeKind.DIFFUSE, color=color))
 
 
 def room(size: int = 32, **settings: object) -> Scene:
@@ -75,8 +76,8 @@ def room(size: int = 32, **settings: object) -> Scene:
     ]
     materials = [
         diffuse(0.75, 0.75, 0.75), diffuse(0.7, 0.1, 0.1), diffuse(0.1, 0.6, 0.1),
-        Material("glass", [Lobe(LobeKind.GLASS, ior=1.5)]),
-        Material("mirror", [Lobe(LobeKind.GLOSSY, color=(0.9, 0.9, 0.9))]),
+        material("glass", Lobe(LobeKind.GLASS, ior=1.5)),
+        material("mirror", Lobe(LobeKind.GLOSSY, color=(0.9, 0.9, 0.9))),
     ]  # fmt: skip
     instances = [Instance(index, np.eye(4), [material]) for index, material in enumerate((0, 0, 0, 1, 2))]
     instances += [Instance(5, placed(-0.4, -0.1, -0.6, 0.35), [3]), Instance(5, placed(0.45, 0.3, -0.6, 0.35), [4])]

@@ -10,21 +10,9 @@ import math
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import (
-    Camera,
-    DirectLight,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    Mesh,
-    RenderSettings,
-    Scene,
-    World,
-)
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene, World
 
 STEADY = 0.999999  # alpha of a radius that hardly shrinks
 
@@ -92,7 +80,7 @@ def test_a_closed_box_with_walls_of_a_millimetre_is_black_outside(renderer, dire
     if mirrored:
         scene.camera.matrix = scenes.looking((2, 0, 0), (3, 0, 0))
         scene.meshes.append(scenes.rectangle("mirror", (4, -2, -2), (4, -2, 2), (4, 2, 2), (4, 2, -2)))
-        scene.materials.append(Material("mirror", [Lobe(LobeKind.GLOSSY)]))
+        scene.materials.append(material("mirror", Lobe(LobeKind.GLOSSY)))
         scene.instances.append(Instance(2, np.eye(4), [1]))
     assert (picture(renderer, scene) == 0).all()
     scene.camera = view((0.3, 0.3, 0.3), (-1, 0.3, -0.5), 0.1)

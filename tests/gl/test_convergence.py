@@ -13,6 +13,7 @@ radius and the flux of its photons as they were; Eq. 2 alone is compared with th
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 from scipy.interpolate import CubicSpline
 from scipy.stats import norm as normal
 from scipy.stats import t as student
@@ -21,19 +22,7 @@ from rppm_addon.integrator import progressive
 from rppm_addon.integrator.bandwidth import shrinkage
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import PHOTON_DIFFUSED, PHOTON_STORED
-from rppm_addon.scene import (
-    Camera,
-    DirectLight,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    Mesh,
-    RenderSettings,
-    Scene,
-)
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 
 CHECKPOINTS = (1, 2, 4, 8, 16, 32, 64)
 SLOPE = slice(CHECKPOINTS.index(4), None)
@@ -99,7 +88,7 @@ def lens(photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scen
     triangles = (corner + [[0, 1, corners + 1, 0, corners + 1, corners]]).reshape(-1, 3).astype(np.int32)
     vertices, slots = np.arange(len(positions), dtype=np.int32), np.zeros(len(triangles), np.int32)
     sheet = Mesh("lens", positions, vertices, normals.astype(np.float32), triangles, slots)
-    glass = Material("glass", [Lobe(LobeKind.REFRACTION, ior=LENS_INDEX)])
+    glass = material("glass", Lobe(LobeKind.REFRACTION, ior=LENS_INDEX))
     sun = Light("sun", LightKind.SUN, scenes.placed(0, 0, 4), np.ones(3))
     return Scene(
         camera_down(0.3, 0.08, size), [floor(LENS_HALF), sheet], [Instance(i, np.eye(4), [i]) for i in (0, 1)],

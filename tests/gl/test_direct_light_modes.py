@@ -5,11 +5,12 @@ import dataclasses
 
 import numpy as np
 import scenes
+from lobes import material
 from parity.comparison import write_pair
 from path_classes import CUT, FIRST, MODES, PHOTONS, SECOND, SIZE, STORED, TRACED, lobe
 from path_comparison import BLOCKS, OUTPUT, ROUNDING, SEEDS, SHARPNESS, block_errors, blocks, render
 
-from rppm_addon.scene import DirectLight, Material, Scene
+from rppm_addon.scene import DirectLight, Scene
 
 NEAREST_BLOCK = 0.8 * 2.6 / BLOCKS
 """Metres across a block of the room's front, the window's width being 0.8 at 1 m."""
@@ -24,7 +25,7 @@ def all_kinds(mode: DirectLight) -> Scene:
         radius_minimum=0.025, radius_maximum=0.025, filter_width=0.0, specular_roughness=CUT,
     )  # fmt: skip
     for index, roughness in ((1, TRACED), (2, STORED)):
-        scene.materials.append(Material("glossy", [lobe("D", 0.4 * FIRST), lobe(roughness, 0.5 * SECOND)]))
+        scene.materials.append(material("glossy", lobe("D", 0.4 * FIRST), lobe(roughness, 0.5 * SECOND)))
         scene.instances[index].materials = [len(scene.materials) - 1]
     # Half as wide as the room: glossy walls find it by scattering, too.
     scene.lights[0] = dataclasses.replace(scene.lights[0], strength=np.full(3, 3.0), size=(1.0, 1.0))

@@ -3,10 +3,10 @@
 
 import numpy as np
 import scenes
+from lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator import final_gather
 from rppm_addon.integrator.records import GATHERING_VERTEX
-from rppm_addon.scene import Lobe, LobeKind, Material
 
 SIZE, SEEDS = 48, 8
 
@@ -42,7 +42,7 @@ def test_sharing_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
 
 def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
     scene = scenes.room(SIZE, photons=64)
-    scene.materials.append(Material("rough", [Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=0.8)]))
+    scene.materials.append(material("rough", Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=0.8)))
     scene.instances[0].materials = [len(scene.materials) - 1]
     mapper.build(scene)
     mapper.iterate()

@@ -6,21 +6,10 @@ import math
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.records import IMPORTON
-from rppm_addon.scene import (
-    Camera,
-    Image,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    Mesh,
-    RenderSettings,
-    Scene,
-)
+from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 
 SIZE = 24
 TANGENT = 0.4  # of half the vertical aperture
@@ -32,7 +21,7 @@ def tilted_view(orthographic: bool, segments: int) -> Scene:
     mirror = scenes.rectangle("mirror", (-1, -9, 0), (-1, 9, 0), (-1, 9, 9), (-1, -9, 9))
     half = TANGENT if not orthographic else 2.0
     camera = Camera(scenes.looking((1, 0.3, 3), (0, 0, 0)), (-half, half, -half, half), SIZE, SIZE, orthographic)
-    materials = [scenes.diffuse(0.5, 0.5, 0.5), Material("mirror", [Lobe(LobeKind.GLOSSY)])]
+    materials = [scenes.diffuse(0.5, 0.5, 0.5), material("mirror", Lobe(LobeKind.GLOSSY))]
     sun = Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
     settings = RenderSettings(
         photons=64, filter_width=0.0, radius_minimum=1e-9, radius_maximum=1e9, camera_path_length=segments
@@ -142,8 +131,8 @@ def chain_footprints(mapper, surfaces: list, meshes: list, position: tuple, targ
     area pi (r / s_r)^2 that the renderer's radius stands for, m^2, and each surface's segment lengths and cosines."""
     half = 0.3 if orthographic else 0.05
     camera = Camera(scenes.looking(position, target), (-half, half, -half, half), SIZE, SIZE, orthographic)
-    materials = [scenes.diffuse(0.5, 0.5, 0.5), Material("mirror", [Lobe(LobeKind.GLOSSY)])]
-    materials.append(Material("glass", [Lobe(LobeKind.REFRACTION, ior=1.5)]))
+    materials = [scenes.diffuse(0.5, 0.5, 0.5), material("mirror", Lobe(LobeKind.GLOSSY))]
+    materials.append(material("glass", Lobe(LobeKind.REFRACTION, ior=1.5)))
     kinds = [0 if surface is surfaces[-1] else 2 if surface.index else 1 for surface in surfaces]
     settings = RenderSettings(
         photons=64, filter_width=0.0, radius_minimum=1e-9, radius_maximum=1e9, camera_path_length=len(surfaces)
@@ -243,7 +232,7 @@ def test_image_textures_are_bilinear_and_repeat(renderer, kind):
     sheet.corner_uv = np.array([(-0.5, -0.25), (1.5, -0.25), (1.5, 1.75), (-0.5, 1.75)], np.float32)
     camera = Camera(scenes.looking((0, 0, 1), (0, 0, 0)), (-1, 1, -1, 1), 40, 40, True)
     camera.matrix[:3, :3] = np.eye(3)
-    glow = Material("glow", [Lobe(LobeKind.EMISSION, color=(1, 2, 3), color_image=0)])
+    glow = material("glow", Lobe(LobeKind.EMISSION, color=(1, 2, 3), color_image=0))
     settings = RenderSettings(iterations=1, photons=64, filter_width=0.0)
     scene = Scene(camera, [sheet], [Instance(0, np.eye(4), [0])], [glow], images=[image], settings=settings)
     got = renderer.render(scene).frame.combined[..., :3]

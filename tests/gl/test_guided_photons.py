@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 from test_light_sources import LIGHTS, floor_scene
 
 from rppm_addon.integrator import guide, progressive
 from rppm_addon.integrator.records import PHOTON_PATH, RAY
-from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Lobe, LobeKind, Material, Scene, World
+from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Scene, World
 
 
 def lit_floor(name: str, aimed: bool) -> Scene:
@@ -24,10 +25,10 @@ def lit_floor(name: str, aimed: bool) -> Scene:
         scene.world = World(np.ones(3), 0)
     if name == "mesh":
         scene.meshes.append(scenes.sphere("lamp", 8, 4))
-        scene.materials.append(Material("lamp", [Lobe(LobeKind.EMISSION, color=(5, 5, 5))]))
+        scene.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
         scene.instances.append(Instance(1, scenes.placed(0, 0, 2, 0.3), [1]))
     if aimed:
-        scene.materials.append(Material("air", [Lobe(LobeKind.REFRACTION, ior=1.0)]))
+        scene.materials.append(material("air", Lobe(LobeKind.REFRACTION, ior=1.0)))
         scene.meshes.append(scenes.sphere("ball"))
         ball, air = len(scene.meshes) - 1, len(scene.materials) - 1
         scene.instances.append(Instance(ball, scenes.placed(0.2, 0.1, 0.5, 0.2), [air]))

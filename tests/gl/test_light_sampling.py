@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 from test_light_sources import floor_scene
 
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator.emission import LIGHT_PARAMETERS
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Lobe, LobeKind, Material, Scene
+from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Scene
 
 Record("SphericalTriangleParameters", count="uint", samples="uint")
 Record("LightSamplesParameters", **LIGHT_PARAMETERS, point="vec3", emitted="float")
@@ -232,7 +233,7 @@ def walled_scene() -> Scene:
     """A floor and a wall of side 1 at its edge that emits 1."""
     scene = floor_scene(None, DirectLight.RAYS)
     scene.meshes.append(scenes.rectangle("wall", (0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)))
-    scene.materials.append(Material("wall", [Lobe(LobeKind.EMISSION, color=(1, 1, 1))]))
+    scene.materials.append(material("wall", Lobe(LobeKind.EMISSION, color=(1, 1, 1))))
     scene.instances.append(Instance(1, np.eye(4), [1]))
     return scene
 

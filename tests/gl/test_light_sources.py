@@ -6,21 +6,9 @@ import math
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import (
-    Camera,
-    DirectLight,
-    Image,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    RenderSettings,
-    Scene,
-    World,
-)
+from rppm_addon.scene import Camera, DirectLight, Image, Instance, Light, LightKind, RenderSettings, Scene, World
 
 
 def down(z: float) -> np.ndarray:
@@ -111,14 +99,14 @@ def test_an_emissive_mesh_lights_as_an_area_light(renderer, kind):
     lobe = (
         Lobe(kind, color=(5, 5, 5))
         if kind is LobeKind.EMISSION
-        else Lobe(kind, color=(0, 0, 0), specular_level=0, emission=(5, 5, 5))
+        else Lobe(kind, color=(0, 0, 0), specular_ior_level=0, emission_color=(5, 5, 5), emission_strength=1.0)
     )
     lamp = scenes.rectangle("lamp", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2))
     reference = renderer.render(floor_scene(LIGHTS["square"], DirectLight.RAYS)).frame.combined[..., :3].mean()
     for mode in DirectLight:
         scene = floor_scene(None, mode)
         scene.meshes.append(lamp)
-        scene.materials.append(Material("lamp", [lobe]))
+        scene.materials.append(material("lamp", lobe))
         scene.instances.append(Instance(1, np.eye(4), [1]))
         assert renderer.render(scene).frame.combined[..., :3].mean() == pytest.approx(reference, rel=0.02)
 
@@ -150,7 +138,7 @@ def test_aiming_moves_no_energy(renderer, name):
         made.settings.photon_path_length = made.settings.camera_path_length = 4
         if name == "mesh":
             made.meshes.append(scenes.rectangle("lamp", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2)))
-            made.materials.append(Material("lamp", [Lobe(LobeKind.EMISSION, color=(5, 5, 5))]))
+            made.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
             made.instances.append(Instance(1, np.eye(4), [1]))
         return made
 
@@ -158,7 +146,7 @@ def test_aiming_moves_no_energy(renderer, name):
     aimed_scene = scene()
     ball = len(aimed_scene.meshes)
     aimed_scene.meshes.append(scenes.sphere("ball"))
-    aimed_scene.materials.append(Material("air", [Lobe(LobeKind.REFRACTION, ior=1.0)]))
+    aimed_scene.materials.append(material("air", Lobe(LobeKind.REFRACTION, ior=1.0)))
     aimed_scene.instances.append(Instance(ball, scenes.placed(0.2, 0.1, 0.5, 0.2), [len(aimed_scene.materials) - 1]))
     result = renderer.render(aimed_scene)
     aimed = result.frame.combined[..., :3].mean()

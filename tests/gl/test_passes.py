@@ -4,18 +4,9 @@
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import (
-    Camera,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    RenderSettings,
-    Scene,
-)
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
 
 
 def behind_a_pane(material: Material, floor: bool = True) -> Scene:
@@ -30,7 +21,7 @@ def behind_a_pane(material: Material, floor: bool = True) -> Scene:
 
 
 def see_through(share: float) -> Material:
-    return Material("pane", [Lobe(LobeKind.PRINCIPLED, alpha=1 - share)])
+    return material("pane", Lobe(LobeKind.PRINCIPLED, alpha=1 - share))
 
 
 @pytest.mark.parametrize(("share", "passed"), [(0.0, False), (0.3, False), (0.7, True), (1.0, True)])
@@ -50,6 +41,6 @@ def test_alpha_is_what_hides_the_background(renderer, share):
 
 
 def test_glass_hides_the_background(renderer):
-    material = Material("pane", [Lobe(LobeKind.REFRACTION, ior=1.5)])
-    frame = renderer.render(behind_a_pane(material, floor=False)).frame
+    pane = material("pane", Lobe(LobeKind.REFRACTION, ior=1.5))
+    frame = renderer.render(behind_a_pane(pane, floor=False)).frame
     assert (frame.combined[..., 3] == 1).all()

@@ -4,6 +4,7 @@
 import numpy as np
 import path_quadrature as quadrature
 import pytest
+from lobes import material
 from path_classes import (
     DOWN,
     FIRST,
@@ -30,7 +31,7 @@ from path_classes import (
 from path_comparison import compare, gathering
 from path_quadrature import Plane
 
-from rppm_addon.scene import DirectLight, Instance, Material
+from rppm_addon.scene import DirectLight, Instance
 
 CLASSES: dict[str, Build] = {
     "LDE": lambda mode: straight("D", mode),
@@ -49,7 +50,7 @@ def two_mirrors(mode: DirectLight) -> Case:
     scene, light = corner("S", "S", camera, mode, (3, 1), half_angle=0.16)
     ceiling = Plane(np.array([0.0, 0.0, 2.0]), DOWN)
     scene.meshes.append(facing_down("ceiling", 2.0, -1.7, 1.19))
-    scene.materials.append(Material("ceiling", [lobe("D", THIRD)]))
+    scene.materials.append(material("ceiling", lobe("D", THIRD)))
     scene.instances.append(Instance(2, np.eye(4), [2]))
     image = light.mirrored(FLOOR).mirrored(WALL)
     origin, directions = quadrature.camera_rays(scene.camera)

@@ -8,11 +8,12 @@ import path_glass as glass
 import path_quadrature as quadrature
 import pytest
 import scenes
+from lobes import Lobe, LobeKind
 from path_classes import FIRST, FLOOR, MODES, Build, Case, level, lobe, scene_of, traced_only, view
 from path_comparison import compare
 from path_quadrature import Plane
 
-from rppm_addon.scene import DirectLight, Light, LightKind, Lobe, LobeKind, Mesh
+from rppm_addon.scene import DirectLight, Light, LightKind, Mesh
 
 CLASSES: dict[str, Build] = {
     "LE area": lambda mode: seen_straight("area", mode),

@@ -6,21 +6,9 @@ import math
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import (
-    Camera,
-    DirectLight,
-    Image,
-    Instance,
-    Light,
-    LightKind,
-    Lobe,
-    LobeKind,
-    Material,
-    RenderSettings,
-    Scene,
-    World,
-)
+from rppm_addon.scene import Camera, DirectLight, Image, Instance, Light, LightKind, RenderSettings, Scene, World
 
 
 def above(x: float, z: float) -> np.ndarray:
@@ -53,7 +41,7 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene
         camera,
         [floor],
         [Instance(0, np.eye(4), [0])],
-        [Material("floor", [lobe])],
+        [material("floor", lobe)],
         LIGHTS[light],
         settings=settings,
     )
@@ -66,7 +54,7 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene
         scene.world = World(np.ones(3), 0)
     if light == "mesh":
         scene.meshes.append(scenes.rectangle("lamp", (1, -0.3, 1), (1, 0.3, 1), (1.2, 0.3, 1.5), (1.2, -0.3, 1.5)))
-        scene.materials.append(Material("lamp", [Lobe(LobeKind.EMISSION, color=(9, 9, 9))]))
+        scene.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(9, 9, 9))))
         scene.instances.append(Instance(1, np.eye(4), [1]))
     return scene
 
@@ -152,7 +140,7 @@ def swept_sheet(path: str, kind: LobeKind, mode: DirectLight, roughness: float, 
         direct_light=mode, photon_path_length=3, camera_path_length=3,
         radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0, specular_roughness=cut, final_gather=False,
     )  # fmt: skip
-    materials = [Material("sheet", [lobe]), scenes.diffuse(0.8, 0.8, 0.8)]
+    materials = [material("sheet", lobe), scenes.diffuse(0.8, 0.8, 0.8)]
     meshes, instances = [sheet], [Instance(0, np.eye(4), [0])]
     if path != "LGE":
         meshes.append(wall)

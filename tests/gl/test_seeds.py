@@ -6,12 +6,13 @@ import itertools
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 from test_convergence import blurred, lamp, lamp_radiance, pixel_points
 
 from rppm_addon.integrator import gbuffer
 from rppm_addon.integrator.gbuffer import filter_offsets
 from rppm_addon.integrator.guide import LEARNING_ITERATIONS
-from rppm_addon.scene import DirectLight, Lobe, LobeKind, Material, Scene
+from rppm_addon.scene import DirectLight, Scene
 from rppm_addon.session.renderer import Renderer
 
 
@@ -23,7 +24,7 @@ def busy_room(direct_light: DirectLight, seed: int = 3) -> Scene:
         camera_path_length=4, photon_path_length=4, radius_scale=100.0,
     )  # fmt: skip
     rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)
-    scene.materials[1] = Material("rough", [rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1))])
+    scene.materials[1] = material("rough", rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1)))
     return scene
 
 

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from lobes import Lobe, LobeKind
 
 from rppm_addon.integrator.emission import _spread_share, share_out, spot_share, spread_constants
 from rppm_addon.integrator.environment import distribution_of
 from rppm_addon.materials.emitted import emitted_radiance
-from rppm_addon.scene import Lobe, LobeKind, Material
+from rppm_addon.scene import Material
 
 
 @settings(deadline=None, derandomize=True)
@@ -50,7 +51,7 @@ def test_spread_keeps_the_flux_of_an_area_light(degrees):
 def test_emission_adds_up_lobes():
     lobes = [
         Lobe(LobeKind.EMISSION, weight=0.5, color=(2, 4, 6)),
-        Lobe(LobeKind.PRINCIPLED, weight=0.5, alpha=0.5, emission=(4, 0, 0)),
+        Lobe(LobeKind.PRINCIPLED, weight=0.5, alpha=0.5, emission_color=(4, 0, 0), emission_strength=1.0),
         Lobe(LobeKind.DIFFUSE, color=(9, 9, 9)),
     ]
     np.testing.assert_allclose(emitted_radiance(Material("m", lobes), []), [2, 2, 3])

@@ -5,6 +5,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import (
     Camera,
@@ -13,9 +14,6 @@ from rppm_addon.scene import (
     Instance,
     Light,
     LightKind,
-    Lobe,
-    LobeKind,
-    Material,
     Mesh,
     RenderSettings,
     Scene,
@@ -42,7 +40,9 @@ def full_scene() -> Scene:
         camera=Camera(np.eye(4), (-1, 1, -0.5, 0.5), 64, 32, True, 0.2, 50.0, (1, 2, 30, 31)),
         meshes=[mesh, bare],
         instances=[Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3), Instance(1, np.eye(4))],
-        materials=[Material("a", [Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1)], np.array([1, 2, 3.0]))],
+        materials=[
+            material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0]))
+        ],
         lights=[Light("sun", LightKind.SUN, np.eye(4), np.array([1, 2, 3.0]), sun_angle=0.1)],
         world=World(np.array([0.1, 0.2, 0.3]), 0),
         images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Node graphs to GLSL.
+
+A graph becomes the function ``evaluate_material`` and its constants. Numbers, images, tables and attributes are
+constants in a buffer, so graphs that differ in those only have the same text and share a program.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..scene.errors import RppmError
+from ..scene.node_graphs import Link, NodeGraph, ShaderNode
+from .node_kinds import FLOAT, SHADER, NodeKind, SocketType
+from .nodes import KINDS
+
+LUMINANCE = (0.2126, 0.7152, 0.0722)
+"""Rec.709: how a colour becomes a number, as Cycles has it."""
+
+MIX_SHADER, ADD_SHADER, BUMP = "mix_shader", "add_shader", "bump"
+"""Kinds that the compiler itself knows: two share out weights, one evaluates its input three times."""
+
+
+_IMPLICIT = {"normal": "surface.normal", "tangent": "default_tangent(surface)"}
+"""What inputs stand for whose default is a name."""
+
+
+class GraphError(RppmError):
+    """A graph is not what the kinds of its nodes say."""
+
+
+@dataclass(frozen=True)
+class Resource:
+    """A constant that is known only when all materials of a scene are laid out."""
+
+    what: str
+    """table, image or attribute."""
+    node: int
+
+
+@dataclass
+class CompiledGraph:
+    """GLSL for a structure of graphs, and the constants of one graph."""
+
+    text: str
+    constants: list[float | Resource] = field(default_factory=list)
+
+
+class _Scope:
+    """Statements of one GLSL function, each output of a node computed once."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.known: dict[int, dict[str, str]] = {}
+
+
+class _Compiler:
+    def __init__(self, graph: NodeGraph) -> None:
+        self._graph = graph
+        self._constants: list[float | Resource] = []
+        self._places: dict[tuple[int, str], int] = {}
+        self._sources: dict[str, None] = {}
+        self._functions: list[str] = []
+        self._heights: dict[int, str] = {}
+
+    def compile(self) -> CompiledGraph:
+        scope = _Scope()
+        if self._graph.normal is not None:
+            scope.lines.append(f"surface.normal = {self._converted(scope, self._graph.normal, SocketType.VECTOR)};")
+            scope.known.clear()  # what has been asked of the surface may change with its normal
+        if self._graph.surface is not None:
+            self._add_shaders(scope, self._graph.surface)
+        text = "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
+        text += "".join(self._functions)
+        text += (
+            "void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {\n"
+            + "".join(f"    {line}\n" for line in scope.lines)
+            + "}\n"
+        )
+        return CompiledGraph(text, self._constants)
+
+    def _kind(self, index: int) -> NodeKind:
+        node = self._graph.nodes[index]
+        if node.kind not in KINDS:
+            raise GraphError(f'node "{node.name}" is of the unknown kind {node.kind}')
+        return KINDS[node.kind]
+
+    # --- shaders ------------------------------------------------------------------------------------
+
+    def _add_shaders(self, scope: _Scope, output: Link) -> None:
+        """Weights flow from the output to the shaders; each shader is added once with the sum of its weights."""
+        weights: dict[int, list[str]] = {output.node: ["1.0"]}
+        # Inputs link to earlier nodes only: going down, all weights of a node are known when it is reached.
+        for index in range(output.node, -1, -1):
+            if index not in weights:
+                continue
+            node = self._graph.nodes[index]
+            weight = f"w{index}"
+            scope.lines.append(f"float {weight} = {' + '.join(weights[index])};")
+            first, second = node.inputs.get("shader"), node.inputs.get("shader_001")
+            if node.kind == MIX_SHADER:
+                factor = f"f{index}"
+                scope.lines.append(f"float {factor} = clamp({self._input(scope, index, 'fac', FLOAT, 0.5)}, 0.0, 1.0);")
+                shares = ((first, f"{weight} * (1.0 - {factor})"), (second, f"{weight} * {factor}"))
+            elif node.kind == ADD_SHADER:
+                shares = ((first, weight), (second, weight))
+            else:
+                self._call(scope, index, weight)
+                continue
+            for shader, share in shares:
+                if isinstance(shader, Link):
+                    weights.setdefault(shader.node, []).append(share)
+
+    # --- values -------------------------------------------------------------------------------------
+
+    def _input(self, scope: _Scope, index: int, name: str, kind: SocketType, default: object) -> str:
+        """GLSL for an input of a node."""
+        value = self._graph.nodes[index].inputs.get(name, default)
+        if isinstance(value, Link):
+            if value.node >= index:
+                raise GraphError(f'node "{self._graph.nodes[index].name}" links to a node that comes after it')
+            return self._converted(scope, value, kind)
+        if isinstance(value, str):
+            return _IMPLICIT[value]
+        numbers = [float(value)] * (1 if kind is FLOAT else 3) if np.isscalar(value) else [float(v) for v in value]
+        if kind is FLOAT:
+            numbers = numbers[:1] if len(numbers) == 1 else [float(np.dot(LUMINANCE, numbers[:3]))]
+        place = self._place((index, name), [v if np.isfinite(v) else 0.0 for v in numbers[:3]])
+        return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
+
+    def _place(self, key: tuple[int, str], values: list[float | Resource]) -> int:
+        if key not in self._places:
+            self._places[key] = len(self._constants)
+            self._constants.extend(values)
+        return self._places[key]
+
+    def _converted(self, scope: _Scope, link: Link, wanted: SocketType) -> str:
+        given = self._kind(link.node).outputs.get(link.output)
+        if given is None or given is SHADER or wanted is SHADER:
+            node = self._graph.nodes[link.node]
+            raise GraphError(f'node "{node.name}" ({node.kind}) gives no value "{link.output}"')
+        value = self._value(scope, link)
+        if given is FLOAT:
+            return value if wanted is FLOAT else f"vec3({value})"
+        if wanted is FLOAT:
+            return f"luminance({value})" if given is SocketType.COLOR else f"mean({value})"
+        return value
+
+    def _value(self, scope: _Scope, link: Link) -> str:
+        if link.node not in scope.known:
+            self._call(scope, link.node, None)
+        return scope.known[link.node][link.output]
+
+    def _call(self, scope: _Scope, index: int, weight: str | None) -> None:
+        """Compute all outputs of a node, or add a shader with a weight."""
+        node, kind = self._graph.nodes[index], self._kind(index)
+        if node.kind == BUMP:
+            self._bump(scope, index)
+            return
+        self._sources[kind.source] = None
+        arguments = ["surface"] if kind.surface else []
+        if kind.is_shader:
+            if weight is None:
+                raise GraphError(f'node "{node.name}" is a shader and gives no value')
+            arguments += ["builder", weight]
+        arguments += [str(_choice(node, name, values)) for name, values in kind.options.items()]
+        for what in kind.resources:
+            place = self._place((index, f"<{what}>"), [Resource(what, index)])
+            arguments.append(f"constant_index(first + {place}u)")
+        for name, (socket, default) in kind.inputs.items():
+            arguments.append(self._input(scope, index, name, socket, default))
+        values = {name: f"n{index}_{name}" for name, socket in kind.outputs.items() if socket is not SHADER}
+        for name, value in values.items():
+            scope.lines.append(f"{kind.outputs[name].glsl} {value};")
+        scope.lines.append(f"node_{node.kind}({', '.join([*arguments, *values.values()])});")
+        scope.known[index] = values
+
+    def _bump(self, scope: _Scope, index: int) -> None:
+        """The height is a function of the place, which is asked at three of them."""
+        kind = self._kind(index)
+        self._sources[kind.source] = None
+        if index not in self._heights:
+            inner = _Scope()
+            height = self._input(inner, index, "height", *kind.inputs["height"])
+            body = "".join(f"    {line}\n" for line in inner.lines)
+            name = f"height_{index}"
+            self._functions.append(f"float {name}(Surface surface, uint first) {{\n{body}    return {height};\n}}\n")
+            self._heights[index] = name
+        function, value = self._heights[index], f"n{index}_normal"
+        others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
+        invert = _choice(self._graph.nodes[index], "invert", kind.options["invert"])
+        scope.lines += [
+            f"vec3 {value};",
+            "{ vec3 along_x, along_y; bump_offsets(surface, along_x, along_y);",
+            f"  float height = {function}(surface, first);",
+            f"  float height_x = {function}(surface_beside(surface, along_x), first) - height;",
+            f"  float height_y = {function}(surface_beside(surface, along_y), first) - height;",
+            f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, height_x, height_y, {value}); }}",
+        ]
+        scope.known[index] = {"normal": value}
+
+
+def _choice(node: ShaderNode, name: str, values: tuple) -> int:
+    value = node.options.get(name, values[0])
+    if value not in values:
+        raise GraphError(f'node "{node.name}" ({node.kind}) has the unknown {name} {value}')
+    return values.index(value)
+
+
+def compile_graph(graph: NodeGraph) -> CompiledGraph:
+    """The GLSL of a graph's structure, and its constants.
+
+    Raises GraphError when nodes, options or links are unknown.
+    """
+    return _Compiler(graph).compile()

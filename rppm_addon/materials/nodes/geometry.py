@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes about the place, the object, the path and the normal."""
+
+from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
+
+_UP = (0.0, 0.0, 1.0)
+
+
+def _geometry(outputs: dict, **members: object) -> NodeKind:
+    return NodeKind("geometry.glsl", outputs=outputs, surface=True, **members)
+
+
+KINDS = {
+    "tex_coord": _geometry(
+        dict.fromkeys(("generated", "normal", "uv", "object", "camera", "window", "reflection"), VECTOR),
+        resources=("attribute",),
+    ),
+    "object_coord": _geometry(
+        {"object": VECTOR},
+        inputs={
+            "row0": (VECTOR, (1.0, 0.0, 0.0)),
+            "row1": (VECTOR, (0.0, 1.0, 0.0)),
+            "row2": (VECTOR, _UP),
+            "offset": (VECTOR, 0.0),
+        },
+    ),
+    "uvmap": _geometry({"uv": VECTOR}, resources=("attribute",)),
+    "attribute": _geometry(
+        {"color": COLOR, "vector": VECTOR, "fac": FLOAT, "alpha": FLOAT}, resources=("attribute",)
+    ),
+    "new_geometry": _geometry(
+        {
+            **dict.fromkeys(("position", "normal", "tangent", "true_normal", "incoming", "parametric"), VECTOR),
+            **dict.fromkeys(("backfacing", "pointiness", "random_per_island"), FLOAT),
+        },
+        resources=("attribute",),
+    ),
+    "tangent": _geometry(
+        {"tangent": VECTOR},
+        options={"direction_type": ("RADIAL", "UV_MAP"), "axis": ("X", "Y", "Z")},
+        resources=("attribute",),
+    ),
+    "object_info": _geometry(
+        {
+            "location": VECTOR, "color": COLOR, "alpha": FLOAT, "object_index": FLOAT, "material_index": FLOAT,
+            "random": FLOAT,
+        },
+        inputs={"material_index": (FLOAT, 0.0)},
+    ),
+    "particle_info": _geometry(
+        {
+            "index": FLOAT, "random": FLOAT, "age": FLOAT, "lifetime": FLOAT, "location": VECTOR, "size": FLOAT,
+            "velocity": VECTOR, "angular_velocity": VECTOR,
+        },
+    ),
+    "camera": _geometry({"view_vector": VECTOR, "view_z_depth": FLOAT, "view_distance": FLOAT}),
+    "light_path": _geometry(
+        dict.fromkeys(
+            (
+                "is_camera_ray", "is_shadow_ray", "is_diffuse_ray", "is_glossy_ray", "is_singular_ray",
+                "is_reflection_ray", "is_transmission_ray", "is_volume_scatter_ray", "ray_length", "ray_depth",
+                "diffuse_depth", "glossy_depth", "transparent_depth", "transmission_depth", "portal_depth",
+            ),
+            FLOAT,
+        )
+    ),
+    "wireframe": _geometry(
+        {"fac": FLOAT}, options={"use_pixel_size": BOOLEAN}, inputs={"size": (FLOAT, 0.01)}
+    ),
+    "normal_map": NodeKind(
+        "normals.glsl",
+        inputs={"strength": (FLOAT, 1.0), "color": (COLOR, (0.5, 0.5, 1.0))},
+        outputs={"normal": VECTOR},
+        options={"space": ("TANGENT", "OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD")},
+        resources=("attribute",),
+        surface=True,
+    ),
+    "bump": NodeKind(
+        "normals.glsl",
+        inputs={
+            "strength": (FLOAT, 1.0), "distance": (FLOAT, 1.0), "height": (FLOAT, 1.0), "normal": (VECTOR, "normal"),
+        },
+        outputs={"normal": VECTOR},
+        options={"invert": BOOLEAN},
+        surface=True,
+    ),
+    "bevel": NodeKind("normals.glsl", inputs={"normal": (VECTOR, "normal")}, outputs={"normal": VECTOR}),
+    "ambient_occlusion": NodeKind(
+        "normals.glsl", inputs={"color": (COLOR, 1.0)}, outputs={"color": COLOR, "ao": FLOAT}
+    ),
+}  # fmt: skip

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Image and environment textures."""
+
+from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
+
+_INTERPOLATIONS = ("Linear", "Closest", "Cubic", "Smart")
+_EXTENSIONS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")
+
+KINDS = {
+    "tex_image": NodeKind(
+        "images.glsl",
+        inputs={"vector": (VECTOR, 0.0), "projection_blend": (FLOAT, 0.0)},
+        outputs={"color": COLOR, "alpha": FLOAT},
+        options={
+            "projection": ("FLAT", "BOX", "SPHERE", "TUBE"),
+            "interpolation": _INTERPOLATIONS,
+            "extension": _EXTENSIONS,
+            "unassociate": BOOLEAN,
+        },
+        resources=("image",),
+        surface=True,
+    ),
+    "tex_image_tiles": NodeKind(
+        "images.glsl",
+        inputs={"tiles": (FLOAT, 0.0), "vector": (VECTOR, 0.0)},
+        outputs={"color": COLOR, "alpha": FLOAT},
+        options={"interpolation": _INTERPOLATIONS, "extension": _EXTENSIONS, "unassociate": BOOLEAN},
+        resources=("table",),
+    ),
+    "tex_environment": NodeKind(
+        "images.glsl",
+        inputs={"vector": (VECTOR, 0.0)},
+        outputs={"color": COLOR},
+        options={"projection": ("EQUIRECTANGULAR", "MIRROR_BALL"), "interpolation": _INTERPOLATIONS},
+        resources=("image",),
+    ),
+}

@@ -1,0 +1,20 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Emitters whose emission varies were sampled as if of radiance 1. Next-event rays to such emitters find the radiance of the place that they sampled.
+
+layout(local_size_x = 64) in;
+
+#include <Closure>
+#include <CountParameters>
+
+#include "common/constants.glsl"
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
+layout(std430, binding = 1) buffer Contributions { vec4 contributions[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count || closures[index].triangle == NO_TRIANGLE) return;
+    contributions[index].rgb *= closures[index].emission;
+}

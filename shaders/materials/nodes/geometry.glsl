@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes that tell about the place, the object and the path. Needs the camera members of the parameters.
+
+vec3 to_camera(vec3 p) { return (parameters.world_to_camera * vec4(p, 1.0)).xyz; }
+
+// How u and v of the UV map grow along the surface: d position / du, 0 where the map is degenerate.
+vec3 uv_tangent(vec2 uv0, vec2 uv1, vec2 uv2, uint triangle) {
+    vec3 v0, v1, v2;
+    triangle_points(triangle, v0, v1, v2);
+    vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
+    float determinant = d1.x * d2.y - d1.y * d2.x;
+    return ((v1 - v0) * d2.y - (v2 - v0) * d1.y) * sign(determinant);
+}
+
+// Around the object's Z axis, where no tangent is given.
+vec3 default_tangent(Surface surface) {
+    vec3 at = point_to_object(surface, surface.position);
+    vec3 around = direction_to_world(surface, vec3(-at.y, at.x, 0.0));
+    vec3 across = around - dot(around, surface.normal) * surface.normal;
+    float size = length(across);
+    return size > 1e-20 ? across / size : vec3(0.0);
+}
+
+void node_tex_coord(Surface surface, uint generated_attribute, out vec3 generated, out vec3 normal, out vec3 uv, out vec3 object,
+                    out vec3 camera, out vec3 window, out vec3 reflection) {
+    bool world = surface.triangle == NO_TRIANGLE;
+    object = point_to_object(surface, surface.position);
+    uvec2 place = attribute_place(surface, generated_attribute);
+    generated = place.y > 0u ? attribute_value(surface, generated_attribute).xyz : object;
+    vec3 n = normal_to_object(surface, surface.normal);
+    normal = n / max(length(n), 1e-20);
+    uv = vec3(surface.uv, 0.0);
+    camera = world ? mat3(parameters.world_to_camera) * surface.position : to_camera(surface.position);
+    camera.z = -camera.z;
+    vec2 plane = parameters.orthographic != 0u ? camera.xy : camera.xy / max(abs(camera.z), 1e-20);
+    window = vec3((plane - parameters.window.xz) / (parameters.window.yw - parameters.window.xz), 0.0);
+    reflection = world ? surface.position : 2.0 * dot(surface.normal, surface.viewer) * surface.normal - surface.viewer;
+}
+
+// Coordinates in the space of another object, whose world-to-object rows are the inputs.
+void node_object_coord(Surface surface, vec3 row0, vec3 row1, vec3 row2, vec3 offset, out vec3 object) {
+    object = vec3(dot(row0, surface.position), dot(row1, surface.position), dot(row2, surface.position)) + offset;
+}
+
+void node_uvmap(Surface surface, uint layer, out vec3 uv) { uv = vec3(attribute_value(surface, layer).xy, 0.0); }
+
+void node_attribute(Surface surface, uint layer, out vec3 color, out vec3 vector, out float fac, out float alpha) {
+    vec4 value = attribute_value(surface, layer);
+    color = vector = value.rgb;
+    fac = attribute_place(surface, layer).y == 1u ? value.x : mean(value.rgb);
+    alpha = value.a;
+}
+
+void node_new_geometry(Surface surface, uint island_attribute, out vec3 position, out vec3 normal, out vec3 tangent,
+                       out vec3 true_normal, out vec3 incoming, out vec3 parametric, out float backfacing,
+                       out float pointiness, out float random_per_island) {
+    position = surface.position;
+    normal = surface.normal;
+    true_normal = surface.geometric;
+    incoming = surface.viewer;
+    parametric = vec3(surface.barycentrics.x, surface.barycentrics.y, 0.0);
+    backfacing = surface.backfacing ? 1.0 : 0.0;
+    pointiness = 0.5;
+    random_per_island = attribute_value(surface, island_attribute).x;
+    tangent = default_tangent(surface);
+}
+
+void node_tangent(Surface surface, int direction_type, int axis, uint layer, out vec3 tangent) {
+    vec3 across;
+    if (direction_type == 0) {
+        vec3 at = attribute_value(surface, layer).xyz - 0.5;
+        across = axis == 0 ? vec3(0.0, -at.z, at.y) : (axis == 1 ? vec3(-at.z, 0.0, at.x) : vec3(-at.y, at.x, 0.0));
+        across = direction_to_world(surface, across);
+    } else {
+        uvec2 place = attribute_place(surface, layer);
+        uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
+        across = uv_tangent(attribute_corner(place, local, 0u).xy, attribute_corner(place, local, 1u).xy,
+                            attribute_corner(place, local, 2u).xy, surface.triangle);
+    }
+    across -= dot(across, surface.normal) * surface.normal;
+    float size = length(across);
+    tangent = size > 1e-20 ? across / size : vec3(0.0);
+}
+
+void node_object_info(Surface surface, float material_index, out vec3 location, out vec3 color, out float alpha,
+                      out float object_index, out float material_index_out, out float random) {
+    ShadingInstance at = shading_instances[surface.instance];
+    location = at.location;
+    color = at.color.rgb;
+    alpha = at.color.a;
+    object_index = float(at.object_index);
+    material_index_out = material_index;
+    random = at.random;
+}
+
+void node_particle_info(Surface surface, out float index, out float random, out float age, out float lifetime,
+                        out vec3 location, out float size, out vec3 velocity, out vec3 angular_velocity) {
+    ShadingInstance at = shading_instances[surface.instance];
+    index = at.particle_index;
+    random = at.particle_random;
+    age = at.particle_age;
+    lifetime = at.particle_lifetime;
+    location = at.particle_location;
+    size = at.particle_size;
+    velocity = at.particle_velocity;
+    angular_velocity = at.particle_angular_velocity;
+}
+
+void node_camera(Surface surface, out vec3 view_vector, out float view_z_depth, out float view_distance) {
+    vec3 at = to_camera(surface.position);
+    at.z = -at.z;
+    view_distance = length(at);
+    view_vector = at / max(view_distance, 1e-20);
+    view_z_depth = abs(at.z);
+}
+
+// Nothing but the camera path's own rays has a depth; rays to lights do not ask materials at all.
+void node_light_path(Surface surface, out float is_camera_ray, out float is_shadow_ray, out float is_diffuse_ray,
+                     out float is_glossy_ray, out float is_singular_ray, out float is_reflection_ray,
+                     out float is_transmission_ray, out float is_volume_scatter_ray, out float ray_length,
+                     out float ray_depth, out float diffuse_depth, out float glossy_depth, out float transparent_depth,
+                     out float transmission_depth, out float portal_depth) {
+    is_camera_ray = (surface.ray & RAY_CAMERA) != 0u ? 1.0 : 0.0;
+    is_diffuse_ray = (surface.ray & RAY_DIFFUSE) != 0u ? 1.0 : 0.0;
+    is_glossy_ray = (surface.ray & RAY_GLOSSY) != 0u ? 1.0 : 0.0;
+    is_singular_ray = (surface.ray & RAY_SINGULAR) != 0u ? 1.0 : 0.0;
+    is_transmission_ray = (surface.ray & RAY_TRANSMISSION) != 0u ? 1.0 : 0.0;
+    is_reflection_ray = is_glossy_ray > 0.0 || is_diffuse_ray > 0.0 ? 1.0 - is_transmission_ray : 0.0;
+    is_shadow_ray = is_volume_scatter_ray = portal_depth = transparent_depth = 0.0;
+    ray_length = surface.ray_length;
+    ray_depth = float(surface.ray_depth);
+    diffuse_depth = is_diffuse_ray > 0.0 ? 1.0 : 0.0;
+    glossy_depth = is_glossy_ray * ray_depth;
+    transmission_depth = is_transmission_ray * ray_depth;
+}
+
+void node_wireframe(Surface surface, int pixel_size, float size, out float fac) {
+    vec3 v0, v1, v2;
+    triangle_points(surface.triangle, v0, v1, v2);
+    float area2 = length(cross(v1 - v0, v2 - v0));
+    vec3 heights = surface.barycentrics * area2 / max(vec3(length(v2 - v1), length(v2 - v0), length(v1 - v0)), vec3(1e-20));
+    float width = pixel_size != 0 ? size * parameters.pixel_size * surface.ray_length : size;
+    fac = min(heights.x, min(heights.y, heights.z)) < 0.5 * width ? 1.0 : 0.0;
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes that turn the shading normal.
+
+#include "materials/nodes/geometry.glsl"
+// A normal that makes the mirrored viewer dip below the surface is bent until it just does not.
+vec3 visible_normal(Surface surface, vec3 n) {
+    float seen = dot(n, surface.viewer);
+    return seen < 1e-3 ? normalize(n + (1e-3 - seen) * surface.viewer) : n;
+}
+
+void node_normal_map(Surface surface, int space, uint layer, float strength, vec3 color, out vec3 normal) {
+    vec3 mapped = 2.0 * color - 1.0;
+    vec3 n;
+    if (space == 0) {
+        uvec2 place = attribute_place(surface, layer);
+        uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
+        vec2 uv0, uv1, uv2;
+        if (place.y > 0u) {
+            uv0 = attribute_corner(place, local, 0u).xy;
+            uv1 = attribute_corner(place, local, 1u).xy;
+            uv2 = attribute_corner(place, local, 2u).xy;
+        } else {
+            uv0 = attributes[surface.triangle].uv0;
+            uv1 = attributes[surface.triangle].uv1;
+            uv2 = attributes[surface.triangle].uv2;
+        }
+        vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
+        float handedness = sign(d1.x * d2.y - d1.y * d2.x);
+        vec3 front = surface.backfacing ? -surface.normal : surface.normal;
+        vec3 tangent = uv_tangent(uv0, uv1, uv2, surface.triangle);
+        tangent -= dot(tangent, front) * front;
+        float size = length(tangent);
+        if (size < 1e-20) { normal = surface.normal; return; }
+        tangent /= size;
+        mapped.xy *= strength;
+        mapped.z = mix(1.0, mapped.z, clamp(strength, 0.0, 1.0));
+        n = mapped.x * tangent + mapped.y * handedness * cross(front, tangent) + mapped.z * front;
+    } else {
+        // The Blender spaces are those of its former renderer: Y and Z are turned round.
+        if (space >= 3) mapped.yz = -mapped.yz;
+        n = space == 1 || space == 3 ? normal_to_world(surface, mapped) : mapped;
+        vec3 front = surface.backfacing ? -surface.normal : surface.normal;
+        float size = length(n);
+        n = size > 1e-20 ? n / size : front;
+        if (strength != 1.0) n = front + (n - front) * max(strength, 0.0);
+    }
+    float size = length(n);
+    n = size > 1e-20 ? n / size : surface.normal;
+    normal = visible_normal(surface, surface.backfacing && size > 1e-20 ? -n : n);
+}
+
+// Two ways across the surface, about as long as what a pixel sees of it.
+void bump_offsets(Surface surface, out vec3 along_x, out vec3 along_y) {
+    tangent_frame(surface.geometric, along_x, along_y);
+    float extent = max(abs(surface.position.x), max(abs(surface.position.y), abs(surface.position.z)));
+    float width = max(0.1 * parameters.pixel_size * surface.ray_length, 1e-4 * max(surface.ray_length, 0.01 * extent));
+    along_x *= width;
+    along_y *= width;
+}
+
+// The gradient of the height across the surface (Mikkelsen 2010, Bump Mapping Unparametrized Surfaces on the GPU).
+void node_bump(Surface surface, int invert, float strength, float distance, vec3 normal_in, vec3 along_x, vec3 along_y,
+               float height_x, float height_y, out vec3 normal) {
+    vec3 across_x = cross(along_y, normal_in), across_y = cross(normal_in, along_x);
+    float determinant = dot(along_x, across_x);
+    vec3 gradient = height_x * across_x + height_y * across_y;
+    float scale = invert != 0 ? -distance : distance;
+    vec3 bumped = abs(determinant) * normal_in - scale * sign(determinant) * gradient;
+    float size = length(bumped);
+    bumped = size > 1e-30 ? bumped / size : normal_in;
+    bumped = normalize(mix(normal_in, bumped, max(strength, 0.0)));
+    normal = visible_normal(surface, bumped);
+}
+
+// Rounded edges would take rays of their own: the normal stays what it is.
+void node_bevel(vec3 normal_in, out vec3 normal) { normal = normal_in; }
+
+// As if nothing were near.
+void node_ambient_occlusion(vec3 color_in, out vec3 color, out float ao) {
+    color = color_in;
+    ao = 1.0;
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What nodes may ask about the place that is shaded.
+
+#include <ShadingInstance>
+#include <TriangleAttributes>
+#include "common/geometry.glsl"
+layout(std430, binding = 3) readonly buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
+layout(std430, binding = 10) readonly buffer ShadingInstances { ShadingInstance shading_instances[]; };
+layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
+
+// The rays that Cycles tells apart. Photons count as rays that a diffuse surface sends out.
+const uint RAY_CAMERA = 1u, RAY_DIFFUSE = 2u, RAY_GLOSSY = 4u, RAY_TRANSMISSION = 8u, RAY_SINGULAR = 16u;
+
+struct Surface {
+    vec3 position;      // world space, metres; of a world: the direction
+    vec3 normal;        // shading normal, on the viewer's side
+    vec3 geometric;     // geometric normal, on the viewer's side
+    vec3 viewer;        // unit vector to where the path comes from
+    vec2 uv;            // of the UV map in use
+    vec3 barycentrics;
+    uint triangle;      // NO_TRIANGLE: a world or a light
+    uint instance;
+    bool backfacing;
+    uint ray;           // one or more of the bits above
+    float ray_length;
+    uint ray_depth;
+};
+
+void triangle_points(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
+    v0 = triangle_vertices[3u * triangle].xyz;
+    v1 = triangle_vertices[3u * triangle + 1u].xyz;
+    v2 = triangle_vertices[3u * triangle + 2u].xyz;
+}
+
+vec2 triangle_uv(uint triangle, vec3 b) {
+    return b.x * attributes[triangle].uv0 + b.y * attributes[triangle].uv1 + b.z * attributes[triangle].uv2;
+}
+
+vec3 triangle_normal(uint triangle, vec3 b) {
+    return b.x * unpack_unit_vector(attributes[triangle].normal0) + b.y * unpack_unit_vector(attributes[triangle].normal1)
+         + b.z * unpack_unit_vector(attributes[triangle].normal2);
+}
+
+vec3 point_to_object(Surface surface, vec3 p) {
+    if (surface.triangle == NO_TRIANGLE) return p;
+    ShadingInstance at = shading_instances[surface.instance];
+    return vec3(dot(at.to_object0, vec4(p, 1.0)), dot(at.to_object1, vec4(p, 1.0)), dot(at.to_object2, vec4(p, 1.0)));
+}
+
+vec3 direction_to_object(Surface surface, vec3 d) {
+    if (surface.triangle == NO_TRIANGLE) return d;
+    ShadingInstance at = shading_instances[surface.instance];
+    return vec3(dot(at.to_object0.xyz, d), dot(at.to_object1.xyz, d), dot(at.to_object2.xyz, d));
+}
+
+// Normals and other vectors across the surface go by the transposed matrices.
+vec3 normal_to_world(Surface surface, vec3 n) {
+    if (surface.triangle == NO_TRIANGLE) return n;
+    ShadingInstance at = shading_instances[surface.instance];
+    return n.x * at.to_object0.xyz + n.y * at.to_object1.xyz + n.z * at.to_object2.xyz;
+}
+
+vec3 direction_to_world(Surface surface, vec3 d) {
+    if (surface.triangle == NO_TRIANGLE) return d;
+    ShadingInstance at = shading_instances[surface.instance];
+    vec3 x = cross(at.to_object1.xyz, at.to_object2.xyz), y = cross(at.to_object2.xyz, at.to_object0.xyz),
+         z = cross(at.to_object0.xyz, at.to_object1.xyz);
+    return (d.x * x + d.y * y + d.z * z) / dot(at.to_object0.xyz, x);
+}
+
+vec3 normal_to_object(Surface surface, vec3 n) {
+    if (surface.triangle == NO_TRIANGLE) return n;
+    ShadingInstance at = shading_instances[surface.instance];
+    vec3 x = cross(at.to_object1.xyz, at.to_object2.xyz), y = cross(at.to_object2.xyz, at.to_object0.xyz),
+         z = cross(at.to_object0.xyz, at.to_object1.xyz);
+    return vec3(dot(x, n), dot(y, n), dot(z, n)) / dot(at.to_object0.xyz, x);
+}
+
+// Where an attribute of an instance's mesh lies: a word of its place and one of its components; none: 0.
+uvec2 attribute_place(Surface surface, uint layer) {
+    if (surface.triangle == NO_TRIANGLE) return uvec2(0u);
+    uint at = 2u * (surface.instance * parameters.attribute_count + layer);
+    return uvec2(attribute_values[at], attribute_values[at + 1u]);
+}
+
+// An attribute at a corner of a triangle of the instance, absent components 0 and alpha 1.
+vec4 attribute_corner(uvec2 place, uint local_triangle, uint corner) {
+    uint at = place.x + (3u * local_triangle + corner) * place.y;
+    vec4 value = vec4(0.0, 0.0, 0.0, 1.0);
+    for (uint k = 0u; k < min(place.y, 4u); ++k) value[k] = uintBitsToFloat(attribute_values[at + k]);
+    if (place.y == 1u) value.yz = value.xx;
+    return value;
+}
+
+vec4 attribute_value(Surface surface, uint layer) {
+    uvec2 place = attribute_place(surface, layer);
+    if (place.y == 0u) return vec4(0.0);
+    uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
+    return surface.barycentrics.x * attribute_corner(place, local, 0u) + surface.barycentrics.y * attribute_corner(place, local, 1u)
+         + surface.barycentrics.z * attribute_corner(place, local, 2u);
+}
+
+// The same surface a little way off, as if its triangle went on: nothing but the place changes.
+Surface surface_beside(Surface surface, vec3 way) {
+    surface.position += way;
+    if (surface.triangle == NO_TRIANGLE) return surface;
+    vec3 v0, v1, v2;
+    triangle_points(surface.triangle, v0, v1, v2);
+    vec3 e1 = v1 - v0, e2 = v2 - v0, n = cross(e1, e2);
+    float n2 = max(dot(n, n), 1e-30), b1 = dot(cross(way, e2), n) / n2, b2 = dot(cross(e1, way), n) / n2;
+    surface.barycentrics += vec3(-b1 - b2, b1, b2);
+    surface.uv = triangle_uv(surface.triangle, surface.barycentrics);
+    return surface;
+}

@@ -1,0 +1,28 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The hits' numbers into the ranges of their programs.
+
+layout(local_size_x = 64) in;
+
+#include <Ray>
+#include <Hit>
+#include <Material>
+#include <TriangleAttributes>
+#include <CountParameters>
+#include "common/constants.glsl"
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
+layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
+#include "resolve/ranges.glsl"
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint triangle = hits[index].triangle;
+    if (!(rays[index].maximum_distance > 0.0) || triangle == NO_TRIANGLE) return;
+    uint program = materials[attributes[triangle].material].program;
+    hit_order[range_first(program) + atomicAdd(hit_order[RANGE_SIZE * program + 2u], 1u)] = index;
+}

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hits ordered by the program that evaluates their material: first a range a program, then the hits' numbers.
+// A range: first place, length, places taken, a pad, and the groups of its dispatch.
+
+layout(std430, binding = 12) buffer HitOrder { uint hit_order[]; };
+
+const uint RANGE_SIZE = 8u;
+
+uint range_first(uint program) { return hit_order[RANGE_SIZE * program]; }
+uint range_length(uint program) { return hit_order[RANGE_SIZE * program + 1u]; }

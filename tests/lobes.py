@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials of scenes made without Blender: weighted sums of shader nodes with constant inputs."""
+
+import enum
+
+import numpy as np
+
+from rppm_addon.scene import Link, Material, NodeGraph
+
+
+class LobeKind(enum.Enum):
+    """Shader nodes, with the names of their colour and of their output."""
+
+    DIFFUSE = "bsdf_diffuse"
+    GLOSSY = "bsdf_glossy"
+    GLASS = "bsdf_glass"
+    REFRACTION = "bsdf_refraction"
+    TRANSPARENT = "bsdf_transparent"
+    EMISSION = "emission"
+    PRINCIPLED = "bsdf_principled"
+
+
+class Lobe:
+    """One shader node; further inputs of the node come by their names."""
+
+    def __init__(
+        self,
+        kind: LobeKind,
+        weight: float = 1.0,
+        color: tuple[float, float, float] = (1.0, 1.0, 1.0),
+        color_image: int = -1,
+        roughness: float = 0.0,
+        ior: float = 1.5,
+        multiscatter: bool = True,
+        **inputs: object,
+    ) -> None:
+        """color_image: index into Scene.images; it is placed by the UV map and multiplies ``color``."""
+        self.kind, self.weight, self.color, self.color_image = kind, weight, color, color_image
+        self.roughness, self.ior, self.multiscatter, self.inputs = roughness, ior, multiscatter, inputs
+
+
+def material(name: str, *lobes: Lobe, absorption: np.ndarray | None = None) -> Material:
+    """A material whose surface is the sum of the lobes."""
+    graph = NodeGraph()
+    for lobe in lobes:
+        shader = _shader(graph, lobe)
+        if lobe.weight != 1.0:
+            shader = graph.add("mix_shader", "shader", fac=lobe.weight, shader_001=shader)
+        graph.surface = (
+            shader
+            if graph.surface is None
+            else graph.add("add_shader", "shader", shader=graph.surface, shader_001=shader)
+        )
+    return Material(name, graph) if absorption is None else Material(name, graph, absorption)
+
+
+def _shader(graph: NodeGraph, lobe: Lobe) -> Link:
+    inputs: dict[str, object] = dict(lobe.inputs)
+    color: object = lobe.color
+    if lobe.color_image >= 0:
+        place = graph.add("tex_coord", "uv")
+        image = graph.add("tex_image", "color", image=lobe.color_image, vector=place)
+        color = graph.add(
+            "vector_math", "vector", options={"operation": "MULTIPLY"}, vector=image, vector_001=lobe.color
+        )
+    inputs["base_color" if lobe.kind is LobeKind.PRINCIPLED else "color"] = color
+    options = {}
+    if lobe.kind in {LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.PRINCIPLED}:
+        inputs["roughness"] = lobe.roughness
+    if lobe.kind in {LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.PRINCIPLED}:
+        inputs["ior"] = lobe.ior
+    if lobe.kind in {LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.PRINCIPLED}:
+        options["distribution"] = "MULTI_GGX" if lobe.multiscatter else "GGX"
+    output = "emission" if lobe.kind is LobeKind.EMISSION else "bsdf"
+    return graph.add(lobe.kind.value, output, options=options, **inputs)
