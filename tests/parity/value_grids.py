@@ -26,6 +26,8 @@ from .scenes import new_scene
 
 VIEWER = (0.0, 0.0, 1.0)
 """World direction from every sample to Cycles' camera."""
+RAY_LENGTH = 10.0
+"""Of the camera's rays."""
 _GROUP = 64
 
 
@@ -46,19 +48,21 @@ class Case:
     """Whatever else is to be done to the Blender node."""
     table: Callable[[bpy.types.Node], np.ndarray] | None = None
     """Floats for the resource "table", from the prepared Blender node."""
-    sockets: dict[str, str] = field(default_factory=dict)
-    """Identifiers of Blender's sockets where they are not the names of the kind."""
+    sockets: dict[str, str | None] = field(default_factory=dict)
+    """Identifiers of Blender's sockets where they are not the names of the kind; None where it has no such socket."""
     outputs: tuple[str, ...] = ()
     """Outputs of the kind to be compared; all if empty."""
     backfacing: bool = False
     """The faces turn their back to the camera."""
+    label: str = ""
+    """Tells cases apart that have the same options."""
     table_values: np.ndarray | None = None
 
     @property
     def name(self) -> str:
         chosen = {**self.options, **{k: v for k, v in self.properties.items() if isinstance(v, str | bool)}}
         words = [f"{key}={value}" if isinstance(value, bool) else str(value) for key, value in chosen.items()]
-        return " ".join([self.kind_name, *words] + (["backfacing"] if self.backfacing else []))
+        return " ".join([self.kind_name, *words, *([self.label] if self.label else [])] + (["backfacing"] if self.backfacing else []))
 
     @property
     def count(self) -> int:
@@ -98,14 +102,19 @@ def _material(case: Case) -> bpy.types.Material:
     if case.table:
         case.table_values = np.asarray(case.table(node), np.float32).ravel()
     for index, (name, (socket_type, default)) in enumerate(case.kind.inputs.items()):
+        if case.sockets.get(name, name) is None:
+            continue
         socket = _socket(node.inputs, case, name)
         if name in case.inputs:
             attribute = tree.nodes.new("ShaderNodeAttribute")
             attribute.attribute_name = f"{'float' if socket_type is FLOAT else 'vector'}_{index}"
             tree.links.new(attribute.outputs["Fac" if socket_type is FLOAT else "Vector"], socket)
         elif default is not None:
-            size = 1 if socket_type is FLOAT else len(socket.default_value)
-            socket.default_value = default if size == 1 else (*default, 1.0)[:size]
+            if socket_type is FLOAT:
+                socket.default_value = default
+            else:
+                channels = default if isinstance(default, tuple) else (default,) * 3
+                socket.default_value = (*channels, 1.0)[: len(socket.default_value)]
     for index, name in enumerate(case.compared):
         aov = tree.nodes.new("ShaderNodeOutputAOV")
         is_float = case.kind.outputs[name] is FLOAT
@@ -168,7 +177,7 @@ def cycles_values(cases: Sequence[Case]) -> list[dict[str, np.ndarray]]:
     camera = bpy.data.cameras.new("Camera")
     camera.type, camera.ortho_scale = "ORTHO", columns
     scene.camera = bpy.data.objects.new("Camera", camera)
-    scene.camera.matrix_world = Matrix.Translation((columns / 2, columns / 2, 10.0))
+    scene.camera.matrix_world = Matrix.Translation((columns / 2, columns / 2, RAY_LENGTH))
     scene.collection.objects.link(scene.camera)
     scene.render.engine = "CYCLES"
     scene.cycles.samples = 1
@@ -221,7 +230,8 @@ def program_text(case: Case, surface: str = "") -> str:
     offset, lines = 0, []
     for name, (socket_type, default) in kind.inputs.items():
         if name not in case.inputs:
-            arguments.append(_literal(default))
+            wide = not isinstance(default, tuple) and socket_type is not FLOAT
+            arguments.append(_literal((default,) * 3 if wide else default))
         elif socket_type is FLOAT:
             arguments.append(f"inputs[start + {offset}u]")
             offset += 1
