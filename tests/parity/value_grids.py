@@ -27,7 +27,7 @@ from .scenes import new_scene
 VIEWER = (0.0, 0.0, 1.0)
 """World direction from every sample to Cycles' camera."""
 RAY_LENGTH = 10.0
-"""Of the camera's rays."""
+"""Of the camera's rays, which begin at its near plane."""
 _GROUP = 64
 
 
@@ -177,7 +177,7 @@ def cycles_values(cases: Sequence[Case]) -> list[dict[str, np.ndarray]]:
     camera = bpy.data.cameras.new("Camera")
     camera.type, camera.ortho_scale = "ORTHO", columns
     scene.camera = bpy.data.objects.new("Camera", camera)
-    scene.camera.matrix_world = Matrix.Translation((columns / 2, columns / 2, RAY_LENGTH))
+    scene.camera.matrix_world = Matrix.Translation((columns / 2, columns / 2, RAY_LENGTH + camera.clip_start))
     scene.collection.objects.link(scene.camera)
     scene.render.engine = "CYCLES"
     scene.cycles.samples = 1
@@ -313,7 +313,7 @@ def assert_values_agree(
     relative: float = 1e-5,
     absolute: float = 1e-6,
 ) -> None:
-    """Every value within absolute + relative * |Cycles' value|; prints the largest differences.
+    """Every value within absolute + relative * |Cycles' value|, of vectors the largest part's; prints what differs.
 
     Where Cycles' value is not finite ours may be anything: neither engine shows it.
     """
@@ -323,7 +323,9 @@ def assert_values_agree(
         assert finite.mean() > 0.5, f"{case.name}: {name} of Cycles is mostly not finite"
         error = np.where(finite, np.abs(a - b), 0.0)
         error = np.where(finite & ~np.isfinite(a), np.inf, error)
-        excess = error - (absolute + relative * np.abs(np.where(finite, b, 0.0)))
+        size = np.abs(np.where(finite, b, 0.0))
+        size = size if b.ndim == 1 else size.max(axis=1, keepdims=True)
+        excess = error - (absolute + relative * size)
         worst = np.unravel_index(np.argmax(excess), excess.shape)
         wrong = (excess > 0.0).reshape(case.count, -1).any(axis=1)
         print(f"\n{case.name}: {name} largest difference {error.max():.3g}, {(~finite).sum()} of {b.size} not finite")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes that weigh by the angle of view. `surface.viewer` is the unit direction to the viewer.
+#include "materials/nodes/safe.glsl"
 
 // Reflectance of unpolarized light by a dielectric (Cook and Torrance 1982); eta is the index of the far
 // side over that of the near one.
@@ -21,5 +22,5 @@ void node_layer_weight(Surface surface, float blend, vec3 normal, out float fres
     fresnel = dielectric_reflectance(cosine, surface.backfacing ? eta : 1.0 / eta);
     float weight = clamp(blend, 0.0, 1.0 - 1e-5);
     float exponent = weight < 0.5 ? 2.0 * weight : 0.5 / (1.0 - weight);
-    facing = 1.0 - pow(abs(cosine), exponent);
+    facing = 1.0 - safe_power(abs(cosine), exponent);
 }

@@ -11,8 +11,7 @@ void node_clamp(int clamp_type, float value, float low, float high, out float re
 float map_range(
     int interpolation_type, int use_clamp, float value, float from_low, float from_high, float to_low, float to_high,
     float steps) {
-    if (from_low == from_high) return 0.0;
-    float factor = (value - from_low) / (from_high - from_low);
+    float factor = safe_divide(value - from_low, from_high - from_low);
     if (interpolation_type == 1) factor = steps > 0.0 ? floor(factor * (steps + 1.0)) / steps : 0.0; // STEPPED
     if (interpolation_type >= 2) factor = clamp(factor, 0.0, 1.0);
     if (interpolation_type == 2) factor = factor * factor * (3.0 - 2.0 * factor);                    // SMOOTHSTEP
@@ -24,7 +23,10 @@ float map_range(
 void node_map_range(
     int interpolation_type, int use_clamp, float value, float from_low, float from_high, float to_low, float to_high,
     float steps, out float result) {
-    result = map_range(interpolation_type, use_clamp, value, from_low, from_high, to_low, to_high, steps);
+    if (from_low != from_high)
+        result = map_range(interpolation_type, use_clamp, value, from_low, from_high, to_low, to_high, steps);
+    else
+        result = use_clamp != 0 ? clamp_range(0.0, to_low, to_high) : 0.0; // as Cycles, unlike for vectors
 }
 
 void node_map_range_vector(

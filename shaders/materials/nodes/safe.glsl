@@ -7,9 +7,10 @@ vec3 safe_divide(vec3 a, vec3 b) {
     return vec3(safe_divide(a.x, b.x), safe_divide(a.y, b.y), safe_divide(a.z, b.z));
 }
 
-// Powers of negative numbers exist for whole exponents only.
+// Powers of negative numbers exist for whole exponents only; 0 has no inverse.
 float safe_power(float base, float exponent) {
     if (exponent == 0.0) return 1.0;
+    if (base == 0.0) return 0.0;
     bool whole = exponent == trunc(exponent);
     if (base < 0.0 && !whole) return 0.0;
     float power = pow(abs(base), exponent);
@@ -36,10 +37,6 @@ float safe_modulo(float a, float b) {
     if (remainder < 0.0) remainder += divisor;
     if (remainder >= divisor) remainder -= divisor;
     return a < 0.0 ? -remainder : remainder;
-}
-
-vec3 safe_modulo(vec3 a, vec3 b) {
-    return vec3(safe_modulo(a.x, b.x), safe_modulo(a.y, b.y), safe_modulo(a.z, b.z));
 }
 
 // The remainder has the sign of b.

@@ -6,6 +6,9 @@ vec3 project(vec3 a, vec3 b) {
     return size2 != 0.0 ? dot(a, b) / size2 * b : vec3(0.0);
 }
 
+// Less exact than that of numbers: just below a multiple of b it may return b's share of rounding instead of b.
+vec3 vector_modulo(vec3 a, vec3 b) { return vec3(notEqual(b, vec3(0.0))) * (a - b * trunc(safe_divide(a, b))); }
+
 void node_vector_math(
     int operation, vec3 a, vec3 b, vec3 c, float scale, out vec3 vector, out float value) {
     vector = vec3(0.0);
@@ -34,7 +37,7 @@ void node_vector_math(
     case 20: vector = floor(a); break;                          // FLOOR
     case 21: vector = ceil(a); break;                           // CEIL
     case 22: vector = a - floor(a); break;                      // FRACTION
-    case 23: vector = safe_modulo(a, b); break;                 // MODULO
+    case 23: vector = vector_modulo(a, b); break;                 // MODULO
     case 24: vector = wrap(a, b, c); break;                     // WRAP
     case 25: vector = floor(safe_divide(a, b)) * b; break;      // SNAP
     case 26: vector = sin(a); break;                            // SINE
