@@ -5,13 +5,23 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from mathutils import Matrix
 
 from rppm_addon.blender.export.tables import curve_table, ramp_table
 from rppm_addon.gl.context import Context
 from rppm_addon.materials.node_kinds import BOOLEAN
-from rppm_addon.materials.nodes import color, curves, math, view
+from rppm_addon.materials.nodes import color, curves, math, spectrum, view
 
-from .value_grids import RAY_LENGTH, Case, assert_values_agree, cycles_values, grid, our_values
+from .value_grids import (
+    CAMERA_MATRIX,
+    OBJECT_MATRIX,
+    RAY_LENGTH,
+    Case,
+    assert_values_agree,
+    cycles_values,
+    grid,
+    our_values,
+)
 
 NUMBERS = (-12.3, -2.0, -1.5, -1.0, -0.3, 0.0, 0.25, 0.5, 1.0, 1.7, 3.0, 20.0)
 FEW = (-2.0, 0.0, 0.3, 1.0, 4.5)
@@ -39,7 +49,25 @@ COLORS = np.array(
     np.float32,
 )  # fmt: skip
 RANDOM = 400
-SURFACE = "struct Surface { vec3 viewer; bool backfacing; };"
+
+
+def glsl_matrix(matrix: Matrix) -> str:
+    """A matrix as a GLSL constant, column by column."""
+    return f"mat4({', '.join(repr(float(matrix[row][column])) for column in range(4) for row in range(4))})"
+
+
+SURFACE = f"""
+struct Surface {{ vec3 viewer; bool backfacing; }};
+struct Parameters {{ mat4 world_to_camera; }};
+const Parameters parameters = Parameters({glsl_matrix(CAMERA_MATRIX.inverted())});
+const mat4 TO_OBJECT = {glsl_matrix(OBJECT_MATRIX.inverted())}, TO_WORLD = {glsl_matrix(OBJECT_MATRIX)};
+vec3 point_to_object(Surface surface, vec3 p) {{ return (TO_OBJECT * vec4(p, 1.0)).xyz; }}
+vec3 direction_to_object(Surface surface, vec3 d) {{ return mat3(TO_OBJECT) * d; }}
+vec3 direction_to_world(Surface surface, vec3 d) {{ return mat3(TO_WORLD) * d; }}
+vec3 normal_to_world(Surface surface, vec3 n) {{ return n * mat3(TO_OBJECT); }}
+vec3 normal_to_object(Surface surface, vec3 n) {{ return n * mat3(TO_WORLD); }}
+"""
+"""What nodes ask of shaders/materials/surface.glsl, for the samples of value_grids."""
 
 
 def choices(*lists: np.ndarray) -> list[np.ndarray]:
@@ -251,11 +279,27 @@ def view_cases() -> list[Case]:
              {"strength": strength, "smooth": smooth, "ray_length": np.array([RAY_LENGTH])},
              sockets={"ray_length": None})
     )
+    kind = kinds["vector_transform"]
+    for vector_type in kind.options["vector_type"]:
+        for start in kind.options["convert_from"]:
+            for end in kind.options["convert_to"]:
+                options = {"vector_type": vector_type, "convert_from": start, "convert_to": end}
+                # Cycles normalizes the normal 0 to NaN.
+                vectors = VECTORS[1:] if vector_type == "NORMAL" else VECTORS
+                cases.append(Case("vector_transform", kind, "ShaderNodeVectorTransform", {"vector": vectors}, options))
     return cases
 
 
+# By the fits of spectrum.glsl and of Cycles; all else is rounding.
+SPECTRUM_CASES = [
+    Case("blackbody", spectrum.KINDS["blackbody"], "ShaderNodeBlackbody",
+         {"temperature": np.concatenate([np.arange(0, 1000, 50), np.arange(1000, 14000, 100)])}),
+    Case("wavelength", spectrum.KINDS["wavelength"], "ShaderNodeWavelength",
+         {"wavelength": np.arange(365.25, 790, 0.5)}),
+]
+SPECTRUM_TOLERANCE = {"blackbody": (0.0, 0.01), "wavelength": (0.0, 0.01)}
 CASES = [
-    *math_cases(), *vector_cases(), *range_cases(), *mix_cases(), *color_cases(), *curve_cases(), *view_cases(),
+    *math_cases(), *vector_cases(), *range_cases(), *mix_cases(), *color_cases(), *curve_cases(), *view_cases(), *SPECTRUM_CASES,
 ]
 
 
@@ -276,4 +320,7 @@ def test_values(number, reference, context):
     case = CASES[number]
     with context.moderngl:
         ours = our_values(context, case, SURFACE)
-    assert_values_agree(case, ours, reference[number])
+    if case in SPECTRUM_CASES:
+        assert_values_agree(case, ours, reference[number], *SPECTRUM_TOLERANCE[case.kind_name])
+    else:
+        assert_values_agree(case, ours, reference[number])

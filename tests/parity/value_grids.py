@@ -16,7 +16,7 @@ import bpy
 import moderngl
 import numpy as np
 import OpenEXR
-from mathutils import Matrix
+from mathutils import Euler, Matrix
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.sources import expand
@@ -24,10 +24,18 @@ from rppm_addon.materials.node_kinds import FLOAT, NodeKind
 
 from .scenes import new_scene
 
+SAMPLE_SIZE = 0.02
+SCENE_MATRIX = Matrix.Translation((3.0, -2.0, 5.0)) @ Matrix.Rotation(np.pi / 2, 4, "Z")
+"""From the picture's plane to world space."""
+OBJECT_MATRIX = Matrix.Translation((1.0, 2.0, -0.5)) @ Euler((0.3, 0.2, 1.0)).to_matrix().to_4x4() @ Matrix.Diagonal(
+    (2.0, 4.0, 0.5, 1.0)
+)
+"""Of the object that the samples belong to."""
 VIEWER = (0.0, 0.0, 1.0)
 """World direction from every sample to Cycles' camera."""
 RAY_LENGTH = 10.0
 """Of the camera's rays, which begin at its near plane."""
+CAMERA_MATRIX = SCENE_MATRIX @ Matrix.Translation((0.0, 0.0, RAY_LENGTH + 0.1))
 _GROUP = 64
 
 
@@ -135,7 +143,7 @@ def _mesh(cases: Sequence[Case], columns: int) -> bpy.types.Mesh:
     backward = np.repeat([case.backfacing for case in cases], counts)
     order = np.where(backward[:, None], [0, 3, 2, 1], [0, 1, 2, 3])
     vertices = np.zeros((total, 4, 3), np.float32)
-    vertices[..., :2] = place[:, None] + corners[order]
+    vertices[..., :2] = SAMPLE_SIZE * (place[:, None] + corners[order] - columns / 2)
     mesh = bpy.data.meshes.new("Samples")
     mesh.vertices.add(4 * total)
     mesh.vertices.foreach_set("co", vertices.ravel())
@@ -164,6 +172,7 @@ def _mesh(cases: Sequence[Case], columns: int) -> bpy.types.Mesh:
                 attribute = mesh.attributes.new(f"{label}_{index}", data_type, "FACE")
                 attribute.data.foreach_set(property_name, values.ravel())
     mesh.update(calc_edges=True)
+    mesh.transform(OBJECT_MATRIX.inverted() @ SCENE_MATRIX)
     return mesh
 
 
@@ -173,11 +182,13 @@ def cycles_values(cases: Sequence[Case]) -> list[dict[str, np.ndarray]]:
     columns = int(np.ceil(np.sqrt(total)))
     scene = new_scene(columns)
     samples = bpy.data.objects.new("Samples", _mesh(cases, columns))
+    samples.matrix_world = OBJECT_MATRIX
     scene.collection.objects.link(samples)
     camera = bpy.data.cameras.new("Camera")
-    camera.type, camera.ortho_scale = "ORTHO", columns
+    camera.type, camera.ortho_scale = "ORTHO", SAMPLE_SIZE * columns
     scene.camera = bpy.data.objects.new("Camera", camera)
-    scene.camera.matrix_world = Matrix.Translation((columns / 2, columns / 2, RAY_LENGTH + camera.clip_start))
+    scene.camera.matrix_world = CAMERA_MATRIX
+    camera.clip_start = 0.1
     scene.collection.objects.link(scene.camera)
     scene.render.engine = "CYCLES"
     scene.cycles.samples = 1
