@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All kinds of nodes by name."""
+"""Kinds of nodes by name; a module a family."""
 
 from ..node_kinds import NodeKind
-from . import geometry, images, shaders
+from . import color, curves, geometry, images, math, shaders, spectrum, view
 
 KINDS: dict[str, NodeKind] = {}
-for _family in (geometry, images, shaders):
+for _family in (color, curves, geometry, images, math, shaders, spectrum, view):
     for _name, _kind in _family.KINDS.items():
         if _name in KINDS:
             raise ValueError(f"node kind {_name} is declared twice")

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Node trees to node graphs."""
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+
+from ...materials.node_kinds import SHADER, VECTOR, NodeKind
+from ...materials.nodes import KINDS
+from ...scene import Link, NodeGraph
+from .images import ImageTable
+from .links import Path, Source, find_source
+from .report import Report
+
+Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
+"""Gives the value of an output: a Link, a number or a colour."""
+
+HANDLERS: dict[str, Handler] = {}
+"""By node type, the nodes that are more than their sockets and options."""
+
+STAND_INS: dict[str, str] = {}
+"""By node type, the socket whose value passes through a node that is not rendered."""
+
+
+def handles(*types: str) -> Callable[[Handler], Handler]:
+    """Register a handler for node types."""
+
+    def keep(handler: Handler) -> Handler:
+        HANDLERS.update(dict.fromkeys(types, handler))
+        return handler
+
+    return keep
+
+
+def snake_case(identifier: str) -> str:
+    """Blender's socket identifier as inputs and outputs of node kinds are named."""
+    return identifier.lower().replace(" ", "_")
+
+
+def kind_name(node: bpy.types.Node) -> str:
+    """"ShaderNodeTexNoise" is tex_noise."""
+    name = node.bl_idname.removeprefix("ShaderNode")
+    return "".join(f"_{c.lower()}" if c.isupper() and i and not name[i - 1].isupper() else c.lower()
+                   for i, c in enumerate(name))  # fmt: skip
+
+
+class GraphExporter:
+    """Builds the graph of one material, world or light.
+
+    What cannot be rendered gets a neutral value and a warning that names the node.
+    """
+
+    def __init__(self, owner: str, report: Report, images: ImageTable, pass_index: int = 0) -> None:
+        """owner: what warnings name, such as 'Material "Glass"'; pass_index: the material's."""
+        self.graph = NodeGraph()
+        self.owner = owner
+        self.images = images
+        self.pass_index = pass_index
+        self.is_world = owner.startswith("World")
+        self._report = report
+        self._known: dict[tuple, object] = {}
+        self._open: set[tuple] = set()
+
+    def warn(self, node: bpy.types.Node, text: str) -> None:
+        """Tell the user what is done about a node."""
+        self._report.warn(f'{self.owner}: node "{node.name}" ({node.type}) {text}')
+
+    def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
+        """The shader that feeds an input; a colour in place of it glows, as in Cycles."""
+        try:
+            source = find_source(socket, path)
+            if not isinstance(source, Source):
+                return None
+            value = self._output(source)
+        except RecursionError:
+            self._report.warn(f"{self.owner}: its nodes are nested too deeply and are left out; simplify them")
+            return None
+        if isinstance(value, Link) and KINDS[self.graph.nodes[value.node].kind].outputs[value.output] is SHADER:
+            return value
+        return None if value is None else self.graph.add("emission", "emission", name=source.node.name, color=value)
+
+    def value(self, socket: bpy.types.NodeSocket, path: Path) -> object:
+        """What an input of a node gets: a Link, a number, or a tuple of three."""
+        source = find_source(socket, path)
+        if not isinstance(source, Source):
+            return _stored(source.socket)
+        value = self._output(source)
+        # What the user had chosen before plugging something in is the best guess for the unknown.
+        return _stored(socket) if value is None else value
+
+    def is_linked(self, socket: bpy.types.NodeSocket, path: Path) -> bool:
+        """Whether a node's output feeds an input."""
+        return isinstance(find_source(socket, path), Source)
+
+    def _output(self, source: Source) -> object:
+        """The value of an output, None when nothing is known."""
+        node = source.node
+        key = (node.as_pointer(), *(group.as_pointer() for group in source.path))
+        output_key = (*key, source.output.identifier)
+        if output_key in self._known:
+            return self._known[output_key]
+        if output_key in self._open:
+            self.warn(node, "is linked to itself through other nodes; the link is left out")
+            return None
+        self._open.add(output_key)
+        try:
+            value = self._make(node, source.output, source.path, key)
+        finally:
+            self._open.discard(output_key)
+        self._known[output_key] = value
+        return value
+
+    def _make(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path, key: tuple) -> object:
+        handler = HANDLERS.get(node.type)
+        if handler is not None:
+            return handler(self, node, output, path)
+        kind = kind_name(node)
+        if kind not in KINDS:
+            return self._stand_in(node, output, path)
+        name = snake_case(output.identifier)
+        if name not in KINDS[kind].outputs:
+            self.warn(node, f'has an output "{output.name}" that is not rendered; 0 is used')
+            return 0.0
+        # One node serves all of its outputs.
+        known = self._known.get(key)
+        if not isinstance(known, int):
+            known = self.add(kind, node, path).node
+            self._known[key] = known
+        return Link(known, name)
+
+    def add(self, kind: str, node: bpy.types.Node, path: Path, output: str = "", **members: object) -> Link:
+        """Append a node of a kind with the inputs and options that the Blender node has by the kind's names."""
+        declared = KINDS[kind]
+        inputs = self._inputs(declared, node, path) | members.pop("inputs", {})
+        options = self._options(declared, node) | members.pop("options", {})
+        return self.graph.add(kind, output, name=node.name, options=options, **members, **inputs)
+
+    def _inputs(self, kind: NodeKind, node: bpy.types.Node, path: Path) -> dict[str, object]:
+        sockets = {snake_case(socket.identifier): socket for socket in node.inputs}
+        if kind.is_shader and kind in (KINDS["mix_shader"], KINDS["add_shader"]):
+            shaders = {name: self.shader(sockets[name], path) for name in ("shader", "shader_001")}
+            factor = {"fac": self.value(sockets["fac"], path)} if "fac" in sockets else {}
+            return factor | {name: shader for name, shader in shaders.items() if shader is not None}
+        inputs: dict[str, object] = {}
+        for name, (socket_type, default) in kind.inputs.items():
+            socket = sockets.get(name) or sockets.get(_OLDER.get(name, ""))
+            if socket is None:
+                continue  # another version of Blender
+            linked = self.is_linked(socket, path)
+            if not linked and isinstance(default, str):
+                continue  # the surface's own
+            if not linked and socket_type is VECTOR and socket.hide_value and node.type.startswith("TEX_"):
+                inputs[name] = self.implicit_coordinates(node)
+                continue
+            inputs[name] = self.value(socket, path)
+        return inputs
+
+    def _options(self, kind: NodeKind, node: bpy.types.Node) -> dict[str, object]:
+        options: dict[str, object] = {}
+        for name, values in kind.options.items():
+            value = getattr(node, name, values[0])
+            if value not in values:
+                self.warn(node, f"has the {name.replace('_', ' ')} {value}, which is not rendered; {values[0]} is used")
+                value = values[0]
+            options[name] = value
+        return options
+
+    def implicit_coordinates(self, node: bpy.types.Node) -> Link:
+        """Where a texture is placed without a link."""
+        if node.type == "TEX_IMAGE":
+            return self.coordinates("uv")
+        if node.type == "TEX_ENVIRONMENT":
+            return self.graph.add("new_geometry", "position", attribute=ISLAND_UNUSED)
+        return self.coordinates("generated")
+
+    def coordinates(self, output: str) -> Link:
+        """An output of the Texture Coordinate node."""
+        key = ("coordinates",)
+        if key not in self._known:
+            self._known[key] = self.graph.add("tex_coord", attribute=GENERATED).node
+        return Link(self._known[key], output)
+
+    def _stand_in(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+        """For a node that is not rendered: what feeds its main input, or nothing."""
+        names = (STAND_INS.get(node.type, ""), "Color", "Base Color", "Value", "Fac", "Vector", "Shader")
+        socket = next((socket for name in names for socket in node.inputs if name and socket.identifier == name), None)
+        if output.type == "SHADER":
+            if node.type in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "VOLUME_COEFFICIENTS"}:
+                self.warn(node, "is a volume and no surface; it is left out")
+                return None
+            self.warn(node, "is not rendered yet; a diffuse surface of its colour stands in")
+            color = 0.8 if socket is None or socket.type == "SHADER" else self.value(socket, path)
+            return self.graph.add("bsdf_diffuse", "bsdf", name=node.name, color=color)
+        if socket is not None and socket.type not in {"SHADER", "STRING"}:
+            self.warn(node, f'is not rendered yet; the value of its "{socket.name}" passes through')
+            return self.value(socket, path)
+        self.warn(node, "is not rendered yet; the value of the socket it feeds is used")
+        return None
+
+
+_OLDER = {"factor": "fac", "fac": "factor", "bsdf": "bsdf"}
+"""Identifiers that differ between versions of Blender."""
+
+
+def _stored(socket: bpy.types.NodeSocket) -> object:
+    """The value in a socket: a number or a tuple of three; what is not finite counts as 0."""
+    stored = getattr(socket, "default_value", 0.0)
+    if isinstance(stored, str) or stored is None:
+        return 0.0
+    if hasattr(stored, "__len__"):
+        return tuple(float(v) if np.isfinite(v) else 0.0 for v in stored[:3])
+    return float(stored) if np.isfinite(stored) else 0.0
+
+
+from .attributes import GENERATED, ISLAND as ISLAND_UNUSED  # noqa: E402

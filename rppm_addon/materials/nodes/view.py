@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Weights by the angle of view, directions between spaces, and the light falloff by distance."""
+
+from ..node_kinds import FLOAT, VECTOR, NodeKind
+
+UP = (0.0, 0.0, 1.0)
+
+KINDS = {
+    "fresnel": NodeKind(
+        "fresnel_nodes.glsl", {"ior": (FLOAT, 1.5), "normal": (VECTOR, "normal")}, {"fac": FLOAT}, surface=True
+    ),
+    "layer_weight": NodeKind(
+        "fresnel_nodes.glsl",
+        {"blend": (FLOAT, 0.5), "normal": (VECTOR, "normal")},
+        {"fresnel": FLOAT, "facing": FLOAT},
+        surface=True,
+    ),
+    # `direction` is the value of the output Normal, which the user turns.
+    "normal": NodeKind(
+        "direction.glsl",
+        {"normal": (VECTOR, UP), "direction": (VECTOR, UP)},
+        {"normal": VECTOR, "dot": FLOAT},
+    ),
+    "vector_transform": NodeKind(
+        "vector_transform.glsl",
+        {"vector": (VECTOR, (0.5, 0.5, 0.5))},
+        {"vector": VECTOR},
+        {
+            "vector_type": ("POINT", "VECTOR", "NORMAL"),
+            "convert_from": ("WORLD", "OBJECT", "CAMERA"),
+            "convert_to": ("WORLD", "OBJECT", "CAMERA"),
+        },
+        surface=True,
+    ),
+    # `ray_length` is the distance from the lamp.
+    "light_falloff": NodeKind(
+        "light_falloff.glsl",
+        {"strength": (FLOAT, 100.0), "smooth": (FLOAT, 0.0), "ray_length": (FLOAT, 1.0)},
+        {"quadratic": FLOAT, "linear": FLOAT, "constant": FLOAT},
+    ),
+}

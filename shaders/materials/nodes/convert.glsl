@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "materials/nodes/hsv.glsl"
+
+// Modes: RGB, HSV, HSL.
+void node_separate_color(int mode, vec3 color, out float red, out float green, out float blue) {
+    vec3 parts = mode == 0 ? color : (mode == 1 ? rgb_to_hsv(color) : rgb_to_hsl(color));
+    red = parts.x;
+    green = parts.y;
+    blue = parts.z;
+}
+
+void node_combine_color(int mode, float red, float green, float blue, out vec3 color) {
+    vec3 parts = vec3(red, green, blue);
+    color = mode == 0 ? parts : (mode == 1 ? hsv_to_rgb(parts) : hsl_to_rgb(parts));
+}
+
+void node_separate_xyz(vec3 vector, out float x, out float y, out float z) {
+    x = vector.x;
+    y = vector.y;
+    z = vector.z;
+}
+
+void node_combine_xyz(float x, float y, float z, out vec3 vector) { vector = vec3(x, y, z); }

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values of the nodes that compute numbers, vectors and colours, against Cycles'."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from mathutils import Matrix
+
+from rppm_addon.blender.export.tables import curve_table, ramp_table
+from rppm_addon.gl.context import Context
+from rppm_addon.materials.node_kinds import BOOLEAN
+from rppm_addon.materials.nodes import color, curves, math, spectrum, view
+
+from .value_grids import (
+    CAMERA_MATRIX,
+    OBJECT_MATRIX,
+    RAY_LENGTH,
+    Case,
+    assert_values_agree,
+    cycles_values,
+    grid,
+    our_values,
+)
+
+NUMBERS = (-12.3, -2.0, -1.5, -1.0, -0.3, 0.0, 0.25, 0.5, 1.0, 1.7, 3.0, 20.0)
+FEW = (-2.0, 0.0, 0.3, 1.0, 4.5)
+
+
+def math_cases() -> list[Case]:
+    kind = math.KINDS["math"]
+    a, b, c = grid(NUMBERS, NUMBERS, FEW)
+    return [
+        Case("math", kind, "ShaderNodeMath", {"value": a, "value_001": b, "value_002": c},
+             {"operation": operation, "use_clamp": clamp})
+        for operation in math.MATH_OPERATIONS for clamp in ((False, True) if operation == "ADD" else (False,))
+    ]
+
+
+VECTORS = np.array(
+    [(0, 0, 0), (1, 0, 0), (0.3, -0.7, 2.1), (-1.5, 0.25, -4), (0.5, 0.5, 0.5), (2, 0, -1), (-0.6, 0.48, 0.64), (7, -7, 0.1)],
+    np.float32,
+)
+COLORS = np.array(
+    [
+        (0, 0, 0), (1, 1, 1), (0.5, 0.5, 0.5), (0.8, 0.1, 0.2), (0.1, 0.7, 0.3), (0.2, 0.25, 0.9), (1, 0, 0), (0, 1, 1),
+        (0.3, 0.6, 0.6), (0.6, 0.6, 0.1), (3, 0.5, 1.5), (-0.5, 0.4, 0.2), (0.9, -1, -2), (-1, -0.5, -2), (1.5, 1.5, 0),
+    ],
+    np.float32,
+)  # fmt: skip
+RANDOM = 400
+
+
+def glsl_matrix(matrix: Matrix) -> str:
+    """A matrix as a GLSL constant, column by column."""
+    return f"mat4({', '.join(repr(float(matrix[row][column])) for column in range(4) for row in range(4))})"
+
+
+SURFACE = f"""
+struct Surface {{ vec3 viewer; bool backfacing; }};
+struct Parameters {{ mat4 world_to_camera; }};
+const Parameters parameters = Parameters({glsl_matrix(CAMERA_MATRIX.inverted())});
+const mat4 TO_OBJECT = {glsl_matrix(OBJECT_MATRIX.inverted())}, TO_WORLD = {glsl_matrix(OBJECT_MATRIX)};
+vec3 point_to_object(Surface surface, vec3 p) {{ return (TO_OBJECT * vec4(p, 1.0)).xyz; }}
+vec3 direction_to_object(Surface surface, vec3 d) {{ return mat3(TO_OBJECT) * d; }}
+vec3 direction_to_world(Surface surface, vec3 d) {{ return mat3(TO_WORLD) * d; }}
+vec3 normal_to_world(Surface surface, vec3 n) {{ return n * mat3(TO_OBJECT); }}
+vec3 normal_to_object(Surface surface, vec3 n) {{ return n * mat3(TO_WORLD); }}
+"""
+"""What nodes ask of shaders/materials/surface.glsl, for the samples of value_grids."""
+
+
+def choices(*lists: np.ndarray) -> list[np.ndarray]:
+    """All combinations of the lists' rows or numbers."""
+    indices = np.meshgrid(*[np.arange(len(items)) for items in lists], indexing="ij")
+    return [np.asarray(items, np.float32)[index.ravel()] for items, index in zip(lists, indices)]
+
+
+def random_vectors(seed: int, low: float, high: float) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(low, high, (RANDOM, 3)).astype(np.float32)
+
+
+def random_floats(seed: int, low: float, high: float) -> np.ndarray:
+    return random_vectors(seed, low, high)[:, 0]
+
+
+def vector_cases() -> list[Case]:
+    kinds = math.KINDS
+    a, b, c, scale = choices(VECTORS, VECTORS, VECTORS[1:4], (0.6, 1.4))
+    inputs = {"vector": a, "vector_001": b, "vector_002": c, "scale": scale}
+    numbers = {"DOT_PRODUCT", "DISTANCE", "LENGTH"}
+    cases = [
+        Case("vector_math", kinds["vector_math"], "ShaderNodeVectorMath", inputs, {"operation": operation},
+             outputs=("value",) if operation in numbers else ("vector",))
+        for operation in math.VECTOR_OPERATIONS
+    ]
+    a, location, angles, scale = choices(VECTORS, VECTORS[1:5], VECTORS[1:6], [(1, 1, 1), (2, -0.5, 0.3), (0, 1.5, 1)])
+    inputs = {"vector": a, "location": location, "rotation": angles, "scale": scale}
+    cases += [
+        Case("mapping", kinds["mapping"], "ShaderNodeMapping", inputs, {"vector_type": vector_type})
+        for vector_type in kinds["mapping"].options["vector_type"]
+    ]
+    a, center, axis, angle, angles = choices(VECTORS, VECTORS[:3], VECTORS[:4], (-2.5, 0, 0.7, 9), VECTORS[2:5])
+    inputs = {"vector": a, "center": center, "axis": axis, "angle": angle, "rotation": angles}
+    cases += [
+        Case("vector_rotate", kinds["vector_rotate"], "ShaderNodeVectorRotate", inputs,
+             {"rotation_type": rotation_type, "invert": invert})
+        for rotation_type in kinds["vector_rotate"].options["rotation_type"] for invert in BOOLEAN
+    ]
+    return cases
+
+
+def range_cases() -> list[Case]:
+    kinds = math.KINDS
+    value, low, high = grid(NUMBERS, FEW, FEW)
+    cases = [
+        Case("clamp", kinds["clamp"], "ShaderNodeClamp", {"value": value, "min": low, "max": high}, {"clamp_type": kind})
+        for kind in kinds["clamp"].options["clamp_type"]
+    ]
+    lists = grid((-2, -0.5, 0, 0.2, 0.7, 1, 3.3), (-1, 0, 0.6), (-1, 0.5, 1), (0, 2), (-1.5, 1, 3), (0, 1, 4, 2.5, -2))
+    vectors = [np.stack([values, np.roll(values, 1), np.roll(values, 7)], axis=-1) for values in lists]
+    for interpolation in math.INTERPOLATIONS:
+        for clamp in BOOLEAN:
+            options = {"interpolation_type": interpolation, "clamp": clamp}
+            for name, data_type, values in (("map_range", "FLOAT", lists), ("map_range_vector", "FLOAT_VECTOR", vectors)):
+                inputs = dict(zip(kinds[name].inputs, values))
+                cases.append(
+                    Case(name, kinds[name], "ShaderNodeMapRange", inputs, options, {"data_type": data_type})
+                )
+    return cases
+
+
+def mix_cases() -> list[Case]:
+    kinds = math.KINDS | color.KINDS
+    factor, a, b = choices((-0.5, 0, 0.3, 1, 1.6), VECTORS, VECTORS)
+    factors = np.stack([factor, factor[::-1], np.roll(factor, 3)], axis=-1)
+    cases = []
+    for clamp in BOOLEAN:
+        options = {"clamp_factor": clamp}
+        for name, values, properties in (
+            ("mix_float", (factor, a[:, 0], b[:, 2]), {"data_type": "FLOAT"}),
+            ("mix_vector", (factor, a, b), {"data_type": "VECTOR"}),
+            ("mix_vector_non_uniform", (factors, a, b), {"data_type": "VECTOR", "factor_mode": "NON_UNIFORM"}),
+        ):
+            inputs = dict(zip(kinds[name].inputs, values))
+            cases.append(Case(name, kinds[name], "ShaderNodeMix", inputs, options, properties))
+    factor, a, b = choices((-0.5, 0, 0.3, 1, 1.6), COLORS, COLORS)
+    kind = kinds["mix_color"]
+    inputs = {"factor_float": factor, "a_color": a, "b_color": b}
+    for blend_type in color.BLEND_TYPES:
+        for clamp_factor, clamp_result in ((True, False), (False, False), (False, True)):
+            options = {"blend_type": blend_type, "clamp_factor": clamp_factor, "clamp_result": clamp_result}
+            cases.append(Case("mix_color", kind, "ShaderNodeMix", inputs, options, {"data_type": "RGBA"}))
+    inputs = {"fac": factor, "color1": a, "color2": b}
+    for blend_type in ("MIX", "OVERLAY", "DODGE", "COLOR"):
+        for use_clamp in BOOLEAN:
+            options = {"blend_type": blend_type, "use_clamp": use_clamp}
+            cases.append(Case("mix_rgb", kinds["mix_rgb"], "ShaderNodeMixRGB", inputs, options))
+    return cases
+
+
+def color_cases() -> list[Case]:
+    kinds = color.KINDS
+    many = np.concatenate([COLORS, random_vectors(3, -0.5, 1.5)])
+    a, factor = choices(many, (-0.5, 0, 0.4, 1, 2.2))
+    a2, x, y = choices(many, (-1, 0, 0.4, 1, 2.2), (-1, 0, 0.4, 1, 2.2))
+    hue = choices(COLORS, (-0.2, 0, 0.3, 0.5, 1, 1.7), (0, 0.5, 1, 3), (0, 0.7, 2), (-0.3, 0.5, 1))
+    cases = [
+        Case("invert", kinds["invert"], "ShaderNodeInvert", {"fac": factor, "color": a}),
+        Case("gamma", kinds["gamma"], "ShaderNodeGamma", {"color": a, "gamma": factor}),
+        Case("bright_contrast", kinds["bright_contrast"], "ShaderNodeBrightContrast",
+             {"color": a2, "bright": x, "contrast": y}),
+        Case("hue_saturation", kinds["hue_saturation"], "ShaderNodeHueSaturation",
+             dict(zip(("color", "hue", "saturation", "value", "fac"), hue))),
+        Case("rgb_to_bw", kinds["rgb_to_bw"], "ShaderNodeRGBToBW", {"color": many}),
+        Case("separate_xyz", kinds["separate_xyz"], "ShaderNodeSeparateXYZ", {"vector": many}),
+        Case("combine_xyz", kinds["combine_xyz"], "ShaderNodeCombineXYZ", dict(zip("xyz", many.T))),
+    ]
+    parts = np.concatenate([np.stack(grid((-0.3, 0, 0.1, 1 / 3, 0.5, 0.9, 1, 1.2), FEW, FEW), axis=-1), many])
+    for mode in color.MODES:
+        cases.append(
+            Case("separate_color", kinds["separate_color"], "ShaderNodeSeparateColor", {"color": many}, {"mode": mode})
+        )
+        inputs = dict(zip(("red", "green", "blue"), parts.T))
+        cases.append(Case("combine_color", kinds["combine_color"], "ShaderNodeCombineColor", inputs, {"mode": mode}))
+    return cases
+
+
+def set_ramp(interpolation: str, color_mode: str = "RGB") -> Callable:
+    """Uneven stops, one hard edge and an alpha."""
+
+    def prepare(node):
+        ramp = node.color_ramp
+        ramp.color_mode = color_mode
+        if color_mode == "RGB":
+            ramp.interpolation = interpolation
+        else:
+            ramp.hue_interpolation = interpolation
+        ramp.elements[0].position, ramp.elements[0].color = 0.1, (0.9, 0.1, 0.2, 1.0)
+        ramp.elements[1].position, ramp.elements[1].color = 0.83, (0.1, 0.3, 1.4, 0.2)
+        for position, value in ((0.4, (0.2, 0.8, 0.1, 0.5)), (0.401, (0.0, 0.05, 0.02, 1.0))):
+            ramp.elements.new(position).color = value
+
+    return prepare
+
+
+def set_curves(extend: str) -> Callable:
+    """Every curve gets points of its own, some outside the unit square."""
+
+    def prepare(node):
+        mapping = node.mapping
+        mapping.use_clip = False
+        mapping.extend = extend
+        for index, curve in enumerate(mapping.curves):
+            first, last = curve.points[0], curve.points[len(curve.points) - 1]
+            first.location = (-0.2 * index, 0.1 - 0.1 * index)
+            last.location = (1.0 + 0.1 * index, 0.9 + 0.2 * index)
+            curve.points.new(0.3 + 0.1 * index, 0.7 - 0.15 * index)
+            curve.points.new(0.62, 0.5).handle_type = "VECTOR"
+        mapping.update()
+
+    return prepare
+
+
+def curve_cases() -> list[Case]:
+    kinds = curves.KINDS
+    places = np.concatenate([np.linspace(-0.2, 1.2, 900), np.linspace(0.39, 0.41, 60), [0, 0.5, 1]])
+    cases = [
+        Case("val_to_rgb", kinds["val_to_rgb"], "ShaderNodeValToRGB", {"fac": places},
+             {"constant": interpolation == "CONSTANT"}, prepare=set_ramp(interpolation),
+             table=lambda node: ramp_table(node.color_ramp), label=interpolation)
+        for interpolation in ("LINEAR", "EASE", "B_SPLINE", "CARDINAL", "CONSTANT")
+    ]
+    cases += [
+        Case("val_to_rgb", kinds["val_to_rgb"], "ShaderNodeValToRGB", {"fac": places}, prepare=set_ramp(hue, mode),
+             table=lambda node: ramp_table(node.color_ramp), label=f"{mode} {hue}")
+        for mode, hue in (("HSV", "NEAR"), ("HSL", "CW"))
+    ]
+    for extend in ("HORIZONTAL", "EXTRAPOLATED"):
+        options, prepare = {"extrapolate": extend == "EXTRAPOLATED"}, set_curves(extend)
+        values, factor = random_vectors(5, -2.0, 2.5), random_floats(6, -0.2, 1.4)
+        cases += [
+            Case("rgb_curve", kinds["rgb_curve"], "ShaderNodeRGBCurve", {"color": values, "fac": factor}, options,
+                 prepare=prepare, table=lambda node: curve_table(node.mapping, 3)),
+            Case("vector_curve", kinds["vector_curve"], "ShaderNodeVectorCurve", {"vector": values, "fac": factor},
+                 options, prepare=prepare, table=lambda node: curve_table(node.mapping, 3)),
+            Case("float_curve", kinds["float_curve"], "ShaderNodeFloatCurve",
+                 {"value": values[:, 0], "factor": factor}, options,
+                 prepare=prepare, table=lambda node: curve_table(node.mapping, 1)),
+        ]
+    return cases
+
+
+def view_cases() -> list[Case]:
+    kinds = view.KINDS
+    cosines = np.linspace(-1, 1, 21)
+    cosine, x = grid(cosines, (-0.5, 0, 0.3, 0.5, 0.7, 1, 1.3, 1.5, 2.4))
+    normal = np.stack([np.sqrt(1 - cosine**2), 0 * cosine, cosine], axis=-1)
+    cases = []
+    for backfacing in BOOLEAN:
+        cases += [
+            Case("fresnel", kinds["fresnel"], "ShaderNodeFresnel", {"ior": x, "normal": normal}, backfacing=backfacing),
+            Case("layer_weight", kinds["layer_weight"], "ShaderNodeLayerWeight", {"blend": x, "normal": normal},
+                 backfacing=backfacing),
+        ]
+    chosen = (0.36, 0.48, 0.8)
+
+    def turn(node):
+        node.outputs["Normal"].default_value = chosen
+
+    cases.append(
+        Case("normal", kinds["normal"], "ShaderNodeNormal",
+             {"normal": random_vectors(8, -2, 2), "direction": np.array([chosen])}, prepare=turn,
+             sockets={"direction": None})
+    )
+    strength, smooth = grid((0, 1, 30.5), (0, 0.5, 20))
+    cases.append(
+        Case("light_falloff", kinds["light_falloff"], "ShaderNodeLightFalloff",
+             {"strength": strength, "smooth": smooth, "ray_length": np.array([RAY_LENGTH])},
+             sockets={"ray_length": None})
+    )
+    kind = kinds["vector_transform"]
+    for vector_type in kind.options["vector_type"]:
+        for start in kind.options["convert_from"]:
+            for end in kind.options["convert_to"]:
+                options = {"vector_type": vector_type, "convert_from": start, "convert_to": end}
+                # Cycles normalizes the normal 0 to NaN.
+                vectors = VECTORS[1:] if vector_type == "NORMAL" else VECTORS
+                cases.append(Case("vector_transform", kind, "ShaderNodeVectorTransform", {"vector": vectors}, options))
+    return cases
+
+
+# By the fits of spectrum.glsl and of Cycles; all else is rounding.
+SPECTRUM_CASES = [
+    Case("blackbody", spectrum.KINDS["blackbody"], "ShaderNodeBlackbody",
+         {"temperature": np.concatenate([np.arange(0, 1000, 50), np.arange(1000, 14000, 100)])}),
+    Case("wavelength", spectrum.KINDS["wavelength"], "ShaderNodeWavelength",
+         {"wavelength": np.arange(365.25, 790, 0.5)}),
+]
+SPECTRUM_TOLERANCE = {"blackbody": (0.0, 0.01), "wavelength": (0.0, 0.01)}
+CASES = [
+    *math_cases(), *vector_cases(), *range_cases(), *mix_cases(), *color_cases(), *curve_cases(), *view_cases(), *SPECTRUM_CASES,
+]
+
+
+@pytest.fixture(scope="module")
+def context():
+    context = Context.create()
+    yield context
+    context.release()
+
+
+@pytest.fixture(scope="module")
+def reference(registered):
+    return cycles_values(CASES)
+
+
+@pytest.mark.parametrize("number", range(len(CASES)), ids=[case.name for case in CASES])
+def test_values(number, reference, context):
+    case = CASES[number]
+    with context.moderngl:
+        ours = our_values(context, case, SURFACE)
+    if case in SPECTRUM_CASES:
+        assert_values_agree(case, ours, reference[number], *SPECTRUM_TOLERANCE[case.kind_name])
+    else:
+        assert_values_agree(case, ours, reference[number])
