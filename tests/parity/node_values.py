@@ -84,6 +84,7 @@ def _render() -> dict[str, np.ndarray]:
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = os.path.join(folder, "values.exr")
         bpy.ops.render.render(write_still=True)
+        # Each pass is a part of its own.
         parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
         channels = {name: channel for part in parts for name, channel in part.channels.items()}
         return {name.partition(".")[2]: np.array(channel.pixels) for name, channel in channels.items()}
@@ -145,7 +146,9 @@ def cycles_values(
     tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], output.inputs["Surface"])
     channels = _render()
     results = [{name: _pass(channels, given) for name, given in case.items()} for case in names]
-    return _pass(channels, vector_pass), _pass(channels, w_pass), results
+    vectors = _pass(channels, vector_pass)
+    assert np.ptp(vectors, axis=0).min() > 1.0, "Cycles shaded nothing"
+    return vectors, _pass(channels, w_pass), results
 
 
 def call_shader(name: str, kind: NodeKind, options: dict) -> str:

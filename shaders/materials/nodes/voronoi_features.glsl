@@ -87,8 +87,8 @@ float voronoi_edge_distance(int dimensions, float randomness, vec4 coordinates) 
     ivec4 cell = ivec4(corner);
     vec4 place = coordinates - corner;
     if (dimensions == 1) {
-        // Cycles looks at the two borders of the cell's own point.
-        float own = voronoi_point(1, cell).x * randomness;
+        // Cycles looks at the two borders of the cell's own point, whose key may be -0.0 here.
+        float own = hash_to_unit(corner.x) * randomness;
         float left = voronoi_point(1, cell - 1).x * randomness - 1.0;
         float right = voronoi_point(1, cell + 1).x * randomness + 1.0;
         return min(abs(0.5 * (own + left) - place.x), abs(0.5 * (own + right) - place.x));
