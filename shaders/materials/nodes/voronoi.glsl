@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "materials/nodes/voronoi_features.glsl"
+
+const int VORONOI_F1 = 0;
+const int VORONOI_F2 = 1;
+const int VORONOI_SMOOTH_F1 = 2;
+const int VORONOI_DISTANCE_TO_EDGE = 3;
+const int VORONOI_N_SPHERE_RADIUS = 4;
+
+void node_tex_voronoi(
+    int voronoi_dimensions, int metric, int feature, int normalize_sum,
+    vec3 vector, float w, float scale, float detail, float roughness, float lacunarity, float smoothness,
+    float exponent, float randomness,
+    out float distance_out, out vec3 color, out vec3 position, out float w_out, out float radius
+) {
+    int dimensions = voronoi_dimensions + 1;
+    detail = clamp(detail, 0.0, 15.0);
+    roughness = clamp(roughness, 0.0, 1.0);
+    randomness = clamp(randomness, 0.0, 1.0);
+    smoothness = clamp(0.5 * smoothness, 0.0, 0.5);
+    vec4 p = dimensions == 1 ? vec4(w * scale, 0.0, 0.0, 0.0)
+           : vec4(vector * scale, w * scale) * voronoi_axes(dimensions);
+    bool edge = feature == VORONOI_DISTANCE_TO_EDGE;
+    distance_out = edge ? 8.0 : 0.0;
+    color = vec3(0.0);
+    position = vec3(0.0);
+    w_out = radius = 0.0;
+    if (feature == VORONOI_N_SPHERE_RADIUS) {
+        radius = voronoi_sphere_radius(dimensions, randomness, p);
+        return;
+    }
+
+    float furthest = 0.5 + 0.5 * randomness;
+    if (!edge) furthest = voronoi_distance(dimensions, metric, exponent, vec4(0.0), furthest * voronoi_axes(dimensions));
+    if (feature == VORONOI_F2) furthest *= 2.0;
+    vec4 place = vec4(0.0);
+    float amplitude = 1.0, octave_scale = 1.0, total = edge ? furthest : 0.0;
+    int last = roughness == 0.0 ? 0 : int(ceil(detail));
+    for (int i = 0; i <= last; ++i) {
+        float share = float(i) <= detail ? 1.0 : fract(detail);
+        if (edge) {
+            float octave = voronoi_edge_distance(dimensions, randomness, p * octave_scale);
+            total = mix(total, mix(total, furthest / octave_scale, amplitude), share);
+            distance_out = mix(
+                distance_out, mix(distance_out, min(distance_out, octave / octave_scale), amplitude), share
+            );
+        } else {
+            VoronoiOctave octave;
+            if (feature == VORONOI_SMOOTH_F1) {
+                octave = voronoi_smooth(dimensions, metric, smoothness, exponent, randomness, p * octave_scale);
+            } else {
+                octave = voronoi_nearest(
+                    dimensions, metric, feature == VORONOI_F2, exponent, randomness, p * octave_scale
+                );
+            }
+            total += share * amplitude;
+            distance_out += share * amplitude * octave.distance;
+            color += share * amplitude * octave.color;
+            place = mix(place, mix(place, octave.position / octave_scale, amplitude), share);
+        }
+        octave_scale *= lacunarity;
+        amplitude *= roughness;
+    }
+    if (normalize_sum != 0) {
+        distance_out /= edge ? total : total * furthest;
+        color /= total;
+    }
+    place = scale != 0.0 ? place / scale : vec4(0.0);
+    if (!edge && dimensions > 1) position = place.xyz;
+    if (!edge && dimensions == 1) w_out = place.x;
+    if (!edge && dimensions == 4) w_out = place.w;
+}
