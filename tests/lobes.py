@@ -5,7 +5,7 @@ import enum
 
 import numpy as np
 
-from rppm_addon.scene import Link, Material, NodeGraph
+from rppm_addon.scene import Link, Material, NodeGraph, World
 
 
 class LobeKind(enum.Enum):
@@ -51,7 +51,11 @@ def material(name: str, *lobes: Lobe, absorption: np.ndarray | None = None) -> M
             if graph.surface is None
             else graph.add("add_shader", "shader", shader=graph.surface, shader_001=shader)
         )
-    return Material(name, graph) if absorption is None else Material(name, graph, absorption)
+    if absorption is None:
+        return Material(name, graph)
+    interior = NodeGraph()
+    interior.surface = interior.add("emission", "emission", color=tuple(float(a) for a in absorption))
+    return Material(name, graph, interior)
 
 
 def _shader(graph: NodeGraph, lobe: Lobe) -> Link:
@@ -73,3 +77,12 @@ def _shader(graph: NodeGraph, lobe: Lobe) -> Link:
         options["distribution"] = "MULTI_GGX" if lobe.multiscatter else "GGX"
     output = "emission" if lobe.kind is LobeKind.EMISSION else "bsdf"
     return graph.add(lobe.kind.value, output, options=options, **inputs)
+
+
+def image_world(image: int) -> World:
+    """A world that shows an equirectangular image of Scene.images."""
+    graph = NodeGraph()
+    direction = graph.add("new_geometry", "position")
+    color = graph.add("tex_environment", "color", image=image, vector=direction)
+    graph.surface = graph.add("background", "background", color=color, strength=1.0)
+    return World(np.ones(3), graph)

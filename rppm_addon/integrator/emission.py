@@ -29,7 +29,6 @@ LIGHT_PARAMETERS = {
     "scene_radius": "float",
     "world_radiance": "vec3",
     "light_count": "uint",
-    "world_rotation": "mat4",
     "environment_width": "uint",
     "environment_height": "uint",
     "emissive_triangle_count": "uint",
@@ -152,12 +151,16 @@ class Emission:
 
         for light in scene.lights:
             entry, power = _light_entry(light, radius)
+            if light.graph is not None:
+                emitted = np.maximum(materials.evaluate(light.graph)[0, 0], 0.0)
+                entry["strength"] *= emitted
+                power = power * emitted
             add(entry, power, light.photon_share)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
         entry["kind"] = MESH
         add(entry, self.emitters.power)
-        self.environment.build(scene)
+        self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
         entry["kind"] = WORLD
         add(entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
@@ -184,14 +187,11 @@ class Emission:
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
-        rotation = np.eye(4)
-        rotation[:3, :3] = scene.world.rotation
         self._parameters = {
             "scene_centre": geometry.centre,
             "scene_radius": radius,
-            "world_radiance": np.maximum(scene.world.radiance, 0.0),
+            "world_radiance": self.environment.radiance,
             "light_count": len(entries),
-            "world_rotation": rotation,
             "environment_width": self.environment.width,
             "environment_height": self.environment.height,
             "emissive_triangle_count": self.emitters.count,

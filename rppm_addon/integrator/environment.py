@@ -1,25 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The world's image as texture and as a distribution to sample directions from."""
+"""The world as a map of all directions and as a distribution to sample directions from."""
 
 import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
+from ..materials.emitted import Emits, emits, reachable
+from ..materials.tables import MaterialTables
 from ..scene.images import Image
-from ..scene.scene import Scene
+from ..scene.lights import World
 
 _WIDEST = 512
-
-
-def linear_pixels(image: Image) -> np.ndarray:
-    """(height, width, 3) float32 scene-linear pixels, finite and not negative."""
-    pixels = image.pixels[..., :3]
-    if pixels.dtype == np.uint8:
-        pixels = pixels.astype(np.float32) / 255
-        if image.encoding == "SRGB":
-            pixels = np.where(pixels <= 0.04045, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4)
-    return np.clip(np.nan_to_num(pixels, posinf=0.0), 0.0, None).astype(np.float32)
+_NARROWEST_MAP, _WIDEST_MAP = 1024, 4096
 
 
 def _reduced(brightness: np.ndarray) -> np.ndarray:
@@ -48,46 +41,75 @@ def distribution_of(brightness: np.ndarray) -> np.ndarray:
 
 
 class Environment:
-    """The world for shaders/emission/environment.glsl; width 0 stands for a constant world."""
+    """The world for shaders/emission/environment.glsl; width 0 stands for a constant world.
+
+    ``radiance`` (3,) is that of a constant world, or 1 where textures give it; ``mean_radiance`` (3,) W/(m^2 sr).
+    """
 
     def __init__(self, context: Context) -> None:
         self._context = context
         self.distribution = GrowingBuffer(context, "environment distribution")
-        self._texture: moderngl.Texture | None = None
+        self._textures: list[moderngl.Texture] = []
         self.width = self.height = 0
-        self.mean_radiance = np.zeros(3)
+        self.radiance = self.mean_radiance = np.zeros(3)
 
     @property
     def memory_bytes(self) -> int:
-        return self.distribution.size + 16 * self._texture.width * self._texture.height
+        return self.distribution.size + sum(16 * texture.width * texture.height for texture in self._textures)
 
-    def build(self, scene: Scene) -> None:
-        """Upload the world's image, if it has one that is not black."""
-        world = scene.world
-        self.mean_radiance = np.maximum(world.radiance, 0.0).astype(np.float64)
+    def build(self, world: World, images: list[Image], materials: MaterialTables) -> None:
+        """Evaluate the world's nodes: once where they give one colour, else for a map of all directions, and for
+        another of what the camera sees where Light Path nodes tell it apart."""
+        self._release_textures()
         self.width = self.height = 0
-        pixels = np.ones((1, 1, 3), np.float32)
-        if world.image >= 0:
-            pixels = linear_pixels(scene.images[world.image])
-            sine = np.sin(np.pi * (np.arange(len(pixels)) + 0.5) / len(pixels))[:, None, None]
-            self.mean_radiance = self.mean_radiance * ((pixels * sine).mean(axis=(0, 1)) / sine.mean())
-            brightness = _reduced(pixels.mean(axis=2, dtype=np.float64))
-            if brightness.max() > 0:
-                self.height, self.width = brightness.shape
-                self.distribution.upload(distribution_of(brightness))
-        if self._texture is not None:
-            self._texture.release()
+        self.radiance = self.mean_radiance = np.maximum(world.radiance, 0.0).astype(np.float64)
+        if world.graph is None or emits(world.graph) is not Emits.VARYING:
+            if world.graph is not None:
+                self.radiance = self.mean_radiance = self.radiance * np.maximum(
+                    materials.evaluate(world.graph)[0, 0], 0.0
+                )
+            self._textures = [self._texture(np.ones((1, 1, 3), np.float32))]
+            return
+        kinds = {world.graph.nodes[index].kind for index in reachable(world.graph, world.graph.surface)}
+        width = _map_width(world, images)
+        maps = [materials.evaluate(world.graph, width, width // 2)]
+        if "light_path" in kinds:
+            maps.append(materials.evaluate(world.graph, width, width // 2, from_camera=True))
+        maps = [np.maximum(pixels * self.radiance.astype(np.float32), 0.0) for pixels in maps]
+        self.radiance = np.ones(3)
+        self._textures = [self._texture(pixels) for pixels in maps]
+        sine = np.sin(np.pi * (np.arange(width // 2) + 0.5) / (width // 2))[:, None, None]
+        self.mean_radiance = (maps[0] * sine).mean(axis=(0, 1), dtype=np.float64) / sine.mean()
+        brightness = _reduced(maps[0].mean(axis=2, dtype=np.float64))
+        self.height, self.width = brightness.shape
+        self.distribution.upload(distribution_of(brightness if brightness.max() > 0 else np.ones_like(brightness)))
+
+    def _texture(self, pixels: np.ndarray) -> moderngl.Texture:
         rgba = np.ones((*pixels.shape[:2], 4), np.float32)
         rgba[..., :3] = pixels
-        self._texture = self._context.moderngl.texture(pixels.shape[1::-1], 4, rgba.tobytes(), dtype="f4")
-        self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-        self._texture.repeat_x, self._texture.repeat_y = True, False
+        texture = self._context.moderngl.texture(pixels.shape[1::-1], 4, rgba.tobytes(), dtype="f4")
+        texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        texture.repeat_x, texture.repeat_y = True, False
+        return texture
 
     def use(self) -> None:
-        """Bind the image to texture unit 0, where environment.glsl reads it."""
-        self._texture.use(0)
+        """Bind the maps to texture units 0 and 1, where environment.glsl reads them."""
+        self._textures[0].use(0)
+        self._textures[-1].use(1)
+
+    def _release_textures(self) -> None:
+        for texture in self._textures:
+            texture.release()
+        self._textures = []
 
     def release(self) -> None:
         self.distribution.release()
-        if self._texture is not None:
-            self._texture.release()
+        self._release_textures()
+
+
+def _map_width(world: World, images: list[Image]) -> int:
+    """Pixels across the map: as many as the widest image that the world shows, within reason."""
+    used = [images[node.image] for node in world.graph.nodes if 0 <= node.image < len(images)]
+    widest = max((image.pixels.shape[1] for image in used), default=0)
+    patterns = any(node.kind.startswith("tex_") and node.image < 0 for node in world.graph.nodes)
+    return int(np.clip(widest + widest % 2, _NARROWEST_MAP if patterns or not used else 2, _WIDEST_MAP))

@@ -54,7 +54,7 @@ class ProgressivePhotonMapper:
         self._library = library
         self.timers = StageTimers(context)
         self._geometry = Geometry(context, library)
-        self._materials = MaterialTables(context)
+        self._materials = MaterialTables(context, library)
         self._emission = Emission(context, library)
         self._deep_cubemap = DeepCubemap(context, library)
         self._resolve = Resolve(context, library)
@@ -112,7 +112,7 @@ class ProgressivePhotonMapper:
         self._diffused_photons = []
         self._wide_radius = 0.0
         self.scene = scene
-        self._materials.build(scene.materials, scene.images)
+        self._materials.build(scene)
         self._geometry.build(scene, self._materials.default_material)
 
     def _build_deep_cubemap(self) -> None:

@@ -9,6 +9,7 @@ from .nodes import KINDS
 _EMITTING = {
     "emission": ("color", "strength"),
     "background": ("color", "strength"),
+    "volume_absorption": ("density",),
     "bsdf_principled": ("emission_color", "emission_strength"),
 }
 """Shader nodes that emit where all of these inputs are above 0."""

@@ -5,12 +5,15 @@ import numpy as np
 
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
 from ..scene.images import Image
 from ..scene.materials import Material
 from ..scene.node_graphs import NodeGraph
+from ..scene.scene import Scene
 from . import albedo_tables
 from .compiler import CompiledGraph, Resource, compile_graph
 from .emitted import Emits, emits
+from .evaluation import GraphEvaluator
 from .records import IMAGE_ENTRY, MATERIAL
 
 
@@ -40,7 +43,8 @@ class MaterialTables:
     ``default_material``, the last.
     """
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._evaluator = GraphEvaluator(context, library)
         names = ("Materials", "MaterialData", "Images", "Texels", "AlbedoTables")
         self._buffers = {
             name: GrowingBuffer(context, f"material {name}", "use smaller or fewer image textures") for name in names
@@ -50,6 +54,7 @@ class MaterialTables:
         self.programs: list[str] = []
         self.attribute_names: list[str] = []
         self.emits: list[Emits] = []
+        self._others: dict[int, tuple[str, int]] = {}
 
     @property
     def buffers(self) -> dict:
@@ -60,30 +65,48 @@ class MaterialTables:
     def memory_bytes(self) -> dict[str, int]:
         return {buffer.name: buffer.size for buffer in self._buffers.values()}
 
-    def build(self, materials: list[Material], images: list[Image]) -> None:
-        """Compile the materials' graphs and upload their constants, and the images that they use.
+    def build(self, scene: Scene) -> None:
+        """Compile the graphs of a scene and upload their constants, and the images that they use.
 
         Raises GraphError when a graph is not well formed.
         """
-        self.default_material = len(materials)
-        materials = [*materials, default_material()]
+        self.default_material = len(scene.materials)
+        materials = [*scene.materials, default_material()]
         compiled = [compile_graph(material.graph) for material in materials]
         self.emits = [emits(material.graph) for material in materials]
         self.programs = list(dict.fromkeys(graph.text for graph in compiled))
         number = {text: index for index, text in enumerate(self.programs)}
-        layout = _Layout(images)
+        layout = _Layout(scene.images)
         records = MATERIAL.zeros(len(materials))
         for record, material, graph in zip(records, materials, compiled, strict=True):
-            record["absorption"] = np.maximum(material.absorption, 0.0)
             record["program"] = number[graph.text]
             record["first_constant"] = layout.add(material.graph, graph)
+        interiors = [material.interior for material in materials]
+        others = [scene.world.graph, *(light.graph for light in scene.lights), *interiors]
+        self._others = {}
+        for graph in others:
+            if graph is not None:
+                compiled_graph = compile_graph(graph)
+                self._others[id(graph)] = compiled_graph.text, layout.add(graph, compiled_graph)
         self.attribute_names = list(layout.attributes)
-        self._buffers["Materials"].upload(records)
         self._buffers["MaterialData"].upload(layout.data())
         self._buffers["Images"].upload(layout.image_entries())
         self._buffers["Texels"].upload(layout.texels())
+        for record, interior in zip(records, interiors, strict=True):
+            if interior is not None:
+                record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
+        self._buffers["Materials"].upload(records)
+
+    def evaluate(self, graph: NodeGraph, width: int = 1, height: int = 1, from_camera: bool = False) -> np.ndarray:
+        """(height, width, 3) float32 emission of a graph of the scene that belongs to no surface.
+
+        Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it.
+        """
+        text, first = self._others[id(graph)]
+        return self._evaluator.run(text, first, self.buffers, width, height, from_camera)
 
     def release(self) -> None:
+        self._evaluator.release()
         for buffer in self._buffers.values():
             buffer.release()
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .node_graphs import NodeGraph
+
 
 class LightKind(enum.Enum):
     POINT = "point"
@@ -44,17 +46,16 @@ class Light:
     """AREA: full angle of emission, radians (Cycles' spread); pi is diffuse."""
     visible_to_camera: bool = True
     """Whether the camera sees the light itself; mirrors and glass show it in any case, as in Cycles."""
+    graph: NodeGraph | None = None
+    """Its emission multiplies ``strength``; None is 1."""
     photon_share: float = 1.0
     """Weight of this light when photons are shared out (paper section 4.3), on top of its power."""
 
 
 @dataclass
 class World:
-    """The surroundings: constant radiance or an equirectangular image of radiance."""
+    """The surroundings: constant radiance, or what a node graph gives by direction."""
 
     radiance: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    """(3,) float64 W/(m^2 sr); multiplies the image where there is one."""
-    image: int = -1
-    """Index into Scene.images of an equirectangular environment, or -1."""
-    rotation: np.ndarray = field(default_factory=lambda: np.eye(3))
-    """(3, 3) float64, world direction to the image's direction."""
+    """(3,) float64 W/(m^2 sr); multiplies what the graph gives where there is one."""
+    graph: NodeGraph | None = None

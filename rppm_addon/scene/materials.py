@@ -3,17 +3,14 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from .node_graphs import NodeGraph
 
 
 @dataclass
 class Material:
-    """A surface, and the homogeneous absorption of what it encloses."""
+    """A surface, and the homogeneous volume that it encloses."""
 
     name: str
     graph: NodeGraph = field(default_factory=NodeGraph)
-    absorption: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    """(3,) float64, absorption coefficient of the interior in 1/m (Volume Absorption:
-    density times one minus colour)."""
+    interior: NodeGraph | None = None
+    """What the surface encloses: the "emission" of this graph is the absorption coefficient in 1/m."""

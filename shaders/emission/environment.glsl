@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiance of the surroundings and directions chosen by it. Needs the members world_radiance,
-// world_rotation, environment_width and environment_height of the parameters; width 0 is a
-// constant world.
+// Radiance of the surroundings and directions chosen by it. Needs the members world_radiance, environment_width and
+// environment_height of the parameters; width 0 is a constant world.
 
 #include "common/sampling.glsl"
 layout(binding = 0) uniform sampler2D environment_image;
+layout(binding = 1) uniform sampler2D environment_seen;
 layout(std430, binding = 7) readonly buffer EnvironmentDistribution { float environment_distribution[]; };
 
 // Cycles' equirectangular map; v grows upwards.
@@ -19,8 +19,13 @@ vec3 equirectangular_to_direction(vec2 uv) {
 
 vec3 world_radiance(vec3 direction) {
     if (parameters.environment_width == 0u) return parameters.world_radiance;
-    vec3 d = normalize(mat3(parameters.world_rotation) * direction);
-    return parameters.world_radiance * textureLod(environment_image, direction_to_equirectangular(d), 0.0).rgb;
+    return parameters.world_radiance * textureLod(environment_image, direction_to_equirectangular(direction), 0.0).rgb;
+}
+
+// Light Path nodes may show the camera another world than the one that gives light.
+vec3 world_radiance_seen(vec3 direction) {
+    if (parameters.environment_width == 0u) return parameters.world_radiance;
+    return parameters.world_radiance * textureLod(environment_seen, direction_to_equirectangular(direction), 0.0).rgb;
 }
 
 // The distribution lists the cumulated shares of the rows, then those of the cells within each row.
@@ -41,7 +46,7 @@ float environment_share(uint first, uint index) {
 // Density in 1/sr with which sample_world gives a direction.
 float world_density(vec3 direction) {
     if (parameters.environment_width == 0u) return 1.0 / (4.0 * PI);
-    vec2 uv = direction_to_equirectangular(normalize(mat3(parameters.world_rotation) * direction));
+    vec2 uv = direction_to_equirectangular(direction);
     uint width = parameters.environment_width, height = parameters.environment_height;
     uint row = min(uint(uv.y * float(height)), height - 1u), column = min(uint(fract(uv.x) * float(width)), width - 1u);
     float share = environment_share(0u, row) * environment_share(height + row * width, column);
@@ -66,5 +71,5 @@ vec3 sample_world(vec2 u, out float density) {
                    (float(row) + clamp((u.y - below_row) / max(row_share, 1e-20), 0.0, 1.0)) / float(height));
     float sine = max(sin(PI * (1.0 - uv.y)), 1e-6);
     density = row_share * column_share * float(width) * float(height) / (2.0 * PI * PI * sine);
-    return transpose(mat3(parameters.world_rotation)) * equirectangular_to_direction(uv);
+    return equirectangular_to_direction(uv);
 }

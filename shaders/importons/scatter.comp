@@ -87,7 +87,7 @@ void main() {
             seen.a -= (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
         else {
             float share = scattered_share(path.scatter_density, parameters.world_selection * world_density(ray.direction));
-            seen.rgb += path.throughput * world_radiance(ray.direction) * share;
+            seen.rgb += path.throughput * (straight ? world_radiance_seen(ray.direction) : world_radiance(ray.direction)) * share;
         }
         radiances[index] += seen;
         return;

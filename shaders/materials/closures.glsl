@@ -6,6 +6,17 @@
 
 struct ClosureBuilder { Closure closure; int lobes; float cosine; bool backfacing; float u_choice; };
 
+Closure empty_closure() {
+    vec3 none = vec3(0.0);
+    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, 0.0, 0u,
+                   none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, vec3(1.0), 0.0);
+}
+
+// Before any shader has been added; u_choice: a random number for lobes that do not fit in.
+ClosureBuilder empty_builder(Surface surface, float u_choice) {
+    return ClosureBuilder(empty_closure(), 0, clamp(dot(surface.normal, surface.viewer), 0.0, 1.0), surface.backfacing, u_choice);
+}
+
 void set_lobe(inout Closure closure, int slot, MicrofacetLobe lobe) {
     if (slot == 0) { closure.lobe0_weight = lobe.weight; closure.lobe0_kind = lobe.kind; closure.lobe0_f0 = lobe.f0; closure.lobe0_alpha = lobe.alpha; closure.lobe_ior.x = lobe.ior; }
     else if (slot == 1) { closure.lobe1_weight = lobe.weight; closure.lobe1_kind = lobe.kind; closure.lobe1_f0 = lobe.f0; closure.lobe1_alpha = lobe.alpha; closure.lobe_ior.y = lobe.ior; }

@@ -28,12 +28,6 @@ const uint NO_PROGRAM = 0xffffffffu;
 
 #include "materials/generated.glsl"
 
-Closure empty_closure() {
-    vec3 none = vec3(0.0);
-    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, 0.0, 0u,
-                   none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, vec3(1.0), 0.0);
-}
-
 // What the camera path's last event tells; photons see materials as diffuse rays do.
 uint ray_kind(uint index) {
     if (parameters.path_stride == 0u) return RAY_DIFFUSE;
@@ -82,10 +76,8 @@ void main() {
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_stride == 0u ? 1u : 0u);
 
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), 0, 1.0, surface.backfacing, 0.0);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment, index);
-    builder.u_choice = next_random(random);
-    builder.cosine = clamp(dot(shading, surface.viewer), 0.0, 1.0);
+    ClosureBuilder builder = empty_builder(surface, next_random(random));
     uint material = attributes[hit.triangle].material;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from lobes import image_world, material, Lobe, LobeKind
 from test_light_sources import LIGHTS, floor_scene
 
 from rppm_addon.integrator import guide, progressive
@@ -22,7 +22,7 @@ def lit_floor(name: str, aimed: bool) -> Scene:
         v, u = np.meshgrid((np.arange(16) + 0.5) / 16, (np.arange(32) + 0.5) / 32, indexing="ij")
         glow = 0.2 + 20 * np.exp(-((u - 0.5) ** 2 + (v - 0.75) ** 2) / 0.02)
         scene.images = [Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))]
-        scene.world = World(np.ones(3), 0)
+        scene.world = image_world(0)
     if name == "mesh":
         scene.meshes.append(scenes.sphere("lamp", 8, 4))
         scene.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))

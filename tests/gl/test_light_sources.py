@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from lobes import image_world, material, Lobe, LobeKind
 
 from rppm_addon.scene import Camera, DirectLight, Image, Instance, Light, LightKind, RenderSettings, Scene, World
 
@@ -87,7 +87,7 @@ def test_a_world_image_lights_by_direction(renderer):
     solid_angle = np.sin(theta) * (np.pi / 64) * (2 * np.pi / 128) * np.maximum(np.cos(theta), 0)
     expected = 0.5 / np.pi * (pixels[..., :3] * solid_angle[..., None]).sum((0, 1))
     for mode in DirectLight:
-        scene = floor_scene(None, mode, World(np.ones(3), 0), h=0.5, window=0.15)
+        scene = floor_scene(None, mode, image_world(0), h=0.5, window=0.15)
         scene.images = [Image("sky", pixels)]
         mean = renderer.render(scene).frame.combined[..., :3].mean((0, 1))
         print(mode, mean / expected)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from lobes import image_world, material, Lobe, LobeKind
 
 from rppm_addon.scene import Camera, DirectLight, Image, Instance, Light, LightKind, RenderSettings, Scene, World
 
@@ -51,7 +51,7 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene
         v, u = np.meshgrid((np.arange(32) + 0.5) / 32, (np.arange(64) + 0.5) / 64, indexing="ij")
         glow = 0.2 + 20 * np.exp(-((u - 0.5) ** 2 + (v - 0.75) ** 2) / 0.01)
         scene.images = [Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))]
-        scene.world = World(np.ones(3), 0)
+        scene.world = image_world(0)
     if light == "mesh":
         scene.meshes.append(scenes.rectangle("lamp", (1, -0.3, 1), (1, 0.3, 1), (1.2, 0.3, 1.5), (1.2, -0.3, 1.5)))
         scene.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(9, 9, 9))))

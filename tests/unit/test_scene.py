@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from lobes import Lobe, LobeKind, material
+from lobes import image_world, material, Lobe, LobeKind
 
 from rppm_addon.scene import (
     Camera,
@@ -44,7 +44,7 @@ def full_scene() -> Scene:
             material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0]))
         ],
         lights=[Light("sun", LightKind.SUN, np.eye(4), np.array([1, 2, 3.0]), sun_angle=0.1)],
-        world=World(np.array([0.1, 0.2, 0.3]), 0),
+        world=image_world(0),
         images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],
         settings=RenderSettings(iterations=7, direct_light=DirectLight.PHOTONS),
         exposure=2.0,

@@ -4,12 +4,16 @@
 import bpy
 import numpy as np
 
-from ...scene import AttributeDomain, MeshAttribute
+from ...scene import AttributeDomain, Mesh, MeshAttribute
 
 GENERATED = ".generated"
 """Name under which Blender's generated coordinates are exported."""
 ISLAND = ".random_per_island"
 """Name under which a random number for each connected part is exported."""
+ACTIVE_COLOR = ".active_color"
+"""Stands for the colour attribute that is rendered when none is named."""
+NO_ATTRIBUTE = ".none"
+"""Stands for the UV map in use, which every triangle has at hand."""
 
 _FIELDS = {
     "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
@@ -18,18 +22,38 @@ _FIELDS = {
 }  # fmt: skip
 
 
-def export_attribute(mesh: bpy.types.Mesh, name: str, triangle_polygons: np.ndarray) -> MeshAttribute | None:
-    """An attribute of an evaluated mesh; an empty name is the active colour. None when the mesh has no such thing.
+def attribute_of(owner: bpy.types.bpy_struct | None, name: str) -> tuple[float, ...] | None:
+    """A custom property or a property of a datablock as up to four numbers; None when it has none of that name."""
+    if owner is None or not name:
+        return None
+    try:
+        value = owner.get(name)
+        if value is None:
+            value = owner.path_resolve(name)
+    except (TypeError, ValueError, KeyError, AttributeError):
+        return None
+    try:
+        numbers = tuple(float(v) for v in value) if hasattr(value, "__len__") else (float(value),)
+    except (TypeError, ValueError):
+        return None
+    return numbers[:4] or None
 
-    triangle_polygons: (triangles,) int32, the face of each triangle.
-    """
+
+def add_attributes(exported: Mesh, mesh: bpy.types.Mesh, names: set[str]) -> None:
+    """Read the named attributes of the evaluated mesh that was exported, those that it has and that are not read yet."""
+    for name in sorted(names - exported.attributes.keys()):
+        attribute = export_attribute(exported, mesh, name)
+        if attribute is not None:
+            exported.attributes[name] = attribute
+
+
+def export_attribute(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
+    """An attribute of an evaluated mesh; None when the mesh has no such thing."""
     if name == GENERATED:
         return MeshAttribute(AttributeDomain.POINT, _generated(mesh))
     if name == ISLAND:
         return MeshAttribute(AttributeDomain.POINT, _random_per_island(mesh))
-    attribute = mesh.attributes.get(name) if name else mesh.color_attributes.active_color
-    if name == "" and attribute is None and mesh.color_attributes:
-        attribute = mesh.color_attributes[0]
+    attribute = _rendered_color(mesh) if name == ACTIVE_COLOR else mesh.attributes.get(name)
     if attribute is None or attribute.data_type not in _FIELDS:
         return None
     field, width = _FIELDS[attribute.data_type]
@@ -48,8 +72,21 @@ def export_attribute(mesh: bpy.types.Mesh, name: str, triangle_polygons: np.ndar
     if attribute.domain == "CORNER":
         return MeshAttribute(AttributeDomain.CORNER, values)
     if attribute.domain == "FACE":
-        return MeshAttribute(AttributeDomain.TRIANGLE, values[triangle_polygons])
+        corner_faces = np.repeat(np.arange(len(mesh.polygons)), _lengths(mesh))
+        return MeshAttribute(AttributeDomain.TRIANGLE, values[corner_faces[exported.triangle_corners[:, 0]]])
     return None
+
+
+def _rendered_color(mesh: bpy.types.Mesh) -> bpy.types.Attribute | None:
+    colors = mesh.color_attributes
+    index = colors.render_color_index
+    return colors[index] if 0 <= index < len(colors) else None
+
+
+def _lengths(mesh: bpy.types.Mesh) -> np.ndarray:
+    lengths = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", lengths)
+    return lengths
 
 
 def _generated(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 from ...materials.node_kinds import SHADER, VECTOR, NodeKind
 from ...materials.nodes import KINDS
 from ...scene import Link, NodeGraph
+from .attributes import GENERATED
 from .images import ImageTable
 from .links import Path, Source, find_source
 from .report import Report
@@ -39,8 +40,10 @@ def snake_case(identifier: str) -> str:
 
 
 def kind_name(node: bpy.types.Node) -> str:
-    """"ShaderNodeTexNoise" is tex_noise."""
+    """ "ShaderNodeTexNoise" is tex_noise."""
     name = node.bl_idname.removeprefix("ShaderNode")
+    if name in _IRREGULAR:
+        return _IRREGULAR[name]
     return "".join(f"_{c.lower()}" if c.isupper() and i and not name[i - 1].isupper() else c.lower()
                    for i, c in enumerate(name))  # fmt: skip
 
@@ -84,6 +87,10 @@ class GraphExporter:
         """What an input of a node gets: a Link, a number, or a tuple of three."""
         source = find_source(socket, path)
         if not isinstance(source, Source):
+            if source.broken is not None:
+                self.warn(
+                    source.broken, "is a group whose node tree is missing; the value of the socket it feeds is used"
+                )
             return _stored(source.socket)
         value = self._output(source)
         # What the user had chosen before plugging something in is the best guess for the unknown.
@@ -169,16 +176,16 @@ class GraphExporter:
     def implicit_coordinates(self, node: bpy.types.Node) -> Link:
         """Where a texture is placed without a link."""
         if node.type == "TEX_IMAGE":
-            return self.coordinates("uv")
+            return self.shared("tex_coord", "uv")
         if node.type == "TEX_ENVIRONMENT":
-            return self.graph.add("new_geometry", "position", attribute=ISLAND_UNUSED)
-        return self.coordinates("generated")
+            return self.shared("new_geometry", "position")
+        return self.shared("generated_coord", "generated", GENERATED)
 
-    def coordinates(self, output: str) -> Link:
-        """An output of the Texture Coordinate node."""
-        key = ("coordinates",)
+    def shared(self, kind: str, output: str, attribute: str = "") -> Link:
+        """An output of a node without inputs, of which the graph has one."""
+        key = (kind, attribute)
         if key not in self._known:
-            self._known[key] = self.graph.add("tex_coord", attribute=GENERATED).node
+            self._known[key] = self.graph.add(kind, attribute=attribute).node
         return Link(self._known[key], output)
 
     def _stand_in(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
@@ -199,6 +206,8 @@ class GraphExporter:
         return None
 
 
+_IRREGULAR = {"RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve"}
+
 _OLDER = {"factor": "fac", "fac": "factor", "bsdf": "bsdf"}
 """Identifiers that differ between versions of Blender."""
 
@@ -211,6 +220,3 @@ def _stored(socket: bpy.types.NodeSocket) -> object:
     if hasattr(stored, "__len__"):
         return tuple(float(v) if np.isfinite(v) else 0.0 for v in stored[:3])
     return float(stored) if np.isfinite(stored) else 0.0
-
-
-from .attributes import GENERATED, ISLAND as ISLAND_UNUSED  # noqa: E402

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender images to pixels, each exported once."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import bpy
@@ -9,7 +10,7 @@ import numpy as np
 from ...scene import Image
 
 if TYPE_CHECKING:
-    from .values import Evaluator
+    from .graphs import GraphExporter
 
 _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"}
 
@@ -19,91 +20,102 @@ class ImageTable:
 
     def __init__(self) -> None:
         self.images: list[Image] = []
-        self._indices: dict[tuple, int | None] = {}
-        self._means: dict[int, np.ndarray] = {}
+        self._indices: dict[tuple, int] = {}
 
-    def index(self, image: bpy.types.Image, node: bpy.types.Node, evaluator: "Evaluator") -> int | None:
-        """Index of the image, exported now if it is new; None, with a warning, when it has no pixels."""
-        associated = _is_associated(image, node)
-        key = (image.as_pointer(), associated)
-        if key not in self._indices:
-            exported = self._export(image, node, evaluator, associated)
-            self._indices[key] = exported
-            if exported is not None and _is_opaque(self.images[exported].pixels):
-                self._indices[key[0], not associated] = exported
-        index = self._indices[key]
-        if index is None:
-            place = image.filepath or "no file"
-            evaluator.warn(node, f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
-        return index
+    def of_node(self, node: bpy.types.Node, exporter: "GraphExporter") -> int:
+        """Index of a texture node's image, exported now if it is new; -1, with a warning, when it has no pixels."""
+        image = node.image
+        if image is None:
+            exporter.warn(node, "has no image and counts as magenta; choose one")
+            return MISSING
+        if image.source != "SEQUENCE":
+            return self._index((image.as_pointer(),), lambda: image, image, node, exporter)
+        path = image.filepath_from_user(image_user=node.image_user)
+        return self._index((image.as_pointer(), path), lambda: _load(path, image), image, node, exporter)
 
-    def mean(self, index: int) -> np.ndarray:
-        """Mean linear colour of an exported image, (3,) float64."""
-        if index not in self._means:
-            image = self.images[index]
-            colors = image.pixels[..., :3]
-            if image.encoding == "SRGB":
-                self._means[index] = _SRGB_TO_LINEAR[colors.reshape(-1, 3)].mean(axis=0)
-            elif colors.dtype == np.uint8:
-                self._means[index] = colors.reshape(-1, 3).mean(axis=0) / 255.0
-            else:
-                self._means[index] = colors.reshape(-1, 3).mean(axis=0, dtype=np.float64)
-        return self._means[index]
-
-    def mean_alpha(self, image: bpy.types.Image, node: bpy.types.Node, evaluator: "Evaluator") -> float:
-        """Mean opacity of an image, 1 when it is missing."""
-        index = self.index(image, node, evaluator)
-        if index is None:
-            return 1.0
-        alpha = self.images[index].pixels[..., 3]
-        mean = float(alpha.mean(dtype=np.float64)) / (255.0 if alpha.dtype == np.uint8 else 1.0)
-        if mean < 1.0:
-            evaluator.warn(node, "gives an alpha that varies; its mean is used")
-        return mean
-
-    def _export(
-        self, image: bpy.types.Image, node: bpy.types.Node, evaluator: "Evaluator", associated: bool
-    ) -> int | None:
-        pixels = read_pixels(image)
-        if pixels is None:
+    def tiles(self, node: bpy.types.Node, exporter: "GraphExporter") -> np.ndarray | None:
+        """(n,) float32 index of the image of each UDIM tile from 1001 on, -1 where none is; None without tiles."""
+        image = node.image
+        if image is None or image.source != "TILED":
             return None
-        if image.source == "TILED":
-            evaluator.warn(node, "uses UDIM tiles; only the first tile is rendered")
-        space = image.colorspace_settings.name
-        encoding = "LINEAR"
-        if associated:
-            pixels[..., :3] *= pixels[..., 3:]
-        if not image.is_float:
-            pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
-            encoding = "SRGB" if space == "sRGB" else "LINEAR"
-        if space != "sRGB" and space not in _LINEAR_SPACES:
-            evaluator.warn(node, f'has an image in the colour space "{space}", which is read as sRGB')
-            encoding = "LINEAR" if image.is_float else "SRGB"
-        self.images.append(Image(image.name, pixels, encoding))
-        return len(self.images) - 1
+        numbers = [tile.number for tile in image.tiles]
+        table = np.full(max(numbers) - 1000, -1.0, np.float32)
+        for number in numbers:
+            path = bpy.path.abspath(image.filepath.replace("<UDIM>", str(number)), library=image.library)
+            key = (image.as_pointer(), number)
+
+            def tile(number: int = number, path: str = path) -> bpy.types.Image | None:
+                # The pixels that Blender hands out are those of the first tile, saved or not.
+                return image if number == numbers[0] else _load(path, image)
+
+            table[number - 1001] = self._index(key, tile, image, node, exporter)
+        return table
+
+    def _index(
+        self,
+        key: tuple,
+        load: Callable[[], bpy.types.Image | None],
+        image: bpy.types.Image,
+        node: bpy.types.Node,
+        exporter: "GraphExporter",
+    ) -> int:
+        if key not in self._indices:
+            loaded = load()
+            pixels = None if loaded is None else read_pixels(loaded)
+            if loaded is not None and loaded != image:
+                bpy.data.images.remove(loaded)
+            if pixels is None:
+                self._indices[key] = MISSING
+            else:
+                self._indices[key] = len(self.images)
+                self.images.append(_encoded(image, pixels, node, exporter))
+        if self._indices[key] == MISSING:
+            place = image.filepath or "no file"
+            exporter.warn(node, f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
+        return self._indices[key]
 
 
-def _is_associated(image: bpy.types.Image, node: bpy.types.Node) -> bool:
-    """Whether a node shows colours times their alpha, while they are still encoded.
-
-    Cycles does so unless the node's alpha is used as well.
-    """
-    alpha = node.outputs.get("Alpha")
-    has_alpha = image.alpha_mode in {"STRAIGHT", "PREMUL"} and image.colorspace_settings.name not in _DATA
-    return has_alpha and not image.is_float and not (alpha is not None and alpha.is_linked)
+MISSING = -1
+"""Stands for an image without pixels; it is magenta."""
 
 
-def _is_opaque(pixels: np.ndarray) -> bool:
-    return bool((pixels[..., 3] == (255 if pixels.dtype == np.uint8 else 1.0)).all())
+def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
+    """A file as a new image that is read as another one is; None when it cannot be read."""
+    try:
+        image = bpy.data.images.load(path)
+    except RuntimeError:
+        return None
+    image.colorspace_settings.name = like.colorspace_settings.name
+    image.alpha_mode = like.alpha_mode
+    return image
+
+
+def _encoded(image: bpy.types.Image, pixels: np.ndarray, node: bpy.types.Node, exporter: "GraphExporter") -> Image:
+    """Pixels as they are to be filtered: colours times alpha while still encoded, as in Cycles."""
+    space = image.colorspace_settings.name
+    if image.alpha_mode == "NONE":
+        pixels[..., 3] = 1.0
+    if is_associated(image) and not image.is_float:
+        pixels[..., :3] *= pixels[..., 3:]
+    encoding = "LINEAR"
+    if not image.is_float:
+        pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
+        encoding = "SRGB" if space == "sRGB" else "LINEAR"
+    if space != "sRGB" and space not in _LINEAR_SPACES:
+        exporter.warn(node, f'has an image in the colour space "{space}", which is read as sRGB')
+        encoding = "LINEAR" if image.is_float else "SRGB"
+    return Image(image.name, pixels, encoding)
+
+
+def is_associated(image: bpy.types.Image | None) -> bool:
+    """Whether an image's colours come multiplied by its alpha, and are divided by it where alpha is used as well."""
+    return (
+        image is not None and image.alpha_mode in {"STRAIGHT", "PREMUL"} and image.colorspace_settings.name not in _DATA
+    )
 
 
 _DATA = {"Non-Color", "Raw"}
 _REMEDY = "find it with File > External Data > Find Missing Files; magenta stands in"
-
-_SRGB_TO_LINEAR = np.arange(256) / 255.0
-_SRGB_TO_LINEAR = np.where(
-    _SRGB_TO_LINEAR <= 0.04045, _SRGB_TO_LINEAR / 12.92, ((_SRGB_TO_LINEAR + 0.055) / 1.055) ** 2.4
-)
 
 
 def read_pixels(image: bpy.types.Image) -> np.ndarray | None:

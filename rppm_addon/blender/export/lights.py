@@ -6,10 +6,11 @@ import math
 import bpy
 import numpy as np
 
-from ...scene import Light, LightKind
+from ...materials.emitted import Emits, emits
+from ...scene import Light, LightKind, NodeGraph
+from .graphs import GraphExporter
 from .images import ImageTable
 from .report import Report
-from .values import Evaluator
 
 
 def export_light(
@@ -18,9 +19,11 @@ def export_light(
     """A light object placed by ``matrix`` (4, 4); None when it gives no light."""
     data = light_object.data
     name = light_object.name
-    evaluator = Evaluator(f'Light "{name}"', report, images)
-    power = _power(data, evaluator)
+    power = _power(data, name, report)
     if not power.any():
+        return None
+    graph = _graph(data, name, report, images)
+    if graph is not None and emits(graph) is Emits.NOTHING:
         return None
     light = Light(
         name=name,
@@ -28,6 +31,7 @@ def export_light(
         matrix=matrix,
         strength=power,
         visible_to_camera=light_object.visible_camera,
+        graph=graph,
         photon_share=data.rppm.photon_share if hasattr(data, "rppm") else 1.0,
     )
     normalize = getattr(data, "normalize", True)
@@ -75,31 +79,25 @@ def _fill_area(light: Light, data: bpy.types.Light, normalize: bool) -> None:
         light.strength = light.strength / (math.pi * (area if normalize else 1.0))
 
 
-def _power(data: bpy.types.Light, evaluator: Evaluator) -> np.ndarray:
-    """Energy times colour, temperature, exposure and constant Emission nodes; (3,) float64."""
+def _power(data: bpy.types.Light, name: str, report: Report) -> np.ndarray:
+    """Energy times colour, temperature and exposure; (3,) float64."""
     power = data.energy * np.array(data.color, np.float64) * 2.0 ** getattr(data, "exposure", 0.0)
     if getattr(data, "use_temperature", False):
         power = power * np.array(data.temperature_color, np.float64)
-    if data.use_nodes and data.node_tree is not None:
-        power = power * _emission(data.node_tree, evaluator)
     if not np.isfinite(power).all() or (power < 0.0).any():
-        evaluator.report.warn(f"{evaluator.owner}: its power is negative or not finite and counts as 0")
+        report.warn(f'Light "{name}": its power is negative or not finite and counts as 0')
         return np.zeros(3)
     return power
 
 
-def _emission(tree: bpy.types.NodeTree, evaluator: Evaluator) -> np.ndarray:
-    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
-    total = np.zeros(3)
-    if output is None:
-        return total
-    for shader in evaluator.shaders(output.inputs["Surface"]):
-        node, path = shader.node, shader.path
-        if shader.type == "COLOR":
-            total += shader.weight * evaluator.mean(shader.color)
-        elif node.type == "EMISSION":
-            strength = evaluator.scalar(node.inputs["Strength"], path)
-            total += shader.weight * strength * evaluator.mean_color(node.inputs["Color"], path)
-        else:
-            evaluator.warn(node, "gives no light here and counts as black")
-    return total
+def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable) -> NodeGraph | None:
+    """What the light's nodes emit, as a factor of its power; None without nodes."""
+    if not data.use_nodes or data.node_tree is None:
+        return None
+    output = data.node_tree.get_output_node("CYCLES") or data.node_tree.get_output_node("ALL")
+    exporter = GraphExporter(f'Light "{name}"', report, images)
+    if output is not None:
+        exporter.graph.surface = exporter.shader(output.inputs["Surface"])
+    if emits(exporter.graph) is Emits.VARYING:
+        report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; one value is used')
+    return exporter.graph

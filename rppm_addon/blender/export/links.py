@@ -23,6 +23,8 @@ class Unlinked:
     """Nothing feeds an input: the socket whose own value counts."""
 
     socket: bpy.types.NodeSocket
+    broken: bpy.types.Node | None = None
+    """A group without a node tree that should have fed it."""
 
 
 def node_tree(owner: bpy.types.Material | bpy.types.World) -> bpy.types.NodeTree | None:
@@ -58,7 +60,7 @@ def find_source(socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
         elif node.type == "GROUP":
             inside = _group_output(node, output)
             if inside is None:
-                return Unlinked(start)
+                return Unlinked(start, node if node.node_tree is None else None)
             socket, path = inside, (*path, node)
             start = socket
         else:

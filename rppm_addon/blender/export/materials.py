@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender materials to weighted lobes."""
+"""Blender materials to node graphs."""
 
 import bpy
-import numpy as np
 
-from ...scene import Lobe, LobeKind, Material
+from ...scene import Material, NodeGraph
+from . import nodes  # noqa: F401  registers its handlers
+from .attributes import NO_ATTRIBUTE
+from .graphs import GraphExporter
 from .images import ImageTable
-from .links import node_tree
+from .links import Path, node_tree
 from .report import Report
-from .shaders import add_lobes
-from .values import Evaluator
 
 DEFAULT_COLOR = (0.8, 0.8, 0.8)
 """What Blender shows where a face has no material."""
@@ -20,6 +20,8 @@ class MaterialTable:
 
     def __init__(self, report: Report, images: ImageTable) -> None:
         self.materials: list[Material] = []
+        self.attributes: list[set[str]] = []
+        """Of each material, the names of the attributes that its nodes read."""
         self._report = report
         self._images = images
         self._indices: dict[int, int] = {}
@@ -30,41 +32,57 @@ class MaterialTable:
         key = 0 if material is None else material.as_pointer()
         if key not in self._indices:
             if material is None:
-                exported = Material("Default", [Lobe(LobeKind.DIFFUSE, color=DEFAULT_COLOR)])
+                exported = Material("Default", plain_surface(DEFAULT_COLOR))
             else:
                 exported = export_material(material, self._report, self._images)
             self._indices[key] = len(self.materials)
             self.materials.append(exported)
+            self.attributes.append({node.attribute for node in exported.graph.nodes} - {"", NO_ATTRIBUTE})
         return self._indices[key]
+
+
+def plain_surface(color: tuple[float, float, float]) -> NodeGraph:
+    """A diffuse surface."""
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=color)
+    return graph
 
 
 def export_material(material: bpy.types.Material, report: Report, images: ImageTable) -> Material:
     """The surface and the interior of a material; what has no counterpart is reported and left out."""
-    exported = Material(material.name)
     tree = node_tree(material)
     if tree is None:
-        exported.lobes.append(Lobe(LobeKind.DIFFUSE, color=tuple(material.diffuse_color[:3])))
-        return exported
-    evaluator = Evaluator(f'Material "{material.name}"', report, images)
+        return Material(material.name, plain_surface(tuple(material.diffuse_color[:3])))
+    owner = f'Material "{material.name}"'
     output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
-        report.warn(f'Material "{material.name}": it has no Material Output node and is black')
-        return exported
-    for shader in evaluator.shaders(output.inputs["Surface"]):
-        add_lobes(exported.lobes, evaluator, shader)
-    if output.inputs["Displacement"].is_linked:
-        report.warn(f'Material "{material.name}": displacement is not rendered yet and is ignored')
-    volume = output.inputs["Volume"]
-    if volume.is_linked:
-        for shader in evaluator.shaders(volume):
-            node, path = shader.node, shader.path
-            if node.type == "VOLUME_ABSORPTION":
-                density = max(evaluator.scalar(node.inputs["Density"], path), 0.0)
-                color = np.clip(evaluator.mean_color(node.inputs["Color"], path), 0.0, 1.0)
-                exported.absorption = exported.absorption + shader.weight * density * (1.0 - color)
-            else:
-                evaluator.warn(node, "is a volume that is not rendered yet and is ignored")
-        if not output.inputs["Surface"].is_linked:
+        report.warn(f"{owner}: it has no Material Output node and is black")
+        return Material(material.name)
+    exporter = GraphExporter(owner, report, images, material.pass_index)
+    graph = exporter.graph
+    if exporter.is_linked(output.inputs["Displacement"], ()):
+        _bump(exporter, material, output)
+    graph.surface = exporter.shader(output.inputs["Surface"])
+    exported = Material(material.name, graph)
+    if exporter.is_linked(output.inputs["Volume"], ()):
+        exported.interior = _interior(owner, report, images, output)
+        if not exporter.is_linked(output.inputs["Surface"], ()):
             # Only an interior: the boundary itself is not there.
-            exported.lobes.append(Lobe(LobeKind.TRANSPARENT))
+            graph.surface = graph.add("bsdf_transparent", "bsdf")
     return exported
+
+
+def _bump(exporter: GraphExporter, material: bpy.types.Material, output: bpy.types.Node) -> None:
+    """Displacement moves no vertices here: its height turns the normals."""
+    if getattr(material, "displacement_method", "BUMP") != "BUMP":
+        exporter.warn(output, "has a displacement that moves the surface, which is rendered as bump only")
+    graph = exporter.graph
+    displacement = exporter.value(output.inputs["Displacement"], ())
+    height = graph.add("displacement_height", "height", displacement=displacement)
+    graph.normal = graph.add("bump", "normal", name=output.name, height=height)
+
+
+def _interior(owner: str, report: Report, images: ImageTable, output: bpy.types.Node) -> NodeGraph:
+    exporter = GraphExporter(owner, report, images)
+    exporter.graph.surface = exporter.shader(output.inputs["Volume"], Path())
+    return exporter.graph

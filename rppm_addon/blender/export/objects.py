@@ -5,11 +5,13 @@ import bpy
 import numpy as np
 
 from ...scene import Instance, Mesh, Scene
+from .attributes import add_attributes, attribute_of
 from .images import ImageTable
 from .lights import export_light
 from .materials import MaterialTable
 from .matrices import usable_matrices
 from .meshes import export_mesh
+from .particles import particle_of
 from .report import Report
 
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
@@ -28,22 +30,26 @@ class ObjectExporter:
         self._materials = MaterialTable(report, images)
         self._meshes: dict[int, int | None] = {}
         self._placed: list[tuple[Instance, np.ndarray]] = []
-        self._unconverted: list[tuple[bpy.types.Object, np.ndarray]] = []
+        self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object]]] = []
+        self._frame = 0.0
         self._converted: set[tuple[int, bytes]] = set()
 
     def export(self, depsgraph: bpy.types.Depsgraph) -> None:
         """Read all instances; raises ExportStopped when the user wants no more."""
+        self._frame = depsgraph.scene_eval.frame_current_final
         for number, instance in enumerate(depsgraph.object_instances):
             if number % 256 == 0:
                 self._report.progress(f"Exporting objects ({number})")
             # Only valid inside the loop: Blender reuses the memory for the next instance.
             if instance.show_self:
-                self._export_instance(instance.object, np.array(instance.matrix_world, np.float64))
+                self._export_instance(instance, instance.object, np.array(instance.matrix_world, np.float64))
         self._convert(depsgraph)
         self._keep_usable()
         self._scene.materials = self._materials.materials
 
-    def _export_instance(self, source: bpy.types.Object, matrix: np.ndarray) -> None:
+    def _export_instance(
+        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
+    ) -> None:
         if source.type == "LIGHT":
             if not np.isfinite(matrix).all():
                 self._report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
@@ -61,17 +67,44 @@ class ObjectExporter:
         if not self._is_seen(source):
             return
         if source.type != "MESH":
-            self._unconverted.append((source.original, matrix))
+            self._unconverted.append((source.original, matrix, self._shading(instance, source)))
             return
         original = source.original
         if original.type in CONVERTED_TYPES:
             self._converted.add((original.as_pointer(), matrix.tobytes()))
-        self._place(source, source.data, matrix)
+        self._place(source, source.data, matrix, self._shading(instance, source))
 
-    def _place(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, matrix: np.ndarray) -> None:
-        index = self._mesh_index(source, mesh)
+    def _shading(self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object) -> dict[str, object]:
+        """What shading nodes may ask about an instance: members of scene.Instance."""
+        members: dict[str, object] = {
+            "color": tuple(source.color),
+            "random": (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF,
+            "particle": particle_of(instance, self._frame),
+        }
+        instancer = instance.parent if instance.is_instance else None
+        materials = self._material_slots(source)
+        values: dict[str, tuple[float, ...]] = {}
+        for name in self._attributes_of(materials):
+            domain, _, path = name.partition(":")
+            if domain in {"OBJECT", "INSTANCER"}:
+                owners = (instancer, source) if domain == "INSTANCER" else (source,)
+                found = (attribute_of(owner, path) or attribute_of(owner and owner.data, path) for owner in owners)
+                value = next((value for value in found if value is not None), None)
+                if value is not None:
+                    values[name] = value
+        return members | {"attributes": values}
+
+    def _attributes_of(self, materials: list[int]) -> set[str]:
+        """Names of the attributes that materials read."""
+        return {name for material in materials for name in self._materials.attributes[material]}
+
+    def _place(
+        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, matrix: np.ndarray, shading: dict[str, object]
+    ) -> None:
+        materials = self._material_slots(source)
+        index = self._mesh_index(source, mesh, self._attributes_of(materials))
         if index is not None:
-            instance = Instance(index, matrix, self._material_slots(source), source.name, source.pass_index)
+            instance = Instance(index, matrix, materials, source.name, source.pass_index, **shading)
             self._placed.append((instance, matrix))
 
     def _convert(self, depsgraph: bpy.types.Depsgraph) -> None:
@@ -80,11 +113,11 @@ class ObjectExporter:
         Blender shows the mesh of such an object as an instance beside it, but not where particles
         or faces multiply the object.
         """
-        for original, matrix in self._unconverted:
+        for original, matrix, shading in self._unconverted:
             if (original.as_pointer(), matrix.tobytes()) in self._converted:
                 continue
             source = original.evaluated_get(depsgraph)
-            self._place(source, None, matrix)
+            self._place(source, None, matrix, shading)
 
     def _is_seen(self, source: bpy.types.Object) -> bool:
         flags = [getattr(source, name) for name in RAY_VISIBILITY]
@@ -95,8 +128,8 @@ class ObjectExporter:
         self._report.warn(f'Object "{source.name}": its ray visibility is not rendered yet; all rays see it')
         return True
 
-    def _mesh_index(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None) -> int | None:
-        """Index of a mesh, exported now if it is new; None when it has no triangles.
+    def _mesh_index(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str]) -> int | None:
+        """Index of a mesh, exported now if it is new, with the named attributes; None when it has no triangles.
 
         mesh: None lets Blender make one of the object.
         """
@@ -105,19 +138,28 @@ class ObjectExporter:
         key = (source if mesh is None else mesh).as_pointer()
         if key not in self._meshes:
             self._report.progress(f"Exporting {source.name}")
-            exported = self._read_converted(source) if mesh is None else export_mesh(mesh, source.name, self._report)
+            if mesh is None:
+                exported = self._read_converted(source, attributes)
+            else:
+                exported = export_mesh(mesh, source.name, self._report)
             self._meshes[key] = None if exported is None else len(self._scene.meshes)
             if exported is not None:
                 self._scene.meshes.append(exported)
-        return self._meshes[key]
+        index = self._meshes[key]
+        if index is not None and mesh is not None:
+            add_attributes(self._scene.meshes[index], mesh, attributes)
+        return index
 
-    def _read_converted(self, source: bpy.types.Object) -> Mesh | None:
+    def _read_converted(self, source: bpy.types.Object, attributes: set[str]) -> Mesh | None:
         try:
             mesh = source.to_mesh()
         except RuntimeError:  # an object without geometry
             return None
         try:
-            return None if mesh is None else export_mesh(mesh, source.name, self._report)
+            exported = None if mesh is None else export_mesh(mesh, source.name, self._report)
+            if exported is not None:
+                add_attributes(exported, mesh, attributes)
+            return exported
         finally:
             source.to_mesh_clear()
 

@@ -11,10 +11,8 @@ def _geometry(outputs: dict, **members: object) -> NodeKind:
 
 
 KINDS = {
-    "tex_coord": _geometry(
-        dict.fromkeys(("generated", "normal", "uv", "object", "camera", "window", "reflection"), VECTOR),
-        resources=("attribute",),
-    ),
+    "tex_coord": _geometry(dict.fromkeys(("normal", "uv", "object", "camera", "window", "reflection"), VECTOR)),
+    "generated_coord": _geometry({"generated": VECTOR}, resources=("attribute",)),
     "object_coord": _geometry(
         {"object": VECTOR},
         inputs={
@@ -31,10 +29,10 @@ KINDS = {
     "new_geometry": _geometry(
         {
             **dict.fromkeys(("position", "normal", "tangent", "true_normal", "incoming", "parametric"), VECTOR),
-            **dict.fromkeys(("backfacing", "pointiness", "random_per_island"), FLOAT),
+            **dict.fromkeys(("backfacing", "pointiness"), FLOAT),
         },
-        resources=("attribute",),
     ),
+    "random_per_island": _geometry({"random_per_island": FLOAT}, resources=("attribute",)),
     "tangent": _geometry(
         {"tangent": VECTOR},
         options={"direction_type": ("RADIAL", "UV_MAP"), "axis": ("X", "Y", "Z")},
@@ -83,6 +81,25 @@ KINDS = {
         outputs={"normal": VECTOR},
         options={"invert": BOOLEAN},
         surface=True,
+    ),
+    "displacement": NodeKind(
+        "normals.glsl",
+        inputs={
+            "height": (FLOAT, 0.0), "midlevel": (FLOAT, 0.5), "scale": (FLOAT, 1.0), "normal": (VECTOR, "normal"),
+        },
+        outputs={"displacement": VECTOR},
+        options={"space": ("OBJECT", "WORLD")},
+        surface=True,
+    ),
+    "vector_displacement": NodeKind(
+        "normals.glsl",
+        inputs={"vector": (VECTOR, 0.0), "midlevel": (FLOAT, 0.0), "scale": (FLOAT, 1.0)},
+        outputs={"displacement": VECTOR},
+        options={"space": ("TANGENT", "OBJECT", "WORLD")},
+        surface=True,
+    ),
+    "displacement_height": NodeKind(
+        "normals.glsl", inputs={"displacement": (VECTOR, 0.0)}, outputs={"height": FLOAT}, surface=True
     ),
     "bevel": NodeKind("normals.glsl", inputs={"normal": (VECTOR, "normal")}, outputs={"normal": VECTOR}),
     "ambient_occlusion": NodeKind(

@@ -25,6 +25,8 @@ KINDS = {
     "bsdf_refraction": _shader(inputs={"color": (COLOR, 1.0), "roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.5)}),
     "bsdf_transparent": _shader(inputs={"color": (COLOR, 1.0)}),
     "emission": _shader("emission", inputs={"color": (COLOR, 1.0), "strength": (FLOAT, 1.0)}),
+    # Of a volume, which has no surface, the "emission" is its absorption coefficient in 1/m.
+    "volume_absorption": _shader("volume", inputs={"color": (COLOR, 0.8), "density": (FLOAT, 1.0)}),
     "background": _shader("background", inputs={"color": (COLOR, 0.8), "strength": (FLOAT, 1.0)}),
     "bsdf_principled": _shader(
         inputs={

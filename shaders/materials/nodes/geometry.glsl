@@ -12,6 +12,16 @@ vec3 uv_tangent(vec2 uv0, vec2 uv1, vec2 uv2, uint triangle) {
     return ((v1 - v0) * d2.y - (v2 - v0) * d1.y) * sign(determinant);
 }
 
+// Of a UV map, or without it of the one in use.
+void corner_uvs(Surface surface, uint layer, out vec2 uv[3]) {
+    uvec2 place = attribute_place(surface, layer);
+    uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
+    TriangleAttributes own = attributes[surface.triangle];
+    uv[0] = place.y > 0u ? attribute_corner(place, local, 0u).xy : own.uv0;
+    uv[1] = place.y > 0u ? attribute_corner(place, local, 1u).xy : own.uv1;
+    uv[2] = place.y > 0u ? attribute_corner(place, local, 2u).xy : own.uv2;
+}
+
 // Around the object's Z axis, where no tangent is given.
 vec3 default_tangent(Surface surface) {
     vec3 at = point_to_object(surface, surface.position);
@@ -21,12 +31,10 @@ vec3 default_tangent(Surface surface) {
     return size > 1e-20 ? across / size : vec3(0.0);
 }
 
-void node_tex_coord(Surface surface, uint generated_attribute, out vec3 generated, out vec3 normal, out vec3 uv, out vec3 object,
+void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object,
                     out vec3 camera, out vec3 window, out vec3 reflection) {
     bool world = surface.triangle == NO_TRIANGLE;
     object = point_to_object(surface, surface.position);
-    uvec2 place = attribute_place(surface, generated_attribute);
-    generated = place.y > 0u ? attribute_value(surface, generated_attribute).xyz : object;
     vec3 n = normal_to_object(surface, surface.normal);
     normal = n / max(length(n), 1e-20);
     uv = vec3(surface.uv, 0.0);
@@ -51,9 +59,17 @@ void node_attribute(Surface surface, uint layer, out vec3 color, out vec3 vector
     alpha = value.a;
 }
 
-void node_new_geometry(Surface surface, uint island_attribute, out vec3 position, out vec3 normal, out vec3 tangent,
+// Without such coordinates, as on a world, those of the object.
+void node_generated_coord(Surface surface, uint layer, out vec3 generated) {
+    generated = attribute_place(surface, layer).y > 0u ? attribute_value(surface, layer).xyz
+                                                       : point_to_object(surface, surface.position);
+}
+
+void node_random_per_island(Surface surface, uint layer, out float random) { random = attribute_value(surface, layer).x; }
+
+void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out vec3 tangent,
                        out vec3 true_normal, out vec3 incoming, out vec3 parametric, out float backfacing,
-                       out float pointiness, out float random_per_island) {
+                       out float pointiness) {
     position = surface.position;
     normal = surface.normal;
     true_normal = surface.geometric;
@@ -61,7 +77,6 @@ void node_new_geometry(Surface surface, uint island_attribute, out vec3 position
     parametric = vec3(surface.barycentrics.x, surface.barycentrics.y, 0.0);
     backfacing = surface.backfacing ? 1.0 : 0.0;
     pointiness = 0.5;
-    random_per_island = attribute_value(surface, island_attribute).x;
     tangent = default_tangent(surface);
 }
 
@@ -72,10 +87,9 @@ void node_tangent(Surface surface, int direction_type, int axis, uint layer, out
         across = axis == 0 ? vec3(0.0, -at.z, at.y) : (axis == 1 ? vec3(-at.z, 0.0, at.x) : vec3(-at.y, at.x, 0.0));
         across = direction_to_world(surface, across);
     } else {
-        uvec2 place = attribute_place(surface, layer);
-        uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
-        across = uv_tangent(attribute_corner(place, local, 0u).xy, attribute_corner(place, local, 1u).xy,
-                            attribute_corner(place, local, 2u).xy, surface.triangle);
+        vec2 uv[3];
+        corner_uvs(surface, layer, uv);
+        across = uv_tangent(uv[0], uv[1], uv[2], surface.triangle);
     }
     across -= dot(across, surface.normal) * surface.normal;
     float size = length(across);

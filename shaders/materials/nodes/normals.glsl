@@ -12,18 +12,9 @@ void node_normal_map(Surface surface, int space, uint layer, float strength, vec
     vec3 mapped = 2.0 * color - 1.0;
     vec3 n;
     if (space == 0) {
-        uvec2 place = attribute_place(surface, layer);
-        uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
-        vec2 uv0, uv1, uv2;
-        if (place.y > 0u) {
-            uv0 = attribute_corner(place, local, 0u).xy;
-            uv1 = attribute_corner(place, local, 1u).xy;
-            uv2 = attribute_corner(place, local, 2u).xy;
-        } else {
-            uv0 = attributes[surface.triangle].uv0;
-            uv1 = attributes[surface.triangle].uv1;
-            uv2 = attributes[surface.triangle].uv2;
-        }
+        vec2 uv[3];
+        corner_uvs(surface, layer, uv);
+        vec2 uv0 = uv[0], uv1 = uv[1], uv2 = uv[2];
         vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
         float handedness = sign(d1.x * d2.y - d1.y * d2.x);
         vec3 front = surface.backfacing ? -surface.normal : surface.normal;
@@ -80,3 +71,22 @@ void node_ambient_occlusion(vec3 color_in, out vec3 color, out float ao) {
     color = color_in;
     ao = 1.0;
 }
+
+// How far the surface is pushed out, in world space.
+void node_displacement(Surface surface, int space, float height, float midlevel, float scale, vec3 normal_in, out vec3 displacement) {
+    float amount = (height - midlevel) * scale;
+    if (space == 0) {
+        vec3 n = normal_to_object(surface, normal_in);
+        displacement = direction_to_world(surface, n / max(length(n), 1e-20) * amount);
+    } else displacement = normal_in * amount;
+}
+
+void node_vector_displacement(Surface surface, int space, vec3 vector, float midlevel, float scale, out vec3 displacement) {
+    vec3 offset = (vector - midlevel) * scale;
+    if (space == 0) {
+        vec3 n = surface.normal, t = default_tangent(surface);
+        displacement = offset.x * t + offset.y * n + offset.z * cross(n, t);
+    } else displacement = space == 1 ? direction_to_world(surface, offset) : offset;
+}
+
+void node_displacement_height(Surface surface, vec3 displacement, out float height) { height = dot(displacement, surface.normal); }

@@ -70,3 +70,7 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
     }
     builder.closure.diffuse += max(below, vec3(0.0)) * color;
 }
+
+void node_volume_absorption(inout ClosureBuilder builder, float weight, vec3 color, float density) {
+    builder.closure.emission += weight * max(density, 0.0) * (1.0 - clamp(color, 0.0, 1.0));
+}

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes that are more than their sockets and options."""
+
+import bpy
+import numpy as np
+
+from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, attribute_of
+from .graphs import STAND_INS, GraphExporter, handles, snake_case
+from .images import is_associated
+from .links import Path
+from .tables import curve_table, extrapolates, ramp_table
+
+STAND_INS |= {"SHADERTORGB": "", "TEX_IES": "Strength", "RADIAL_TILING": "Vector"}
+
+
+@handles("VALUE")
+def _value(exporter: GraphExporter, node, output, path: Path):
+    return float(np.nan_to_num(node.outputs[0].default_value, posinf=0.0, neginf=0.0))
+
+
+@handles("RGB")
+def _rgb(exporter: GraphExporter, node, output, path: Path):
+    return tuple(float(v) for v in np.nan_to_num(node.outputs[0].default_value[:3], posinf=0.0, neginf=0.0))
+
+
+@handles("NORMAL")
+def _normal(exporter: GraphExporter, node, output, path: Path):
+    direction = tuple(float(v) for v in node.outputs[0].default_value[:3])
+    return exporter.add("normal", node, path, snake_case(output.identifier), inputs={"direction": direction})
+
+
+@handles("MIX")
+def _mix(exporter: GraphExporter, node, output, path: Path):
+    kinds = {"FLOAT": ("mix_float", "result_float"), "RGBA": ("mix_color", "result_color")}
+    kinds["VECTOR"] = ("mix_vector" if node.factor_mode == "UNIFORM" else "mix_vector_non_uniform", "result_vector")
+    if node.data_type not in kinds:
+        exporter.warn(node, f"mixes {node.data_type}, which is not rendered; the value of the socket it feeds is used")
+        return None
+    kind, name = kinds[node.data_type]
+    return exporter.add(kind, node, path, name)
+
+
+@handles("MAP_RANGE")
+def _map_range(exporter: GraphExporter, node, output, path: Path):
+    kind = "map_range" if node.data_type == "FLOAT" else "map_range_vector"
+    return exporter.add(kind, node, path, "result" if kind == "map_range" else "vector")
+
+
+@handles("VALTORGB")
+def _color_ramp(exporter: GraphExporter, node, output, path: Path):
+    constant = node.color_ramp.interpolation == "CONSTANT"
+    return exporter.add("val_to_rgb", node, path, snake_case(output.identifier), options={"constant": constant},
+                        table=ramp_table(node.color_ramp))  # fmt: skip
+
+
+_CURVES = {"CURVE_RGB": ("rgb_curve", 3), "CURVE_VEC": ("vector_curve", 3), "CURVE_FLOAT": ("float_curve", 1)}
+
+
+@handles(*_CURVES)
+def _curves(exporter: GraphExporter, node, output, path: Path):
+    kind, channels = _CURVES[node.type]
+    return exporter.add(kind, node, path, snake_case(output.identifier),
+                        options={"extrapolate": extrapolates(node.mapping)},
+                        table=curve_table(node.mapping, channels))  # fmt: skip
+
+
+@handles("TEX_COORD")
+def _coordinates(exporter: GraphExporter, node, output, path: Path):
+    name = snake_case(output.identifier)
+    if name == "generated":
+        return exporter.shared("generated_coord", "generated", GENERATED)
+    if name == "object" and node.object is not None:
+        rows = np.array(node.object.matrix_world.inverted_safe())
+        return exporter.graph.add(
+            "object_coord", "object", name=node.name, row0=tuple(rows[0, :3]), row1=tuple(rows[1, :3]),
+            row2=tuple(rows[2, :3]), offset=tuple(rows[:3, 3]),
+        )  # fmt: skip
+    return exporter.shared("tex_coord", name)
+
+
+@handles("NEW_GEOMETRY")
+def _geometry(exporter: GraphExporter, node, output, path: Path):
+    name = snake_case(output.identifier)
+    if name == "random_per_island":
+        return exporter.shared("random_per_island", name, ISLAND)
+    if name == "pointiness":
+        exporter.warn(node, "has Pointiness, which is not rendered; surfaces count as flat")
+        return 0.5
+    return exporter.shared("new_geometry", name)
+
+
+@handles("UVMAP")
+def _uv_map(exporter: GraphExporter, node, output, path: Path):
+    return exporter.shared("uvmap", "uv", node.uv_map) if node.uv_map else exporter.shared("tex_coord", "uv")
+
+
+@handles("VERTEX_COLOR")
+def _color_attribute(exporter: GraphExporter, node, output, path: Path):
+    return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR)
+
+
+@handles("ATTRIBUTE")
+def _attribute(exporter: GraphExporter, node, output, path: Path):
+    if node.attribute_type == "VIEW_LAYER":
+        return _view_layer_attribute(exporter, node, output)
+    name = node.attribute_name if node.attribute_type == "GEOMETRY" else f"{node.attribute_type}:{node.attribute_name}"
+    return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE)
+
+
+def _view_layer_attribute(exporter: GraphExporter, node, output):
+    """A property of the view layer, the scene or the world, which is one value for all surfaces."""
+    for owner in (bpy.context.view_layer, bpy.context.scene, getattr(bpy.context.scene, "world", None)):
+        value = attribute_of(owner, node.attribute_name)
+        if value is not None:
+            color = (*value, *(1.0,) * 4)[:4] if len(value) > 1 else (value[0],) * 3 + (1.0,)
+            return {"Alpha": color[3], "Fac": sum(color[:3]) / 3.0}.get(output.identifier, color[:3])
+    return 0.0
+
+
+@handles("TANGENT")
+def _tangent(exporter: GraphExporter, node, output, path: Path):
+    attribute = GENERATED if node.direction_type == "RADIAL" else (node.uv_map or NO_ATTRIBUTE)
+    return exporter.add("tangent", node, path, "tangent", attribute=attribute)
+
+
+@handles("NORMAL_MAP")
+def _normal_map(exporter: GraphExporter, node, output, path: Path):
+    return exporter.add("normal_map", node, path, "normal", attribute=node.uv_map or NO_ATTRIBUTE)
+
+
+@handles("BEVEL", "AMBIENT_OCCLUSION")
+def _surroundings(exporter: GraphExporter, node, output, path: Path):
+    exporter.warn(node, "would need rays of its own, which are not traced; it is left out")
+    return exporter.add(node.type.lower(), node, path, snake_case(output.identifier))
+
+
+@handles("OBJECT_INFO")
+def _object_info(exporter: GraphExporter, node, output, path: Path):
+    name = snake_case(output.identifier)
+    if name == "material_index":
+        return float(exporter.pass_index)
+    return exporter.shared("object_info", name)
+
+
+@handles("TEX_IMAGE")
+def _image_texture(exporter: GraphExporter, node, output, path: Path):
+    tiles = exporter.images.tiles(node, exporter)
+    unassociate = is_associated(node.image) and any(
+        socket.identifier == "Alpha" and socket.is_linked for socket in node.outputs
+    )
+    options = {"unassociate": unassociate}
+    name = snake_case(output.identifier)
+    if tiles is not None:
+        return exporter.add("tex_image_tiles", node, path, name, options=options, table=tiles,
+                            inputs={"tiles": float(len(tiles))})  # fmt: skip
+    image = exporter.images.of_node(node, exporter)
+    blend = {"projection_blend": node.projection_blend}
+    return exporter.add("tex_image", node, path, name, options=options, image=image, inputs=blend)
+
+
+@handles("TEX_ENVIRONMENT")
+def _environment_texture(exporter: GraphExporter, node, output, path: Path):
+    return exporter.add("tex_environment", node, path, "color", image=exporter.images.of_node(node, exporter))
+
+
+@handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")
+def _other_geometry(exporter: GraphExporter, node, output, path: Path):
+    return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)

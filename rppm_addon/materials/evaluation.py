@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Emission of node graphs that belong to no surface: worlds, lights and volumes."""
+
+import moderngl
+import numpy as np
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+
+Record(
+    "EvaluateParameters",
+    world_to_camera="mat4",
+    window="vec4",
+    count="uint",
+    width="uint",
+    height="uint",
+    first_row="uint",
+    first_constant="uint",
+    from_camera="uint",
+    attribute_count="uint",
+    orthographic="uint",
+    pixel_size="float",
+)
+
+_CHUNK = 1 << 18
+
+
+class GraphEvaluator:
+    """Runs the programs of graphs on directions instead of hits."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._library = library
+        self._emissions = GrowingBuffer(context, "emission by direction")
+        self._nothing = context.moderngl.buffer(reserve=1024)
+        """Stands for the geometry, which these graphs cannot ask about."""
+
+    def run(
+        self,
+        text: str,
+        first_constant: int,
+        buffers: dict[str, moderngl.Buffer],
+        width: int,
+        height: int,
+        from_camera: bool,
+    ) -> np.ndarray:
+        """(height, width, 3) float32 emission in the directions of an equirectangular map, row 0 at the bottom.
+
+        text: the compiled graph; first_constant: where its constants start in the buffer MaterialData.
+        """
+        program = self._library.compute("materials/evaluate.comp", inserts={"materials/generated.glsl": text})
+        rows = max(1, _CHUNK // width)
+        self._emissions.require(16 * width * min(rows, height))
+        bound = {name: buffers.get(name, self._nothing) for name in program.blocks}
+        bound["Emissions"] = self._emissions.buffer
+        parts = []
+        for first_row in range(0, height, rows):
+            count = width * min(rows, height - first_row)
+            parameters = {
+                "world_to_camera": np.eye(4), "window": (-1.0, 1.0, -1.0, 1.0), "count": count, "width": width,
+                "height": height, "first_row": first_row, "first_constant": first_constant,
+                "from_camera": from_camera, "attribute_count": 0, "orthographic": False, "pixel_size": 0.0,
+            }  # fmt: skip
+            program.run(count, bound, parameters)
+            parts.append(self._emissions.read(np.dtype("<f4"), 4 * count).reshape(-1, width, 4)[..., :3])
+        return np.nan_to_num(np.concatenate(parts), nan=0.0, posinf=0.0, neginf=0.0)
+
+    def release(self) -> None:
+        self._emissions.release()
+        self._nothing.release()
