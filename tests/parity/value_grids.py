@@ -27,8 +27,10 @@ from .scenes import new_scene
 SAMPLE_SIZE = 0.02
 SCENE_MATRIX = Matrix.Translation((3.0, -2.0, 5.0)) @ Matrix.Rotation(np.pi / 2, 4, "Z")
 """From the picture's plane to world space."""
-OBJECT_MATRIX = Matrix.Translation((1.0, 2.0, -0.5)) @ Euler((0.3, 0.2, 1.0)).to_matrix().to_4x4() @ Matrix.Diagonal(
-    (2.0, 4.0, 0.5, 1.0)
+OBJECT_MATRIX = (
+    Matrix.Translation((1.0, 2.0, -0.5))
+    @ Euler((0.3, 0.2, 1.0)).to_matrix().to_4x4()
+    @ Matrix.Diagonal((2.0, 4.0, 0.5, 1.0))
 )
 """Of the object that the samples belong to."""
 VIEWER = (0.0, 0.0, 1.0)
@@ -64,13 +66,20 @@ class Case:
     """The faces turn their back to the camera."""
     label: str = ""
     """Tells cases apart that have the same options."""
+    relative: float = 1e-5
+    """Of Cycles' value, of vectors the largest part, that ours may differ by; the default allows for rounding."""
+    absolute: float = 1e-6
+    """What it may differ by besides."""
     table_values: np.ndarray | None = None
 
     @property
     def name(self) -> str:
         chosen = {**self.options, **{k: v for k, v in self.properties.items() if isinstance(v, str | bool)}}
         words = [f"{key}={value}" if isinstance(value, bool) else str(value) for key, value in chosen.items()]
-        return " ".join([self.kind_name, *words, *([self.label] if self.label else [])] + (["backfacing"] if self.backfacing else []))
+        return " ".join(
+            [self.kind_name, *words, *([self.label] if self.label else [])]
+            + (["backfacing"] if self.backfacing else [])
+        )
 
     @property
     def count(self) -> int:
@@ -292,8 +301,10 @@ def our_values(context: Context, case: Case, surface: str = "") -> dict[str, np.
         program = gl.compute_shader(source.text)
     except moderngl.Error as error:
         raise AssertionError(source.name_lines(str(error))) from error
-    given = [np.asarray(v, np.float32).reshape(len(v), -1) for v in
-             (case.inputs[name] for name in case.kind.inputs if name in case.inputs)]
+    given = [
+        np.asarray(v, np.float32).reshape(len(v), -1)
+        for v in (case.inputs[name] for name in case.kind.inputs if name in case.inputs)
+    ]
     inputs = np.concatenate([np.broadcast_to(v, (case.count, v.shape[1])) for v in given], axis=1)
     widths = [1 if socket_type is FLOAT else 3 for socket_type in case.kind.outputs.values()]
     table = case.table_values if case.table_values is not None else np.zeros(1, np.float32)
@@ -317,14 +328,8 @@ def our_values(context: Context, case: Case, surface: str = "") -> dict[str, np.
     return values
 
 
-def assert_values_agree(
-    case: Case,
-    ours: dict[str, np.ndarray],
-    cycles: dict[str, np.ndarray],
-    relative: float = 1e-5,
-    absolute: float = 1e-6,
-) -> None:
-    """Every value within absolute + relative * |Cycles' value|, of vectors the largest part's; prints what differs.
+def assert_values_agree(case: Case, ours: dict[str, np.ndarray], cycles: dict[str, np.ndarray]) -> None:
+    """Every value within the case's tolerances; prints the largest differences.
 
     Where Cycles' value is not finite ours may be anything: neither engine shows it.
     """
@@ -336,10 +341,14 @@ def assert_values_agree(
         error = np.where(finite & ~np.isfinite(a), np.inf, error)
         size = np.abs(np.where(finite, b, 0.0))
         size = size if b.ndim == 1 else size.max(axis=1, keepdims=True)
-        excess = error - (absolute + relative * size)
+        excess = error - (case.absolute + case.relative * size)
         worst = np.unravel_index(np.argmax(excess), excess.shape)
         wrong = (excess > 0.0).reshape(case.count, -1).any(axis=1)
-        print(f"\n{case.name}: {name} largest difference {error.max():.3g}, {(~finite).sum()} of {b.size} not finite")
+        shares = error / np.maximum(size, 1e-3)
+        print(
+            f"\n{case.name}: {name} differs by {error.max():.3g}, by {shares.max():.3g} of its size; "
+            f"{(~finite).sum()} of {b.size} not finite"
+        )
         given = {key: np.asarray(v)[worst[0] if len(v) > 1 else 0].tolist() for key, v in case.inputs.items()}
         assert not wrong.any(), (
             f"{case.name}: {name} differs at {wrong.sum()} of {case.count}, most at {given}: "
