@@ -3,11 +3,11 @@
 
 from collections.abc import Callable
 
+import bpy
 import numpy as np
 import pytest
 from mathutils import Matrix
 
-from rppm_addon.blender.export.tables import curve_table, ramp_table
 from rppm_addon.gl.context import Context
 from rppm_addon.materials.node_kinds import BOOLEAN
 from rppm_addon.materials.nodes import color, curves, math, spectrum, view
@@ -17,6 +17,7 @@ from .value_grids import (
     OBJECT_MATRIX,
     RAY_LENGTH,
     Case,
+    assert_exported,
     assert_values_agree,
     cycles_values,
     grid,
@@ -242,6 +243,12 @@ def set_ramp(interpolation: str, color_mode: str = "RGB") -> Callable:
     return prepare
 
 
+def set_stepped_hue(node: bpy.types.Node) -> None:
+    """An interpolation that the user no longer sees, since the colours are mixed as HSV."""
+    set_ramp("CONSTANT")(node)
+    node.color_ramp.color_mode = "HSV"
+
+
 def set_curves(extend: str) -> Callable:
     """Every curve gets points of its own, some outside the unit square."""
 
@@ -271,7 +278,6 @@ def curve_cases() -> list[Case]:
             {"fac": places},
             {"constant": interpolation == "CONSTANT"},
             prepare=set_ramp(interpolation),
-            table=lambda node: ramp_table(node.color_ramp),
             label=interpolation,
         )
         for interpolation in ("LINEAR", "EASE", "B_SPLINE", "CARDINAL", "CONSTANT")
@@ -283,11 +289,21 @@ def curve_cases() -> list[Case]:
             "ShaderNodeValToRGB",
             {"fac": places},
             prepare=set_ramp(hue, mode),
-            table=lambda node: ramp_table(node.color_ramp),
             label=f"{mode} {hue}",
         )
         for mode, hue in (("HSV", "NEAR"), ("HSL", "CW"))
     ]
+    cases.append(
+        Case(
+            "val_to_rgb",
+            kinds["val_to_rgb"],
+            "ShaderNodeValToRGB",
+            {"fac": places},
+            {"constant": True},
+            prepare=set_stepped_hue,
+            label="HSV CONSTANT",
+        )
+    )
     for extend in ("HORIZONTAL", "EXTRAPOLATED"):
         options, prepare = {"extrapolate": extend == "EXTRAPOLATED"}, set_curves(extend)
         values, factor = random_vectors(5, -2.0, 2.5), random_floats(6, -0.2, 1.4)
@@ -299,7 +315,6 @@ def curve_cases() -> list[Case]:
                 {"color": values, "fac": factor},
                 options,
                 prepare=prepare,
-                table=lambda node: curve_table(node.mapping, 3),
             ),
             Case(
                 "vector_curve",
@@ -308,7 +323,6 @@ def curve_cases() -> list[Case]:
                 {"vector": values, "fac": factor},
                 options,
                 prepare=prepare,
-                table=lambda node: curve_table(node.mapping, 3),
             ),
             Case(
                 "float_curve",
@@ -317,7 +331,6 @@ def curve_cases() -> list[Case]:
                 {"value": values[:, 0], "factor": factor},
                 options,
                 prepare=prepare,
-                table=lambda node: curve_table(node.mapping, 1),
             ),
         ]
     return cases
@@ -431,6 +444,7 @@ def test_every_option_is_covered():
 @pytest.mark.parametrize("number", range(len(CASES)), ids=[case.name for case in CASES])
 def test_values(number, reference, context):
     case = CASES[number]
+    assert_exported(case)
     with context.moderngl:
         ours = our_values(context, case, SURFACE)
     assert_values_agree(case, ours, reference[number])

@@ -18,9 +18,13 @@ import numpy as np
 import OpenEXR
 from mathutils import Euler, Matrix
 
+from rppm_addon.blender.export.graphs import GraphExporter
+from rppm_addon.blender.export.images import ImageTable
+from rppm_addon.blender.export.report import Report
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.sources import expand
 from rppm_addon.materials.node_kinds import FLOAT, NodeKind
+from rppm_addon.scene.node_graphs import Link, ShaderNode
 
 from .scenes import new_scene
 
@@ -56,8 +60,6 @@ class Case:
     """Of the Blender node, besides the options that it has by the same name."""
     prepare: Callable[[bpy.types.Node], None] | None = None
     """Whatever else is to be done to the Blender node."""
-    table: Callable[[bpy.types.Node], np.ndarray] | None = None
-    """Floats for the resource "table", from the prepared Blender node."""
     sockets: dict[str, str | None] = field(default_factory=dict)
     """Identifiers of Blender's sockets where they are not the names of the kind; None where it has no such socket."""
     outputs: tuple[str, ...] = ()
@@ -70,7 +72,10 @@ class Case:
     """Of Cycles' value, of vectors the largest part, that ours may differ by; the default allows for rounding."""
     absolute: float = 1e-6
     """What it may differ by besides."""
-    table_values: np.ndarray | None = None
+    exported: ShaderNode | None = None
+    """The node as it is exported, once Cycles has rendered it."""
+    idle: set[str] = field(default_factory=set)
+    """Inputs that Blender has no use for, with these options."""
 
     @property
     def name(self) -> str:
@@ -116,8 +121,6 @@ def _material(case: Case) -> bpy.types.Material:
         setattr(node, name, value)
     if case.prepare:
         case.prepare(node)
-    if case.table:
-        case.table_values = np.asarray(case.table(node), np.float32).ravel()
     for index, (name, (socket_type, default)) in enumerate(case.kind.inputs.items()):
         if case.sockets.get(name, name) is None:
             continue
@@ -137,6 +140,12 @@ def _material(case: Case) -> bpy.types.Material:
         is_float = case.kind.outputs[name] is FLOAT
         aov.aov_name = f"{'float' if is_float else 'vector'}_{index}"
         tree.links.new(_socket(node.outputs, case, name), aov.inputs["Value" if is_float else "Color"])
+    exporter = GraphExporter(case.name, Report(), ImageTable())
+    link = exporter.value(aov.inputs["Value" if is_float else "Color"], ())
+    case.exported = exporter.graph.nodes[link.node]
+    case.idle = {
+        name for name in case.inputs if case.sockets.get(name, name) and not _socket(node.inputs, case, name).enabled
+    }
     emission = tree.nodes.new("ShaderNodeEmission")
     output = tree.nodes.new("ShaderNodeOutputMaterial")
     tree.links.new(emission.outputs[0], output.inputs["Surface"])
@@ -307,7 +316,8 @@ def our_values(context: Context, case: Case, surface: str = "") -> dict[str, np.
     ]
     inputs = np.concatenate([np.broadcast_to(v, (case.count, v.shape[1])) for v in given], axis=1)
     widths = [1 if socket_type is FLOAT else 3 for socket_type in case.kind.outputs.values()]
-    table = case.table_values if case.table_values is not None else np.zeros(1, np.float32)
+    table = np.zeros(1, np.float32) if case.exported is None else case.exported.table
+    table = np.zeros(1, np.float32) if table is None else table
     buffers = {
         1: gl.buffer(np.ascontiguousarray(inputs, np.float32).tobytes()),
         2: gl.buffer(reserve=4 * case.count * sum(widths)),
@@ -326,6 +336,17 @@ def our_values(context: Context, case: Case, surface: str = "") -> dict[str, np.
         values[name] = results[:, start] if width == 1 else results[:, start : start + width]
         start += width
     return values
+
+
+def assert_exported(case: Case) -> None:
+    """The exporter makes the case's kind and options of Blender's node, and links the inputs that have lists."""
+    node = case.exported
+    assert node.kind == case.kind_name
+    assert node.options == {name: values[0] for name, values in case.kind.options.items()} | case.options
+    assert (node.table is not None) == ("table" in case.kind.resources)
+    for name in case.inputs:
+        if case.sockets.get(name, name) is not None and name not in case.idle:
+            assert isinstance(node.inputs[name], Link), name
 
 
 def assert_values_agree(case: Case, ours: dict[str, np.ndarray], cycles: dict[str, np.ndarray]) -> None:

@@ -213,4 +213,6 @@ def _stored(socket: bpy.types.NodeSocket) -> object:
     return float(stored) if np.isfinite(stored) else 0.0
 
 
-from .attributes import GENERATED, ISLAND as ISLAND_UNUSED  # noqa: E402
+from . import value_nodes  # noqa: E402, F401  registers its handlers
+from .attributes import GENERATED  # noqa: E402
+from .attributes import ISLAND as ISLAND_UNUSED
