@@ -215,4 +215,4 @@ def _stored(socket: bpy.types.NodeSocket) -> object:
 
 from . import value_nodes  # noqa: E402, F401  registers its handlers
 from .attributes import GENERATED  # noqa: E402
-from .attributes import ISLAND as ISLAND_UNUSED
+from .attributes import ISLAND as ISLAND_UNUSED  # noqa: E402
