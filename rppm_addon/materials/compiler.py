@@ -14,8 +14,8 @@ from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 from .node_kinds import FLOAT, SHADER, NodeKind, SocketType
 from .nodes import KINDS
 
-LUMINANCE = (0.2126, 0.7152, 0.0722)
-"""Rec.709: how a colour becomes a number, as Cycles has it."""
+LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
+"""Rec.709: how a colour becomes a number, measured in Cycles."""
 
 MIX_SHADER, ADD_SHADER, BUMP = "mix_shader", "add_shader", "bump"
 """Kinds that the compiler itself knows: two share out weights, one evaluates its input three times."""

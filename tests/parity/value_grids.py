@@ -18,17 +18,23 @@ import numpy as np
 import OpenEXR
 from mathutils import Euler, Matrix
 
+from rppm_addon.blender.export.graphs import GraphExporter
+from rppm_addon.blender.export.images import ImageTable
+from rppm_addon.blender.export.report import Report
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.sources import expand
 from rppm_addon.materials.node_kinds import FLOAT, NodeKind
+from rppm_addon.scene.node_graphs import Link, ShaderNode
 
 from .scenes import new_scene
 
 SAMPLE_SIZE = 0.02
 SCENE_MATRIX = Matrix.Translation((3.0, -2.0, 5.0)) @ Matrix.Rotation(np.pi / 2, 4, "Z")
 """From the picture's plane to world space."""
-OBJECT_MATRIX = Matrix.Translation((1.0, 2.0, -0.5)) @ Euler((0.3, 0.2, 1.0)).to_matrix().to_4x4() @ Matrix.Diagonal(
-    (2.0, 4.0, 0.5, 1.0)
+OBJECT_MATRIX = (
+    Matrix.Translation((1.0, 2.0, -0.5))
+    @ Euler((0.3, 0.2, 1.0)).to_matrix().to_4x4()
+    @ Matrix.Diagonal((2.0, 4.0, 0.5, 1.0))
 )
 """Of the object that the samples belong to."""
 VIEWER = (0.0, 0.0, 1.0)
@@ -54,8 +60,6 @@ class Case:
     """Of the Blender node, besides the options that it has by the same name."""
     prepare: Callable[[bpy.types.Node], None] | None = None
     """Whatever else is to be done to the Blender node."""
-    table: Callable[[bpy.types.Node], np.ndarray] | None = None
-    """Floats for the resource "table", from the prepared Blender node."""
     sockets: dict[str, str | None] = field(default_factory=dict)
     """Identifiers of Blender's sockets where they are not the names of the kind; None where it has no such socket."""
     outputs: tuple[str, ...] = ()
@@ -64,13 +68,23 @@ class Case:
     """The faces turn their back to the camera."""
     label: str = ""
     """Tells cases apart that have the same options."""
-    table_values: np.ndarray | None = None
+    relative: float = 1e-5
+    """Of Cycles' value, of vectors the largest part, that ours may differ by; the default allows for rounding."""
+    absolute: float = 1e-6
+    """What it may differ by besides."""
+    exported: ShaderNode | None = None
+    """The node as it is exported, once Cycles has rendered it."""
+    idle: set[str] = field(default_factory=set)
+    """Inputs that Blender has no use for, with these options."""
 
     @property
     def name(self) -> str:
         chosen = {**self.options, **{k: v for k, v in self.properties.items() if isinstance(v, str | bool)}}
         words = [f"{key}={value}" if isinstance(value, bool) else str(value) for key, value in chosen.items()]
-        return " ".join([self.kind_name, *words, *([self.label] if self.label else [])] + (["backfacing"] if self.backfacing else []))
+        return " ".join(
+            [self.kind_name, *words, *([self.label] if self.label else [])]
+            + (["backfacing"] if self.backfacing else [])
+        )
 
     @property
     def count(self) -> int:
@@ -107,8 +121,6 @@ def _material(case: Case) -> bpy.types.Material:
         setattr(node, name, value)
     if case.prepare:
         case.prepare(node)
-    if case.table:
-        case.table_values = np.asarray(case.table(node), np.float32).ravel()
     for index, (name, (socket_type, default)) in enumerate(case.kind.inputs.items()):
         if case.sockets.get(name, name) is None:
             continue
@@ -128,6 +140,12 @@ def _material(case: Case) -> bpy.types.Material:
         is_float = case.kind.outputs[name] is FLOAT
         aov.aov_name = f"{'float' if is_float else 'vector'}_{index}"
         tree.links.new(_socket(node.outputs, case, name), aov.inputs["Value" if is_float else "Color"])
+    exporter = GraphExporter(case.name, Report(), ImageTable())
+    link = exporter.value(aov.inputs["Value" if is_float else "Color"], ())
+    case.exported = exporter.graph.nodes[link.node]
+    case.idle = {
+        name for name in case.inputs if case.sockets.get(name, name) and not _socket(node.inputs, case, name).enabled
+    }
     emission = tree.nodes.new("ShaderNodeEmission")
     output = tree.nodes.new("ShaderNodeOutputMaterial")
     tree.links.new(emission.outputs[0], output.inputs["Surface"])
@@ -292,11 +310,14 @@ def our_values(context: Context, case: Case, surface: str = "") -> dict[str, np.
         program = gl.compute_shader(source.text)
     except moderngl.Error as error:
         raise AssertionError(source.name_lines(str(error))) from error
-    given = [np.asarray(v, np.float32).reshape(len(v), -1) for v in
-             (case.inputs[name] for name in case.kind.inputs if name in case.inputs)]
+    given = [
+        np.asarray(v, np.float32).reshape(len(v), -1)
+        for v in (case.inputs[name] for name in case.kind.inputs if name in case.inputs)
+    ]
     inputs = np.concatenate([np.broadcast_to(v, (case.count, v.shape[1])) for v in given], axis=1)
     widths = [1 if socket_type is FLOAT else 3 for socket_type in case.kind.outputs.values()]
-    table = case.table_values if case.table_values is not None else np.zeros(1, np.float32)
+    table = np.zeros(1, np.float32) if case.exported is None else case.exported.table
+    table = np.zeros(1, np.float32) if table is None else table
     buffers = {
         1: gl.buffer(np.ascontiguousarray(inputs, np.float32).tobytes()),
         2: gl.buffer(reserve=4 * case.count * sum(widths)),
@@ -317,14 +338,19 @@ def our_values(context: Context, case: Case, surface: str = "") -> dict[str, np.
     return values
 
 
-def assert_values_agree(
-    case: Case,
-    ours: dict[str, np.ndarray],
-    cycles: dict[str, np.ndarray],
-    relative: float = 1e-5,
-    absolute: float = 1e-6,
-) -> None:
-    """Every value within absolute + relative * |Cycles' value|, of vectors the largest part's; prints what differs.
+def assert_exported(case: Case) -> None:
+    """The exporter makes the case's kind and options of Blender's node, and links the inputs that have lists."""
+    node = case.exported
+    assert node.kind == case.kind_name
+    assert node.options == {name: values[0] for name, values in case.kind.options.items()} | case.options
+    assert (node.table is not None) == ("table" in case.kind.resources)
+    for name in case.inputs:
+        if case.sockets.get(name, name) is not None and name not in case.idle:
+            assert isinstance(node.inputs[name], Link), name
+
+
+def assert_values_agree(case: Case, ours: dict[str, np.ndarray], cycles: dict[str, np.ndarray]) -> None:
+    """Every value within the case's tolerances; prints the largest differences.
 
     Where Cycles' value is not finite ours may be anything: neither engine shows it.
     """
@@ -336,10 +362,14 @@ def assert_values_agree(
         error = np.where(finite & ~np.isfinite(a), np.inf, error)
         size = np.abs(np.where(finite, b, 0.0))
         size = size if b.ndim == 1 else size.max(axis=1, keepdims=True)
-        excess = error - (absolute + relative * size)
+        excess = error - (case.absolute + case.relative * size)
         worst = np.unravel_index(np.argmax(excess), excess.shape)
         wrong = (excess > 0.0).reshape(case.count, -1).any(axis=1)
-        print(f"\n{case.name}: {name} largest difference {error.max():.3g}, {(~finite).sum()} of {b.size} not finite")
+        shares = error / np.maximum(size, 1e-3)
+        print(
+            f"\n{case.name}: {name} differs by {error.max():.3g}, by {shares.max():.3g} of its size; "
+            f"{(~finite).sum()} of {b.size} not finite"
+        )
         given = {key: np.asarray(v)[worst[0] if len(v) > 1 else 0].tolist() for key, v in case.inputs.items()}
         assert not wrong.any(), (
             f"{case.name}: {name} differs at {wrong.sum()} of {case.count}, most at {given}: "

@@ -4,7 +4,7 @@
 import bpy
 
 from ...scene import Material, NodeGraph
-from . import nodes  # noqa: F401  registers its handlers
+from . import nodes, value_nodes  # noqa: F401  register their handlers
 from .attributes import NO_ATTRIBUTE
 from .graphs import GraphExporter
 from .images import ImageTable

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes that are more than their sockets and options."""
+"""Nodes of the surface, the object and images that are more than their sockets and options."""
 
 import bpy
 import numpy as np
@@ -8,60 +8,8 @@ from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, attribute
 from .graphs import STAND_INS, GraphExporter, handles, snake_case
 from .images import is_associated
 from .links import Path
-from .tables import curve_table, extrapolates, ramp_table
 
 STAND_INS |= {"SHADERTORGB": "", "TEX_IES": "Strength", "RADIAL_TILING": "Vector"}
-
-
-@handles("VALUE")
-def _value(exporter: GraphExporter, node, output, path: Path):
-    return float(np.nan_to_num(node.outputs[0].default_value, posinf=0.0, neginf=0.0))
-
-
-@handles("RGB")
-def _rgb(exporter: GraphExporter, node, output, path: Path):
-    return tuple(float(v) for v in np.nan_to_num(node.outputs[0].default_value[:3], posinf=0.0, neginf=0.0))
-
-
-@handles("NORMAL")
-def _normal(exporter: GraphExporter, node, output, path: Path):
-    direction = tuple(float(v) for v in node.outputs[0].default_value[:3])
-    return exporter.add("normal", node, path, snake_case(output.identifier), inputs={"direction": direction})
-
-
-@handles("MIX")
-def _mix(exporter: GraphExporter, node, output, path: Path):
-    kinds = {"FLOAT": ("mix_float", "result_float"), "RGBA": ("mix_color", "result_color")}
-    kinds["VECTOR"] = ("mix_vector" if node.factor_mode == "UNIFORM" else "mix_vector_non_uniform", "result_vector")
-    if node.data_type not in kinds:
-        exporter.warn(node, f"mixes {node.data_type}, which is not rendered; the value of the socket it feeds is used")
-        return None
-    kind, name = kinds[node.data_type]
-    return exporter.add(kind, node, path, name)
-
-
-@handles("MAP_RANGE")
-def _map_range(exporter: GraphExporter, node, output, path: Path):
-    kind = "map_range" if node.data_type == "FLOAT" else "map_range_vector"
-    return exporter.add(kind, node, path, "result" if kind == "map_range" else "vector")
-
-
-@handles("VALTORGB")
-def _color_ramp(exporter: GraphExporter, node, output, path: Path):
-    constant = node.color_ramp.interpolation == "CONSTANT"
-    return exporter.add("val_to_rgb", node, path, snake_case(output.identifier), options={"constant": constant},
-                        table=ramp_table(node.color_ramp))  # fmt: skip
-
-
-_CURVES = {"CURVE_RGB": ("rgb_curve", 3), "CURVE_VEC": ("vector_curve", 3), "CURVE_FLOAT": ("float_curve", 1)}
-
-
-@handles(*_CURVES)
-def _curves(exporter: GraphExporter, node, output, path: Path):
-    kind, channels = _CURVES[node.type]
-    return exporter.add(kind, node, path, snake_case(output.identifier),
-                        options={"extrapolate": extrapolates(node.mapping)},
-                        table=curve_table(node.mapping, channels))  # fmt: skip
 
 
 @handles("TEX_COORD")

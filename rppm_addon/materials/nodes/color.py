@@ -24,12 +24,8 @@ KINDS = {
         {"color": COLOR},
         {"blend_type": BLEND_TYPES, "use_clamp": BOOLEAN},
     ),
-    "invert": NodeKind(
-        "color.glsl", {"fac": (FLOAT, 1.0), "color": (COLOR, (0.0, 0.0, 0.0))}, {"color": COLOR}
-    ),
-    "gamma": NodeKind(
-        "color.glsl", {"color": (COLOR, (1.0, 1.0, 1.0)), "gamma": (FLOAT, 1.0)}, {"color": COLOR}
-    ),
+    "invert": NodeKind("color.glsl", {"fac": (FLOAT, 1.0), "color": (COLOR, (0.0, 0.0, 0.0))}, {"color": COLOR}),
+    "gamma": NodeKind("color.glsl", {"color": (COLOR, (1.0, 1.0, 1.0)), "gamma": (FLOAT, 1.0)}, {"color": COLOR}),
     "bright_contrast": NodeKind(
         "color.glsl",
         {"color": (COLOR, (1.0, 1.0, 1.0)), "bright": (FLOAT, 0.0), "contrast": (FLOAT, 0.0)},

@@ -24,7 +24,7 @@ float curve_value(uint table, uint channels, uint channel, int extrapolate, floa
     float low = material_data[table], high = material_data[table + 1u];
     uint first = table + 2u + channel;
     const float last = float(CURVE_ENTRIES - 1u);
-    float place = (x - low) / (high - low) * last;
+    float place = (x - low) / max(high - low, 1e-20) * last;
     float inside = clamp(place, 0.0, last);
     uint i = min(uint(inside), CURVE_ENTRIES - 2u);
     float a = material_data[first + channels * i], b = material_data[first + channels * (i + 1u)];

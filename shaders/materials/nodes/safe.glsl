@@ -26,14 +26,16 @@ float safe_logarithm(float a, float base) {
     return a > 0.0 && base > 0.0 ? safe_divide(log(a), log(base)) : 0.0;
 }
 
-// The remainder has the sign of a. The quotient may have been rounded up to a whole number and be one off: the
-// divisor is multiplied in two parts, so that no rounding hides it.
+// The leading half of a float's digits: products of two such are exact.
+float leading_half(float a) { return uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u); }
+
+// The remainder has the sign of a. The quotient may have been rounded up to a whole number and be one off, which
+// shows only where its product with the divisor is exact.
 float safe_modulo(float a, float b) {
     if (b == 0.0) return 0.0;
-    float size = abs(a), divisor = abs(b);
-    float high = uintBitsToFloat(floatBitsToUint(divisor) & 0xfffff000u);
-    float quotient = trunc(size / divisor);
-    precise float remainder = (size - quotient * high) - quotient * (divisor - high);
+    float size = abs(a), divisor = abs(b), quotient = trunc(size / divisor);
+    float q = leading_half(quotient), d = leading_half(divisor);
+    precise float remainder = ((size - q * d) - q * (divisor - d)) - (quotient - q) * d - (quotient - q) * (divisor - d);
     if (remainder < 0.0) remainder += divisor;
     if (remainder >= divisor) remainder -= divisor;
     return a < 0.0 ? -remainder : remainder;
