@@ -40,7 +40,7 @@ def attribute_of(owner: bpy.types.bpy_struct | None, name: str) -> tuple[float, 
 
 
 def add_attributes(exported: Mesh, mesh: bpy.types.Mesh, names: set[str]) -> None:
-    """Read the named attributes of the evaluated mesh that was exported, those that it has and that are not read yet."""
+    """Read the named attributes of the mesh that was exported, as far as it has them and they are not read yet."""
     for name in sorted(names - exported.attributes.keys()):
         attribute = export_attribute(exported, mesh, name)
         if attribute is not None:
