@@ -14,6 +14,8 @@ from .sky_table import ROWS, azimuths_from_sun, mirrored, row_elevations
 
 EARTH_RADIUS = 6360e3
 ATMOSPHERE_RADIUS = 6420e3
+LOWEST, HIGHEST = 1.0, 59999.0
+"""Where the viewer is held, metres above the sea."""
 AIR_SCALE_HEIGHT = 8000.0
 AEROSOL_SCALE_HEIGHT = 1200.0
 STEPS = 32
@@ -66,6 +68,11 @@ _NODES = _NODES / 25.0
 """Where Cycles looks at the density along a ray of length 1: densities decay like Gauss-Laguerre's weight."""
 
 
+def viewer_radius(sky: Sky) -> np.ndarray:
+    """() float64 distance of the viewer to the Earth's centre, metres; Cycles keeps it inside the atmosphere."""
+    return np.float64(EARTH_RADIUS + np.clip(sky.altitude, LOWEST, HIGHEST))
+
+
 def _densities(height: np.ndarray, sky: Sky) -> list[np.ndarray]:
     """Densities of air, aerosols and ozone at heights in metres, each of the height's shape."""
     ozone = np.minimum(height / 15e3 - 2.0 / 3.0, 8.0 / 3.0 - height / 15e3)
@@ -89,8 +96,8 @@ def _depths(radius: np.ndarray, cosine: np.ndarray, sky: Sky) -> np.ndarray:
         # sqrt(r^2 + e) - r without cancellation
         excess = way * (way + 2.0 * radius * cosine)
         there = height + excess / (radius + np.sqrt(radius**2 + excess))
-        for depth, density in zip(depths, _densities(there.astype(np.float32), sky)):
-            depth += weight * density
+        for index, density in enumerate(_densities(there.astype(np.float32), sky)):
+            depths[index] += weight * density
     return np.moveaxis(depths * length, 0, -1)
 
 
@@ -107,7 +114,7 @@ def sky_table(sky: Sky) -> np.ndarray:
 def _upper_half(sky: Sky, elevation: np.ndarray) -> np.ndarray:
     azimuth = azimuths_from_sun(0.0)
     up, along = np.sin(elevation), np.cos(elevation)
-    radius = EARTH_RADIUS + np.clip(sky.altitude, 1.0, 59999.0)
+    radius = viewer_radius(sky)
     length = -radius * up + np.sqrt(radius**2 * (up**2 - 1.0) + ATMOSPHERE_RADIUS**2)
     sun_up, sun_along = np.sin(sky.sun_elevation), np.cos(sky.sun_elevation)
     to_sun = np.outer(along * sun_along, np.cos(azimuth)) + (up * sun_up)[:, None]  # (rows, columns)
@@ -145,7 +152,9 @@ def _upper_half(sky: Sky, elevation: np.ndarray) -> np.ndarray:
 
 
 def sun_irradiance(sky: Sky, elevation: float) -> np.ndarray:
-    """(3,) float64 irradiance on a surface that faces a point-like sun at an elevation in radians, in Rec.709."""
-    radius = np.array(EARTH_RADIUS + np.clip(sky.altitude, 1.0, 59999.0))
-    depth = _depths(radius, np.sin(elevation), sky)
-    return (SUN_IRRADIANCE * np.exp(-depth @ _EXTINCTION)) @ _TO_REC709
+    """(3,) float64 irradiance on a surface that faces a point-like sun at an elevation in radians, in Rec.709.
+
+    Cycles leaves out here what ozone absorbs.
+    """
+    depth = _depths(viewer_radius(sky), np.sin(elevation), sky)[:2]
+    return (SUN_IRRADIANCE * np.exp(-depth @ _EXTINCTION[:2])) @ _TO_REC709
