@@ -65,9 +65,7 @@ def _coefficients(height: np.ndarray, sky: Sky) -> tuple[np.ndarray, np.ndarray,
     """Scattering of air, scattering of aerosols and extinction in 1/km, each (..., 4), at heights in km."""
     height = np.maximum(height, 0.0)[..., None]
     air = sky.air_density * AIR_SCATTERING * np.exp(-0.07771971 * height**1.16364243)
-    particles = sky.aerosol_density * (
-        AEROSOL_DENSITY * np.exp(height / -AEROSOL_SCALE_HEIGHT) + AEROSOL_BACKGROUND
-    )
+    particles = sky.aerosol_density * (AEROSOL_DENSITY * np.exp(height / -AEROSOL_SCALE_HEIGHT) + AEROSOL_BACKGROUND)
     above = height + 1e-4
     layer = np.exp(-5.55555555 * (np.log(above) - 3.22261) ** 2) / above
     ozone = sky.ozone_density * OZONE_DOBSON * OZONE_DENSITY * OZONE_CROSS_SECTION * layer
@@ -115,7 +113,8 @@ def sky_table(sky: Sky) -> np.ndarray:
     ground = viewer**2 * (up**2 - 1.0) + EARTH_RADIUS**2
     meets = (up < 0.0) & (ground > 0.0)
     length = np.where(meets, -viewer * up - np.sqrt(np.maximum(ground, 0.0)), _to_space(viewer, up))
-    sun_up, sun_along = np.sin(sky.sun_elevation), np.cos(sky.sun_elevation)
+    sun_elevation, _ = sky.sun_angles()
+    sun_up, sun_along = np.sin(sun_elevation), np.cos(sun_elevation)
     to_sun = np.outer(along * sun_along, np.cos(azimuth)) + (up * sun_up)[:, None]  # (rows, columns)
     g = AEROSOL_ASYMMETRY
     air_phase = (3.0 / (16.0 * np.pi) * (1.0 + to_sun**2)).astype(np.float32)[..., None]

@@ -116,7 +116,8 @@ def _upper_half(sky: Sky, elevation: np.ndarray) -> np.ndarray:
     up, along = np.sin(elevation), np.cos(elevation)
     radius = viewer_radius(sky)
     length = -radius * up + np.sqrt(radius**2 * (up**2 - 1.0) + ATMOSPHERE_RADIUS**2)
-    sun_up, sun_along = np.sin(sky.sun_elevation), np.cos(sky.sun_elevation)
+    sun_elevation, _ = sky.sun_angles()
+    sun_up, sun_along = np.sin(sun_elevation), np.cos(sun_elevation)
     to_sun = np.outer(along * sun_along, np.cos(azimuth)) + (up * sun_up)[:, None]  # (rows, columns)
     g = AEROSOL_ASYMMETRY
     air_phase = 3.0 / (16.0 * np.pi) * (1.0 + to_sun**2)

@@ -45,6 +45,13 @@ class Sky:
         """Whether the atmosphere is simulated, with a sun that is part of the sky."""
         return self.sky_type in ("SINGLE_SCATTERING", "MULTIPLE_SCATTERING")
 
+    def sun_angles(self) -> tuple[float, float]:
+        """Elevation within a quarter turn of the horizon and rotation that mean the same, radians."""
+        elevation = math.remainder(self.sun_elevation, 2.0 * math.pi)
+        if abs(elevation) <= math.pi / 2:
+            return elevation, self.sun_rotation
+        return math.copysign(math.pi, elevation) - elevation, self.sun_rotation + math.pi
+
     def direction_to_sun(self) -> np.ndarray:
         """(3,) float64 unit vector."""
         if not self.scatters:
