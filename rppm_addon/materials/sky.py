@@ -13,7 +13,7 @@ from . import sky_multiple_scattering, sky_preetham, sky_single_scattering
 from .sky_sun import SunDisc, sun_disc
 from .sky_table import look_up
 
-__all__ = ["HOSEK_WILKIE_SHARE", "SunDisc", "sky_radiance", "stands_in", "sun_disc"]
+__all__ = ["HOSEK_WILKIE_SHARE", "SunDisc", "sky_picture", "sky_radiance", "stands_in", "sun_disc"]
 
 HOSEK_WILKIE_SHARE = 0.23
 """What share of Preetham's sky stands in for that of Hosek and Wilkie, of which Cycles makes a darker one."""
@@ -38,3 +38,18 @@ def sky_radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
         return radiance * np.float32(HOSEK_WILKIE_SHARE) if stands_in(sky) else radiance
     model = sky_single_scattering if sky.sky_type == "SINGLE_SCATTERING" else sky_multiple_scattering
     return look_up(model.sky_table(sky), directions, sky.sun_angles()[1])
+
+
+def sky_picture(sky: Sky, height: int = 256) -> np.ndarray:
+    """(height, 2 height, 4) float32 equirectangular pixels as scene.Image and World take them, row 0 looking down.
+
+    Each pixel is the radiance in its middle; the horizon lies between two rows. Without the sun's disc, which would
+    be smaller than a pixel: a sun light has to stand in for it.
+    """
+    azimuth = (0.5 - (np.arange(2 * height) + 0.5) / (2 * height)) * 2.0 * np.pi  # from +X towards +Y
+    elevation = (((np.arange(height) + 0.5) / height - 0.5) * np.pi)[:, None]
+    along = np.cos(elevation)
+    x, y, z = along * np.cos(azimuth), along * np.sin(azimuth), np.sin(elevation) + 0.0 * azimuth
+    pixels = np.ones((height, 2 * height, 4), np.float32)
+    pixels[..., :3] = sky_radiance(sky, np.stack([x, y, z], axis=-1).reshape(-1, 3)).reshape(height, -1, 3)
+    return pixels

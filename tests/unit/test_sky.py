@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.materials.colorimetry import black_body
-from rppm_addon.materials.sky import sky_radiance, stands_in, sun_disc
+from rppm_addon.materials.sky import sky_picture, sky_radiance, stands_in, sun_disc
 from rppm_addon.materials.sky_single_scattering import SUN_SOLID_ANGLE, SUN_TEMPERATURE
 from rppm_addon.scene.sky import Sky
 
@@ -80,3 +80,15 @@ def test_a_stand_in_says_so():
 def test_unknown_types_are_refused():
     with pytest.raises(ValueError, match="NISHITA"):
         sky_radiance(Sky("NISHITA"), np.array([[0.0, 0.0, 1.0]]))
+
+
+def test_picture_is_laid_out_as_environments_are():
+    """u = 1/2 - azimuth / 2 pi from +X towards +Y: +Y is a quarter across. Rows go up."""
+    height = 64
+    sky = Sky(sun_elevation=0.6, sun_rotation=0.0)
+    picture = sky_picture(sky, height)
+    assert picture.shape == (height, 2 * height, 4) and picture.dtype == np.float32
+    row, column = np.unravel_index(picture[height // 2 + 8 :, :, 0].argmax(), (height // 2 - 8, 2 * height))
+    assert abs(column + 0.5 - height / 2) <= 1.0
+    assert abs((row + 8.5) / height * np.pi - 0.6) <= 2.0 * np.pi / height
+    assert picture[height // 2 :, :, :3].mean() > 10.0 * picture[: height // 2, :, :3].mean()
