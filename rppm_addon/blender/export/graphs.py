@@ -9,6 +9,7 @@ import numpy as np
 from ...materials.node_kinds import SHADER, VECTOR, NodeKind
 from ...materials.nodes import KINDS
 from ...scene import Link, NodeGraph
+from ...scene.sky import Sky
 from .attributes import GENERATED
 from .images import ImageTable
 from .links import Path, Source, find_source
@@ -60,6 +61,8 @@ class GraphExporter:
         self.owner = owner
         self.images = images
         self.pass_index = pass_index
+        self.skies: dict[int, Sky] = {}
+        """Sky textures by the index of their node."""
         self.is_world = owner.startswith("World")
         self._report = report
         self._known: dict[tuple, object] = {}
@@ -173,11 +176,18 @@ class GraphExporter:
             options[name] = value
         return options
 
+    def coordinates_of(self, node: bpy.types.Node, path: Path) -> object:
+        """What the Vector input of a texture node gets."""
+        socket = next((socket for socket in node.inputs if socket.identifier == "Vector"), None)
+        if socket is None or not self.is_linked(socket, path):
+            return self.implicit_coordinates(node)
+        return self.value(socket, path)
+
     def implicit_coordinates(self, node: bpy.types.Node) -> Link:
         """Where a texture is placed without a link."""
         if node.type == "TEX_IMAGE":
             return self.shared("tex_coord", "uv")
-        if node.type == "TEX_ENVIRONMENT":
+        if node.type in {"TEX_ENVIRONMENT", "TEX_SKY"} and self.is_world:
             return self.shared("new_geometry", "position")
         return self.shared("generated_coord", "generated", GENERATED)
 
