@@ -21,7 +21,10 @@ void node_tex_voronoi(
     w_out = radius = 0.0;
 
     float furthest = 0.5 + 0.5 * randomness;
-    if (!edge) furthest = voronoi_distance(dimensions, metric, exponent, vec4(0.0), furthest * voronoi_axes(dimensions));
+    if (!edge) {
+        float rank = voronoi_rank(dimensions, metric, exponent, furthest * voronoi_axes(dimensions));
+        furthest = voronoi_root(dimensions, metric, exponent, rank);
+    }
     if (feature == VORONOI_F2) furthest *= 2.0;
     vec4 place = vec4(0.0);
     float amplitude = 1.0, octave_scale = 1.0, total = edge ? furthest : 0.0;

@@ -58,7 +58,10 @@ VoronoiOctave voronoi_octave(
     int dimensions, int metric, int feature, float smoothness, float exponent, float randomness, vec4 coordinates
 ) {
     bool to_edge = feature == VORONOI_DISTANCE_TO_EDGE, to_neighbour = feature == VORONOI_N_SPHERE_RADIUS;
+    if (to_edge || to_neighbour) metric = VORONOI_EUCLIDEAN;
     bool smoothed = feature == VORONOI_SMOOTH_F1;
+    // As in Cycles; it shows where distances are too large for a float.
+    bool by_distance = smoothed || feature == VORONOI_F2;
     int width = smoothed ? 5 : 3;
     vec4 corner = floor(coordinates);
     ivec4 cell = ivec4(corner);
@@ -71,9 +74,8 @@ VoronoiOctave voronoi_octave(
     for (int index = 0; index < voronoi_cells(dimensions, width); ++index) {
         ivec4 offset = voronoi_offset(dimensions, width, index);
         vec4 point = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness;
-        float reached = voronoi_distance(
-            dimensions, to_edge || to_neighbour ? VORONOI_EUCLIDEAN : metric, exponent, point, place
-        );
+        float reached = voronoi_rank(dimensions, metric, exponent, point - place);
+        if (by_distance) reached = voronoi_root(dimensions, metric, exponent, reached);
         if (smoothed) {
             // Without smoothness Cycles looks at the 3 cells' width that F1 does.
             if (smoothness > 0.0 || all(lessThan(abs(offset), ivec4(2)))) {
@@ -100,7 +102,7 @@ VoronoiOctave voronoi_octave(
         if (to_edge || to_neighbour) {
             octave.distance = voronoi_border(dimensions, to_edge, randomness, corner, place, chosen, centre);
         } else {
-            octave.distance = feature == VORONOI_F2 ? next : nearest;
+            octave.distance = by_distance ? next : voronoi_root(dimensions, metric, exponent, nearest);
             octave.color = voronoi_color(dimensions, cell + chosen);
             octave.position = centre + corner;
         }
