@@ -156,11 +156,13 @@ class GraphExporter:
         for name, (socket_type, default) in kind.inputs.items():
             socket = sockets.get(name) or sockets.get(_OLDER.get(name, ""))
             if socket is None:
-                continue  # another version of Blender
+                if name in _own_properties(node):
+                    inputs[name] = float(getattr(node, name))
+                continue  # or another version of Blender
             linked = self.is_linked(socket, path)
             if not linked and isinstance(default, str):
                 continue  # the surface's own
-            if not linked and socket_type is VECTOR and socket.hide_value and node.type.startswith("TEX_"):
+            if not linked and socket_type is VECTOR and socket.hide_value and _is_placed(node):
                 inputs[name] = self.implicit_coordinates(node)
                 continue
             inputs[name] = self.value(socket, path)
@@ -217,6 +219,17 @@ class GraphExporter:
 
 
 _IRREGULAR = {"RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve"}
+
+def _own_properties(node: bpy.types.Node) -> set[str]:
+    """Numbers that a node has and nodes in general have not, such as a brick texture's offset."""
+    own = set(node.bl_rna.properties.keys()) - set(bpy.types.ShaderNode.bl_rna.properties.keys())
+    return {name for name in own if node.bl_rna.properties[name].type in {"INT", "FLOAT"}}
+
+
+def _is_placed(node: bpy.types.Node) -> bool:
+    """Whether coordinates stand in for a vector that is not linked: Cycles gives white noise zero."""
+    return node.type.startswith("TEX_") and node.type != "TEX_WHITE_NOISE"
+
 
 _OLDER = {"factor": "fac", "fac": "factor", "bsdf": "bsdf"}
 """Identifiers that differ between versions of Blender."""
