@@ -3,8 +3,7 @@
 
 #include <Material>
 #include <MaterialLobe>
-#include "common/bsdf/closure.glsl"
-#include "materials/albedo_tables.glsl"
+#include "materials/principled.glsl"
 #include "materials/textures.glsl"
 
 layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
@@ -14,119 +13,30 @@ layout(std430, binding = 6) readonly buffer MaterialLobes { MaterialLobe materia
 const uint KIND_DIFFUSE = 0u, KIND_GLOSSY = 1u, KIND_GLASS = 2u, KIND_REFRACTION = 3u,
            KIND_TRANSPARENT = 4u, KIND_EMISSION = 5u, KIND_PRINCIPLED = 6u;
 
-struct ClosureBuilder { Closure closure; int lobes; float cosine; bool backfacing; float u_choice; };
-
-void set_lobe(inout Closure closure, int slot, MicrofacetLobe lobe) {
-    if (slot == 0) { closure.lobe0_weight = lobe.weight; closure.lobe0_kind = lobe.kind; closure.lobe0_f0 = lobe.f0; closure.lobe0_alpha = lobe.alpha; closure.lobe_ior.x = lobe.ior; }
-    else if (slot == 1) { closure.lobe1_weight = lobe.weight; closure.lobe1_kind = lobe.kind; closure.lobe1_f0 = lobe.f0; closure.lobe1_alpha = lobe.alpha; closure.lobe_ior.y = lobe.ior; }
-    else { closure.lobe2_weight = lobe.weight; closure.lobe2_kind = lobe.kind; closure.lobe2_f0 = lobe.f0; closure.lobe2_alpha = lobe.alpha; closure.lobe_ior.z = lobe.ior; }
-}
-
-// Rescale what a lobe scatters: glass keeps its tint of the passing light in f0.
-void scale_lobe(inout MicrofacetLobe lobe, float factor) {
-    lobe.weight *= factor;
-    if (lobe.kind == LOBE_GLASS) lobe.f0 *= factor;
-}
-
-// A closure holds three lobes; of the third and any further one, one is chosen by its albedo and
-// stands for both, which leaves the mean as it is.
-void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
-    float brightness = largest(lobe_albedo(lobe, builder.cosine));
-    if (brightness <= 0.0 && largest(lobe.weight) <= 0.0) return;
-    if (builder.lobes < CLOSURE_LOBES) {
-        set_lobe(builder.closure, builder.lobes, lobe);
-        builder.lobes += 1;
-        return;
-    }
-    MicrofacetLobe held = closure_lobe(builder.closure, CLOSURE_LOBES - 1);
-    float held_brightness = largest(lobe_albedo(held, builder.cosine));
-    float probability = brightness / max(brightness + held_brightness, 1e-20);
-    if (builder.u_choice < probability) {
-        builder.u_choice /= probability;
-        scale_lobe(lobe, 1.0 / probability);
-        set_lobe(builder.closure, CLOSURE_LOBES - 1, lobe);
-    } else {
-        builder.u_choice = (builder.u_choice - probability) / (1.0 - probability);
-        scale_lobe(held, 1.0 / (1.0 - probability));
-        set_lobe(builder.closure, CLOSURE_LOBES - 1, held);
-    }
-}
-
-// What restores the energy that single scattering loses, given the average reflectance of the
-// microfacets (Kulla and Conty 2017, with the saturation of multiple bounces).
-vec3 multiscatter_factor(float roughness, float cosine, vec3 average_reflectance) {
-    float albedo = white_albedo(roughness, cosine), average = white_average_albedo(roughness);
-    float missing = (1.0 - albedo) / albedo;
-    vec3 multiple = average_reflectance * average / (1.0 - average_reflectance * (1.0 - average));
-    return 1.0 + multiple * missing;
-}
-
-void add_mirror(inout ClosureBuilder builder, float weight, vec3 color, float roughness, bool multiscatter) {
-    vec3 factor = multiscatter ? multiscatter_factor(roughness, builder.cosine, color) : vec3(1.0);
-    add_lobe(builder, MicrofacetLobe(weight * color * factor, LOBE_MIRROR, vec3(1.0), roughness * roughness, 1.0));
-}
-
-void add_glass(inout ClosureBuilder builder, vec3 reflected, vec3 passed, float roughness, float ior, bool multiscatter) {
-    float relative = builder.backfacing ? 1.0 / ior : ior;
-    if (multiscatter) {
-        float factor = 1.0 / max(glass_albedo(relative, roughness, builder.cosine), 0.05);
-        reflected *= factor;
-        passed *= factor;
-    }
-    add_lobe(builder, MicrofacetLobe(reflected, LOBE_GLASS, passed, roughness * roughness, relative));
-}
-
-float index_from_reflectance(float f0) {
-    float root = sqrt(clamp(f0, 0.0, 0.99));
-    return (1.0 + root) / (1.0 - root);
-}
-
-void add_principled(inout ClosureBuilder builder, MaterialLobe lobe, vec3 color) {
-    float cosine = builder.cosine, roughness = lobe.roughness;
-    builder.closure.transparent += vec3(lobe.weight * (1.0 - lobe.alpha));
-    float weight = lobe.weight * lobe.alpha;
-    builder.closure.emission += weight * lobe.emission;
-    if (lobe.metallic > 0.0) {
-        vec3 edge = vec3(1.0);
-        vec3 average = mix(color, edge, 1.0 / 21.0);  // cosine-weighted mean of Schlick's Fresnel
-        vec3 factor = lobe.multiscatter != 0u ? multiscatter_factor(roughness, cosine, average) : vec3(1.0);
-        add_lobe(builder, MicrofacetLobe(weight * lobe.metallic * factor, LOBE_METAL, color, roughness * roughness, 1.0));
-        weight *= 1.0 - lobe.metallic;
-    }
-    if (lobe.transmission > 0.0) {
-        float share = weight * lobe.transmission;
-        add_glass(builder, share * lobe.specular_tint, share * sqrt(max(color, vec3(0.0))), roughness, lobe.ior, lobe.multiscatter != 0u);
-        weight *= 1.0 - lobe.transmission;
-    }
-    if (weight <= 0.0) return;
-    float f0 = normal_reflectance(lobe.ior) * 2.0 * lobe.specular_level;
-    float ior = index_from_reflectance(f0);
-    if (lobe.ior < 1.0 || builder.backfacing) ior = 1.0 / ior;
-    vec3 below = vec3(weight);
-    if (f0 > 0.0) {
-        vec3 tinted = min(f0 * lobe.specular_tint, vec3(1.0));
-        float outside = max(ior, 1.0 / ior);
-        // Cycles does not compensate this lobe: what it loses passes to the layer below.
-        vec3 albedo = tinted * white_albedo(roughness, cosine)
-                    + (1.0 - tinted) * dielectric_grazing_albedo(outside, roughness, cosine);
-        add_lobe(builder, MicrofacetLobe(vec3(weight), LOBE_DIELECTRIC, tinted, roughness * roughness, outside));
-        below *= 1.0 - largest(albedo);
-    }
-    builder.closure.diffuse += max(below, vec3(0.0)) * color;
-}
-
 void add_material_lobe(inout ClosureBuilder builder, MaterialLobe lobe, vec2 uv) {
     vec3 color = lobe.color;
     if (lobe.color_image != NO_IMAGE) color *= sample_image(lobe.color_image, uv).rgb;
     vec3 weighted = lobe.weight * color;
     bool multiscatter = lobe.multiscatter != 0u;
-    if (lobe.kind == KIND_DIFFUSE) builder.closure.diffuse += weighted;
-    else if (lobe.kind == KIND_GLOSSY) add_mirror(builder, lobe.weight, color, lobe.roughness, multiscatter);
-    else if (lobe.kind == KIND_GLASS) add_glass(builder, weighted, weighted, lobe.roughness, lobe.ior, multiscatter);
-    else if (lobe.kind == KIND_REFRACTION)
-        add_lobe(builder, MicrofacetLobe(weighted, LOBE_REFRACTION, vec3(0.0), lobe.roughness * lobe.roughness,
-                                         builder.backfacing ? 1.0 / lobe.ior : lobe.ior));
+    Microfacets at = isotropic_microfacets(builder, builder.shading, lobe.roughness);
+    if (lobe.kind == KIND_DIFFUSE) add_diffuse(builder, vec3(lobe.weight), color, 0.0, builder.shading);
+    else if (lobe.kind == KIND_GLOSSY) add_mirror(builder, at, lobe.weight, color, multiscatter);
+    else if (lobe.kind == KIND_GLASS) add_glass(builder, at, weighted, weighted, vec3(1.0), color, lobe.ior, multiscatter);
+    else if (lobe.kind == KIND_REFRACTION) add_refraction(builder, at, weighted, lobe.ior);
     else if (lobe.kind == KIND_TRANSPARENT) builder.closure.transparent += weighted;
     else if (lobe.kind == KIND_EMISSION) builder.closure.emission += weighted;
-    else if (lobe.kind == KIND_PRINCIPLED) add_principled(builder, lobe, color);
+    else if (lobe.kind == KIND_PRINCIPLED) {
+        Principled p = plain_principled(builder);
+        p.base_color = color;
+        p.metallic = lobe.metallic;
+        p.roughness = lobe.roughness;
+        p.ior = lobe.ior;
+        p.alpha = lobe.alpha;
+        p.specular_level = lobe.specular_level;
+        p.specular_tint = lobe.specular_tint;
+        p.transmission = lobe.transmission;
+        p.emission = lobe.emission;
+        p.multiscatter = multiscatter;
+        add_principled(builder, lobe.weight, p);
+    }
 }

@@ -19,12 +19,6 @@ layout(std430, binding = 2) writeonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 3) readonly buffer Triangles { vec4 triangle_vertices[]; };
 layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
 
-Closure empty_closure() {
-    vec3 none = vec3(0.0);
-    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, 0.0, 0u,
-                   none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, vec3(1.0), 0.0);
-}
-
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
@@ -34,7 +28,6 @@ void main() {
         closures[index].triangle = NO_TRIANGLE;  // the rest of it is never read
         return;
     }
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), 0, 1.0, false, 0.0);
     vec3 v0 = triangle_vertices[3u * hit.triangle].xyz;
     vec3 v1 = triangle_vertices[3u * hit.triangle + 1u].xyz;
     vec3 v2 = triangle_vertices[3u * hit.triangle + 2u].xyz;
@@ -46,19 +39,18 @@ void main() {
                  + b.z * unpack_unit_vector(corners.normal2);
     float shading_length = length(shading);
     shading = shading_length > 1e-6 ? shading / shading_length : geometric;
-    builder.backfacing = dot(geometric, viewer) < 0.0;
-    if (builder.backfacing) geometric = -geometric;
+    bool backfacing = dot(geometric, viewer) < 0.0;
+    if (backfacing) geometric = -geometric;
     if (dot(shading, geometric) < 0.0) shading = -shading;
     // A shading normal that faces away from the viewer has no meaning: bend it until it is seen.
     float seen = dot(shading, viewer);
     if (seen < 1e-3) shading = normalize(shading + (1e-3 - seen) * viewer);
 
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment, index);
-    builder.u_choice = next_random(random);
-    builder.cosine = clamp(dot(shading, viewer), 0.0, 1.0);
+    ClosureBuilder builder = closure_builder(viewer, geometric, shading, backfacing, next_random(random));
     builder.closure.position = b.x * v0 + b.y * v1 + b.z * v2;
     builder.closure.triangle = hit.triangle;
-    builder.closure.flags = builder.backfacing ? CLOSURE_BACKFACING : 0u;
+    builder.closure.flags = backfacing ? CLOSURE_BACKFACING : 0u;
     builder.closure.material = corners.material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(geometric);

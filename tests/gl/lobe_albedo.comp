@@ -15,7 +15,7 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     RandomSequence random = random_sequence(7u, 1u, 1u, 0u, index);
-    MicrofacetLobe lobe = MicrofacetLobe(parameters.weight, parameters.kind, parameters.f0, parameters.alpha, parameters.ior);
+    MicrofacetLobe lobe = MicrofacetLobe(parameters.weight, parameters.kind, parameters.f0, parameters.alpha, vec3(1.0), parameters.ior, 0u, ISOTROPIC);
     vec3 n = normalize(vec3(0.3, -0.5, 0.8)), t, b;
     tangent_frame(n, t, b);
     vec3 wo = normalize(sqrt(1.0 - parameters.cosine * parameters.cosine) * t + parameters.cosine * n);

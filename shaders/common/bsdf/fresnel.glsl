@@ -27,3 +27,17 @@ float schlick_interpolation(float cosine) {
     float m2 = m * m;
     return m2 * m2 * m;
 }
+
+// A dielectric whose reflectance at normal incidence is tinted and that at grazing incidence is not.
+vec3 tinted_dielectric(float cosine, float eta, vec3 tint) {
+    float reflectance = fresnel_dielectric(cosine, eta), f0 = normal_reflectance(eta);
+    return reflectance + (tint - 1.0) * (f0 * (1.0 - reflectance) / max(1.0 - f0, 1e-6));
+}
+
+// Schlick's Fresnel bent so that at 82 degrees (cosine 1/7) it is tinted (Kutz, Hasan and Edmondson 2021).
+vec3 f82_reflectance(vec3 f0, vec3 tint, float cosine) {
+    const float far = 6.0 / 7.0, far5 = far * far * far * far * far;
+    vec3 bend = mix(f0, vec3(1.0), far5) * (7.0 / (far5 * far)) * (1.0 - tint);
+    float m = clamp(1.0 - cosine, 0.0, 1.0);
+    return clamp(mix(f0, vec3(1.0), schlick_interpolation(cosine)) - bend * cosine * m * schlick_interpolation(cosine), 0.0, 1.0);
+}

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shader nodes.
+
+Stand-ins: GGX for the distributions of Beckmann and of Ashikhmin and Shirley; diffuse for subsurface scattering and
+for toon shading, whose glossy part is GGX; for hair, GGX stretched across the fibre and translucency; for the physical
+conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
+"""
+
+from ..node_kinds import COLOR, FLOAT, SHADER, VECTOR, NodeKind
+
+
+def _shader(output: str, inputs: dict | None = None, options: dict | None = None) -> NodeKind:
+    return NodeKind("shaders.glsl", inputs or {}, {output: SHADER}, options or {})
+
+
+_NORMAL = {"normal": (VECTOR, "normal")}
+_TANGENT = {"tangent": (VECTOR, "tangent")}
+_ANISOTROPY = {"anisotropy": (FLOAT, 0.0), "rotation": (FLOAT, 0.0)} | _NORMAL | _TANGENT
+_FILM = {"thin_film_thickness": (FLOAT, 0.0), "thin_film_ior": (FLOAT, 1.33)}
+_GREY, _WHITE = {"color": (COLOR, 0.8)}, {"color": (COLOR, 1.0)}
+_SUBSURFACE_METHODS = ("BURLEY", "RANDOM_WALK", "RANDOM_WALK_SKIN")
+
+KINDS = {
+    "bsdf_diffuse": _shader("bsdf", _GREY | {"roughness": (FLOAT, 0.0)} | _NORMAL),
+    "bsdf_translucent": _shader("bsdf", _GREY | _NORMAL),
+    "bsdf_transparent": _shader("bsdf", _WHITE),
+    "emission": _shader("emission", _WHITE | {"strength": (FLOAT, 1.0)}),
+    "background": _shader("background", _GREY | {"strength": (FLOAT, 1.0)}),
+    "holdout": _shader("holdout"),
+    "bsdf_glossy": _shader(
+        "bsdf",
+        _GREY | {"roughness": (FLOAT, 0.5)} | _ANISOTROPY,
+        {"distribution": ("BECKMANN", "GGX", "ASHIKHMIN_SHIRLEY", "MULTI_GGX")},
+    ),
+    "bsdf_glass": _shader(
+        "bsdf",
+        _WHITE | {"roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.5)} | _NORMAL | _FILM,
+        {"distribution": ("BECKMANN", "GGX", "MULTI_GGX")},
+    ),
+    "bsdf_refraction": _shader(
+        "bsdf",
+        _WHITE | {"roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.45)} | _NORMAL,
+        {"distribution": ("BECKMANN", "GGX")},
+    ),
+    "bsdf_sheen": _shader(
+        "bsdf", _GREY | {"roughness": (FLOAT, 0.5)} | _NORMAL, {"distribution": ("ASHIKHMIN", "MICROFIBER")}
+    ),
+    "subsurface_scattering": _shader(
+        "bssrdf",
+        _GREY
+        | {
+            "scale": (FLOAT, 0.05),
+            "radius": (VECTOR, (1.0, 0.2, 0.1)),
+            "ior": (FLOAT, 1.4),
+            "roughness": (FLOAT, 1.0),
+            "anisotropy": (FLOAT, 0.0),
+        }
+        | _NORMAL,
+    ),
+    "bsdf_metallic": _shader(
+        "bsdf",
+        {
+            "base_color": (COLOR, (0.617, 0.577, 0.540)),
+            "edge_tint": (COLOR, (0.695, 0.726, 0.770)),
+            "ior": (VECTOR, (2.757, 2.513, 2.231)),
+            "extinction": (VECTOR, (3.867, 3.404, 3.009)),
+            "roughness": (FLOAT, 0.5),
+        }
+        | _ANISOTROPY
+        | _FILM,
+        {"distribution": ("BECKMANN", "GGX", "MULTI_GGX"), "fresnel_type": ("PHYSICAL_CONDUCTOR", "F82")},
+    ),
+    "bsdf_toon": _shader(
+        "bsdf", _GREY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL, {"component": ("DIFFUSE", "GLOSSY")}
+    ),
+    "bsdf_hair": _shader(
+        "bsdf",
+        _GREY | {"offset": (FLOAT, 0.0), "roughnessu": (FLOAT, 0.1), "roughnessv": (FLOAT, 1.0)} | _TANGENT,
+        {"component": ("Reflection", "Transmission")},
+    ),
+    "bsdf_principled": _shader(
+        "bsdf",
+        {
+            "base_color": (COLOR, 0.8),
+            "metallic": (FLOAT, 0.0),
+            "roughness": (FLOAT, 0.5),
+            "ior": (FLOAT, 1.5),
+            "alpha": (FLOAT, 1.0),
+            **_NORMAL,
+            "diffuse_roughness": (FLOAT, 0.0),
+            "subsurface_weight": (FLOAT, 0.0),
+            "subsurface_radius": (VECTOR, (1.0, 0.2, 0.1)),
+            "subsurface_scale": (FLOAT, 0.05),
+            "subsurface_ior": (FLOAT, 1.4),
+            "subsurface_anisotropy": (FLOAT, 0.0),
+            "specular_ior_level": (FLOAT, 0.5),
+            "specular_tint": (COLOR, 1.0),
+            "anisotropic": (FLOAT, 0.0),
+            "anisotropic_rotation": (FLOAT, 0.0),
+            **_TANGENT,
+            "transmission_weight": (FLOAT, 0.0),
+            "coat_weight": (FLOAT, 0.0),
+            "coat_roughness": (FLOAT, 0.03),
+            "coat_ior": (FLOAT, 1.5),
+            "coat_tint": (COLOR, 1.0),
+            "coat_normal": (VECTOR, "normal"),
+            "sheen_weight": (FLOAT, 0.0),
+            "sheen_roughness": (FLOAT, 0.5),
+            "sheen_tint": (COLOR, 1.0),
+            "emission_color": (COLOR, 1.0),
+            "emission_strength": (FLOAT, 0.0),
+            **_FILM,
+        },
+        {"distribution": ("GGX", "MULTI_GGX"), "subsurface_method": _SUBSURFACE_METHODS},
+    ),
+}
