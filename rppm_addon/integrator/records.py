@@ -138,9 +138,9 @@ IMPORTON = Record(
     lobe_anisotropy="uint",
     next="uint",
     gathers="uint",
+    shading_normal="uint",
     unused0="uint",
     unused1="uint",
-    unused2="uint",
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;

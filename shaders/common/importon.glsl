@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The includer declares the storage blocks of photons[] and importons[] before.
-#include "common/bsdf/diffuse.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/gathering.glsl"
 
@@ -16,7 +15,7 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
     if ((cosine > 0.0) == front) {
         value = front ? importon.diffuse * rough_diffuse_factor(importon.diffuse_roughness, normal, importon.direction, wi)
                       : importon.translucent;
-        value *= shading_correction(cosine, geometric_cosine);
+        value *= bump_shadowing(unpack_unit_vector(importon.shading_normal), normal, wi) * shading_correction(cosine, geometric_cosine);
     }
     uint kind = unpack_kind(importon.lobe_kind);
     if (kind != LOBE_NONE) {
@@ -25,7 +24,8 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
         MicrofacetLobe lobe = MicrofacetLobe(importon.lobe_weight, kind, importon.lobe_f0, importon.lobe_alpha, unpack_tint(importon.lobe_kind),
                                              importon.lobe_ior, importon.lobe_normal, importon.lobe_anisotropy);
         if ((cosine > 0.0) == front)
-            value += evaluate_lobe(lobe, normal, importon.direction, wi) * shading_correction(cosine, geometric_cosine);
+            value += evaluate_lobe(lobe, normal, importon.direction, wi)
+                   * (lobe_shadowing(lobe, importon.shading_normal, wi) * shading_correction(cosine, geometric_cosine));
     }
     return value;
 }

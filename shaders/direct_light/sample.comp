@@ -45,7 +45,7 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, vec3 wo, 
         float share = 1.0;
         if (lobe_is_specular(lobe, parameters.specular_alpha) && light_density > 0.0 && parameters.last_segment == 0u)
             share = first_way_share(light_density, lobe_probability(shares, total, k) * lobe_density(lobe, lobe_normal(lobe), wo, wi));
-        value += share * lobe_scattered(lobe, wo, wi, front);
+        value += share * lobe_scattered(closure, lobe, wo, wi, front);
     }
     return value;
 }

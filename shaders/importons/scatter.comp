@@ -39,7 +39,7 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radi
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.diffuse_normal,
                                  throughput * closure.translucent / PI, closure.diffuse_roughness,
-                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers, 0u, 0u, 0u);
+                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers, closure.shading_normal, 0u, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
     float total = 0.0;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
@@ -155,7 +155,7 @@ void main() {
         if (transmitted) normal = -normal;
         direction = sample_cosine_hemisphere(normal, u_direction);
         weight = transmitted ? closure.translucent : closure.diffuse;
-        if (!transmitted) found_weight = rough_diffuse_factor(closure.diffuse_roughness, normal, viewer, direction);
+        found_weight = diffuse_factor(closure, transmitted ? -normal : normal, viewer, direction);
     } else if (u < shares.x) {
         direction = ray.direction;
         weight = closure.transparent;
@@ -172,7 +172,7 @@ void main() {
         if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
             path.scatter_density = lobe_probability(shares, total, chosen) * lobe_density(lobe, normal, viewer, sampled.direction);
         direction = sampled.direction;
-        weight = sampled.weight;
+        weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
         transmitted = sampled.transmitted;
         path.flags &= ~PATH_STRAIGHT;
     }

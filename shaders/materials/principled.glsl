@@ -37,10 +37,11 @@ vec3 beneath(vec3 weight, vec3 albedo) { return weight * clamp(1.0 - largest(alb
 void add_coat(inout ClosureBuilder builder, Principled p, inout vec3 weight) {
     float ior = max(p.coat_ior, 1.0);
     Microfacets at = isotropic_microfacets(builder, p.coat_normal, p.coat_roughness);
-    vec3 f0 = vec3(normal_reflectance(ior));
+    float f0 = normal_reflectance(ior);
     if (ior > 1.0) {
-        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, f0, vec3(1.0), ior));
-        weight = beneath(weight, vec3(p.coat * fresnel_dielectric(at.cosine, ior)));
+        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, vec3(f0), vec3(1.0), ior));
+        float albedo = mix(dielectric_grazing_albedo(ior, p.coat_roughness, at.cosine), white_albedo(p.coat_roughness, at.cosine), f0);
+        weight = beneath(weight, vec3(p.coat * albedo));
     }
     // Absorbed along the refracted way through the coat, which is of length 1 at normal incidence.
     float inside = sqrt(max(1.0 - (1.0 - at.cosine * at.cosine) / (ior * ior), 1e-6));
@@ -64,22 +65,26 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         weight *= 1.0 - p.metallic;
     }
     if (p.transmission > 0.0) {
-        vec3 share = weight * p.transmission;
+        vec3 share = weight * p.transmission, passed = sqrt(max(p.base_color, vec3(0.0)));
         Microfacets even = Microfacets(at.normal, at.packed_normal, ISOTROPIC, p.roughness * p.roughness, at.cosine);
-        add_glass(builder, even, share, share * sqrt(max(p.base_color, vec3(0.0))), p.specular_tint, vec3(1.0), p.ior, p.multiscatter);
+        add_glass(builder, even, share, share * passed, p.specular_tint, min(passed, 1.0), p.ior, p.multiscatter);
         weight *= 1.0 - p.transmission;
     }
     if (largest(weight) <= 0.0) return;
+    // As in Cycles the index is the same from both sides.
     float f0 = normal_reflectance(p.ior) * 2.0 * p.specular_level;
     float ior = index_from_reflectance(f0);
-    if (p.ior < 1.0 || builder.backfacing) ior = 1.0 / ior;
+    if (p.ior < 1.0) ior = 1.0 / ior;
     if (f0 > 0.0) {
         vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
-        float outside = max(ior, 1.0 / ior);
-        // Cycles does not compensate this lobe: what it loses passes to the layer below.
-        vec3 albedo = tinted * white_albedo(p.roughness, at.cosine)
-                    + (1.0 - tinted) * dielectric_grazing_albedo(outside, p.roughness, at.cosine);
-        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight, tinted, vec3(1.0), outside));
+        float white = white_albedo(p.roughness, at.cosine);
+        vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white);
+        if (p.multiscatter) {
+            float base = normal_reflectance(ior);
+            factor = multiscatter_factor(at, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
+            albedo *= factor * white;
+        }
+        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior));
         weight = beneath(weight, albedo);
     }
     add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);

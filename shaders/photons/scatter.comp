@@ -44,13 +44,13 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     if (u >= total) return result;
     if (u < share[0]) {
         result.direction = sample_cosine_hemisphere(normal, u_direction);
-        result.weight = closure.diffuse * rough_diffuse_factor(closure.diffuse_roughness, normal, arrival, result.direction) * (norm / share[0]);
+        result.weight = closure.diffuse * diffuse_factor(closure, normal, arrival, result.direction) * (norm / share[0]);
         return result;
     }
     u -= share[0];
     if (u < translucent) {
         result.direction = sample_cosine_hemisphere(-normal, u_direction);
-        result.weight = closure.translucent * (norm / translucent);
+        result.weight = closure.translucent * diffuse_factor(closure, normal, arrival, result.direction) * (norm / translucent);
         result.transmitted = true;
         return result;
     }
@@ -61,7 +61,7 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
     LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, u_direction, u_event, false);
-    return Scattering(sampled.direction, sampled.weight * (norm / max(probability, 1e-20)), lobe_normal(lobe), sampled.transmitted,
+    return Scattering(sampled.direction, sampled.weight * (lobe_shadowing(lobe, closure.shading_normal, sampled.direction) * norm / max(probability, 1e-20)), lobe_normal(lobe), sampled.transmitted,
                       (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_DIFFUSED)
                           | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u));
 }

@@ -49,12 +49,13 @@ void main() {
     for (uint choice = 0u; choice < parameters.choices; ++choice) {
         float u = (float(choice) + 0.5) / float(parameters.choices);
         ClosureBuilder builder = closure_builder(wo, up, up, wo.z < 0.0, u);
+        builder.closure.shading_normal = pack_unit_vector(up);
         CALL
         bool front = dot(wi, up) > 0.0;
         sum += diffuse_scattered(builder.closure, wo, wi, front);
         for (int k = 0; k < CLOSURE_LOBES; ++k) {
             MicrofacetLobe lobe = closure_lobe(builder.closure, k);
-            if (lobe.kind != LOBE_NONE) sum += lobe_scattered(lobe, wo, wi, front);
+            if (lobe.kind != LOBE_NONE) sum += lobe_scattered(builder.closure, lobe, wo, wi, front);
         }
     }
     vec3 apart = parameters.lamp - point;
@@ -143,9 +144,9 @@ def by_cycles(
     return points, picture.reshape(-1, 3)
 
 
-def _literal(socket_type: object, value: object) -> str:
+def _literal(name: str, socket_type: object, value: object) -> str:
     if value == "normal":
-        return "normal"
+        return "normal" if name == "normal" else "up"
     if value == "tangent":
         return f"vec3({', '.join(map(str, TANGENT))})"
     if socket_type is FLOAT:
@@ -159,7 +160,7 @@ def node_call(kind: str, options: dict, inputs: dict) -> str:
     node = KINDS[kind]
     arguments = ["builder", "1.0"]
     arguments += [str(values.index(options.get(name, values[0]))) for name, values in node.options.items()]
-    arguments += [_literal(socket, inputs.get(name, default)) for name, (socket, default) in node.inputs.items()]
+    arguments += [_literal(name, socket, inputs.get(name, default)) for name, (socket, default) in node.inputs.items()]
     return f"node_{kind}({', '.join(arguments)});"
 
 

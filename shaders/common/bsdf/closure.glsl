@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Closure>
-#include "common/bsdf/diffuse.glsl"
 #include "common/bsdf/microfacet.glsl"
 
 const int CLOSURE_LOBES = 3;
@@ -46,20 +45,26 @@ bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) { return lobe.k
 // Smoother lobes cannot be evaluated towards a light, only followed.
 const float SMOOTHEST_LIT = 1e-4;
 
+// BSDF of the diffuse and translucent parts over that of smooth ones without a normal map; normal is unpacked.
+vec3 diffuse_factor(Closure closure, vec3 normal, vec3 wo, vec3 wi) {
+    vec3 factor = vec3(bump_shadowing(unpack_unit_vector(closure.shading_normal), normal, wi));
+    return dot(normal, wi) > 0.0 ? factor * rough_diffuse_factor(closure.diffuse_roughness, normal, wo, wi) : factor;
+}
+
 // Diffuse and translucent BSDF times cosine. front: wi is on the geometric normal's side.
 vec3 diffuse_scattered(Closure closure, vec3 wo, vec3 wi, bool front) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
     float cosine = dot(normal, wi);
     if ((cosine > 0.0) != front) return vec3(0.0);
-    return (front ? closure.diffuse * rough_diffuse_factor(closure.diffuse_roughness, normal, wo, wi) : closure.translucent)
-        * (abs(cosine) / PI);
+    return (front ? closure.diffuse : closure.translucent) * diffuse_factor(closure, normal, wo, wi) * (abs(cosine) / PI);
 }
 
 // BSDF of a lobe times cosine.
-vec3 lobe_scattered(MicrofacetLobe lobe, vec3 wo, vec3 wi, bool front) {
+vec3 lobe_scattered(Closure closure, MicrofacetLobe lobe, vec3 wo, vec3 wi, bool front) {
     vec3 normal = lobe_normal(lobe);
     float cosine = dot(normal, wi);
-    return (cosine > 0.0) == front ? abs(cosine) * evaluate_lobe(lobe, normal, wo, wi) : vec3(0.0);
+    if ((cosine > 0.0) != front) return vec3(0.0);
+    return abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * evaluate_lobe(lobe, normal, wo, wi);
 }
 
 // How a camera path goes on: the shares of the transparent part and of the three lobes, where they are

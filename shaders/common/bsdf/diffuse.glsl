@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rough diffuse surfaces: Oren and Nayar's model in Fujii's improved form, with the light that facets pass on to
+// Diffuse surfaces under normal maps, and rough ones: Oren and Nayar's model in Fujii's improved form, with the light that facets pass on to
 // each other (Portsmouth et al. 2024), as Cycles has it.
 
-#include "common/constants.glsl"
+#include "common/geometry.glsl"
 
 // Albedo (8 bits a channel) and roughness in one word; 0 is a smooth surface.
 uint pack_diffuse_roughness(vec3 albedo, float roughness) {
@@ -31,4 +31,12 @@ vec3 rough_diffuse_factor(uint packed_roughness, vec3 n, vec3 v, vec3 l) {
     // Squared as in Cycles, times the colour of the smooth surface.
     vec3 multiple = parts.rgb * parts.rgb * average / (1.0 - parts.rgb * (1.0 - average)) * (missing_v * missing_l / (1.0 - average));
     return a + PI * b * t + multiple;
+}
+
+// Slopes that a normal map hints at shadow diffuse light (Estevez, Lecocq and Stein 2019); smooth_normal: without the
+// map.
+float bump_shadowing(vec3 smooth_normal, vec3 normal, vec3 l) {
+    float part = dot(smooth_normal, normal), light = max(abs(dot(smooth_normal, l)), 1e-6);
+    float alpha2 = min(0.125 * (1.0 / max(part * part, 1e-6) - 1.0), 1.0);
+    return 2.0 / (1.0 + sqrt(1.0 + alpha2 * max(1.0 / (light * light) - 1.0, 0.0)));
 }

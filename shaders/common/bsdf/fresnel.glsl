@@ -16,6 +16,12 @@ float normal_reflectance(float eta) {
     return root * root;
 }
 
+// Cosine-weighted mean of a dielectric's reflectance (the fit of Kulla and Conty 2017).
+float average_reflectance(float eta) {
+    return eta >= 1.0 ? (eta - 1.0) / (4.08567 + 1.00071 * eta)
+                      : 0.997118 + eta * (0.1014 - eta * (0.965241 + 0.130607 * eta));
+}
+
 // 0 at normal incidence to 1 at grazing, along the dielectric's curve; 0 for matching indices.
 float dielectric_interpolation(float cosine, float eta) {
     float f0 = normal_reflectance(eta);

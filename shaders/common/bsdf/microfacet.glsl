@@ -2,6 +2,7 @@
 // Lobes of a closure: GGX microfacets that reflect or refract, and sheen. n is a lobe's own normal.
 
 #include <MicrofacetLobe>
+#include "common/bsdf/diffuse.glsl"
 #include "common/bsdf/fresnel.glsl"
 #include "common/bsdf/ggx.glsl"
 #include "common/bsdf/sheen.glsl"
@@ -23,9 +24,17 @@ bool lobe_is_sheen(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_VELVET
 bool passes_by_f0(uint kind) { return kind == LOBE_GLASS || kind == LOBE_COATED_GLASS; }
 
 // Kind and tint in one word, as closures and importons keep them.
-uint pack_kind(uint kind, vec3 tint) { return kind | packUnorm4x8(vec4(0.0, tint)); }
-uint unpack_kind(uint bits) { return bits & 0xffu; }
-vec3 unpack_tint(uint bits) { return unpackUnorm4x8(bits).yzw; }
+uint pack_kind(uint kind, vec3 tint) {
+    uvec3 parts = uvec3(clamp(tint, 0.0, 1.0) * vec3(511.0, 1023.0, 511.0) + 0.5);
+    return kind | (parts.r << 4u) | (parts.g << 13u) | (parts.b << 23u);
+}
+uint unpack_kind(uint bits) { return bits & 0xfu; }
+vec3 unpack_tint(uint bits) { return vec3((uvec3(bits) >> uvec3(4u, 13u, 23u)) & uvec3(511u, 1023u, 511u)) / vec3(511.0, 1023.0, 511.0); }
+
+// What a normal map takes from light to or from wi; smooth_normal: packed, without the map.
+float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
+    return lobe.kind == LOBE_SHEEN ? bump_shadowing(unpack_unit_vector(smooth_normal), unpack_unit_vector(lobe.normal), wi) : 1.0;
+}
 
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
 
