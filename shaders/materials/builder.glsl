@@ -51,7 +51,9 @@ vec3 reflecting_normal(ClosureBuilder builder, vec3 normal) {
     across *= inversesqrt(length2);
     float x = dot(viewer, across), square = x * x + z * z, linear = square + z * least;
     float root = sqrt(max(linear * linear - square * (z + least) * (z + least), 0.0));
-    float q = clamp(0.5 * (linear + (x < 0.0 ? root : -root)) / max(square, 1e-12), 0.0, 1.0);
+    // The smaller root without the difference of numbers alike.
+    float q = x < 0.0 ? 0.5 * (linear + root) / max(square, 1e-12) : 0.5 * (z + least) * (z + least) / max(linear + root, 1e-12);
+    q = clamp(q, 0.0, 1.0);
     return normalize(sqrt(1.0 - q) * across + sqrt(q) * g);
 }
 

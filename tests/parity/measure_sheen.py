@@ -25,7 +25,9 @@ from .scenes import new_scene
 
 SIZE = 32
 FILE = Path(__file__).parents[2] / "rppm_addon" / "materials" / "sheen_tables.npz"
-DIRECTIONS = np.array([(0.0, 0.3, 1.0), (1.0, 0.1, 1.0), (-1.0, 0.1, 1.0), (0.2, 1.0, 0.8), (-2.0, 0.3, 1.0), (2.0, 0.0, 1.0)])
+DIRECTIONS = np.array(
+    [(0.0, 0.3, 1.0), (1.0, 0.1, 1.0), (-1.0, 0.1, 1.0), (0.2, 1.0, 0.8), (-2.0, 0.3, 1.0), (2.0, 0.0, 1.0)]
+)
 """To the suns, in the frame of normal and viewer."""
 
 
@@ -40,9 +42,7 @@ def _scene() -> tuple[bpy.types.Object, bpy.types.Object, bpy.types.Object]:
         made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
-    coordinates, split, scale = map(
-        tree.nodes.new, ("ShaderNodeTexCoord", "ShaderNodeSeparateXYZ", "ShaderNodeMath")
-    )
+    coordinates, split, scale = map(tree.nodes.new, ("ShaderNodeTexCoord", "ShaderNodeSeparateXYZ", "ShaderNodeMath"))
     sheen, output = tree.nodes.new("ShaderNodeBsdfSheen"), tree.nodes.new("ShaderNodeOutputMaterial")
     sheen.distribution = "MICROFIBER"
     sheen.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
@@ -85,9 +85,10 @@ def measure(cosine: float, sun: bpy.types.Object, camera: bpy.types.Object) -> n
     sine = math.sqrt(max(0.0, 1.0 - cosine * cosine))
     viewer = Vector((sine, 0.0, cosine))
     # Rows along Y whatever the angle.
-    camera.matrix_world = Matrix.Translation(Vector((0.0, SIZE / 2, 0.0)) + 2000.0 * viewer) @ Matrix(
-        ((cosine, 0.0, sine), (0.0, 1.0, 0.0), (-sine, 0.0, cosine))
-    ).to_4x4()
+    camera.matrix_world = (
+        Matrix.Translation(Vector((0.0, SIZE / 2, 0.0)) + 2000.0 * viewer)
+        @ Matrix(((cosine, 0.0, sine), (0.0, 1.0, 0.0), (-sine, 0.0, cosine))).to_4x4()
+    )
     rows, values = [], []
     for direction in DIRECTIONS / np.linalg.norm(DIRECTIONS, axis=1, keepdims=True):
         sun.matrix_world = Vector(direction).to_track_quat("Z", "Y").to_matrix().to_4x4()
@@ -103,7 +104,10 @@ def measure(cosine: float, sun: bpy.types.Object, camera: bpy.types.Object) -> n
     ratio = mixed / (2.0 * square)
     a = np.where(lit, np.sqrt(square / (last - square * ratio**2)), 1.0)
     ratio, albedo = np.where(lit, ratio, 0.0), np.where(lit, math.pi * (a / square) ** 2, 0.0)
-    print(f"cosine {cosine:.4f}: the fit is off by {error:.1e} at most; albedo {albedo[1]:.4f} to {albedo[-1]:.4f}", flush=True)
+    print(
+        f"cosine {cosine:.4f}: the fit is off by {error:.1e} at most; albedo {albedo[1]:.4f} to {albedo[-1]:.4f}",
+        flush=True,
+    )
     return np.array([a, ratio * a, albedo])
 
 
