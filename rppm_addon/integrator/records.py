@@ -32,11 +32,17 @@ MICROFACET_LOBE = Record(
     kind="uint",
     f0="vec3",
     alpha="float",
+    tint="vec3",
     ior="float",
+    normal="uint",
+    anisotropy="uint",
 )
-"""A GGX lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
-over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what
-passes (weight is then the tint of what is reflected). The kinds are in common/bsdf/microfacet.glsl."""
+"""A GGX or sheen lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
+(weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
+``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
+(common/bsdf/ggx.glsl), ``normal`` octahedral. The kinds, and what tint is to each, are in
+common/bsdf/microfacet.glsl."""
 
 CLOSURE = Record(
     "Closure",
@@ -48,8 +54,8 @@ CLOSURE = Record(
     geometric_normal="uint",
     transparent="vec3",
     shading_normal="uint",
-    distance="float",
-    material="uint",
+    translucent="vec3",
+    diffuse_normal="uint",
     lobe0_weight="vec3",
     lobe0_kind="uint",
     lobe0_f0="vec3",
@@ -63,10 +69,16 @@ CLOSURE = Record(
     lobe2_f0="vec3",
     lobe2_alpha="float",
     lobe_ior="vec3",
-    unused="float",
+    distance="float",
+    lobe_normals="uvec3",
+    material="uint",
+    lobe_anisotropies="uvec3",
+    diffuse_roughness="uint",
 )
 """All that scattering, storing and estimating need to know about a hit. Normals face the arriving
-path; bit 0 of ``flags`` tells that it came from behind."""
+path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The kind of a lobe
+comes with its tint (common/bsdf/microfacet.glsl), the diffuse roughness with the albedo that its
+interreflection takes (common/bsdf/diffuse.glsl)."""
 
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
@@ -114,26 +126,33 @@ IMPORTON = Record(
     direction="vec3",
     geometric_normal="uint",
     diffuse="vec3",
-    shading_normal="uint",
+    diffuse_normal="uint",
+    translucent="vec3",
+    diffuse_roughness="uint",
     lobe_weight="vec3",
     lobe_kind="uint",
     lobe_f0="vec3",
     lobe_alpha="float",
     lobe_ior="float",
+    lobe_normal="uint",
+    lobe_anisotropy="uint",
     next="uint",
     gathers="uint",
-    unused="uint",
+    shading_normal="uint",
+    unused0="uint",
+    unused1="uint",
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
-the path's throughput. ``direction`` points back to the viewer; ``next`` links lists of the splat
-cubemap; ``gathers`` is one of the values below."""
+the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
+``next`` links lists of the splat cubemap; ``gathers`` is one of the values below."""
 
 GATHERS_ALL, GATHERS_BY_RAY, GATHERED_BY_RAY = range(3)
 """What importons gather, as in shaders/common/gathering.glsl."""
 
 GATHERING_VERTEX = Record("GatheringVertex", position="vec3", radius="float", weight="vec3", normal="uint")
 """Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
-the importon's, metres; 0 where what the ray finds is not shared, less than 0 marks none."""
+the importon's, metres; 0 where what the ray finds is not shared, less than 0 marks none. ``normal`` is on the
+side that the ray went to."""
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 """Kinds of lights, as in shaders/emission/lights.glsl."""
