@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is to be rendered, as plain NumPy dataclasses; no GL, no Blender."""
 
-from .camera import Camera
+from .camera import Aperture, Camera, Panorama, PanoramaKind
 from .images import Image
 from .lights import Light, LightKind, World
 from .materials import Lobe, LobeKind, Material
@@ -11,6 +11,7 @@ from .settings import DirectLight, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
+    "Aperture",
     "Camera",
     "DirectLight",
     "Image",
@@ -21,6 +22,8 @@ __all__ = [
     "LobeKind",
     "Material",
     "Mesh",
+    "Panorama",
+    "PanoramaKind",
     "RenderSettings",
     "Scene",
     "World",
