@@ -2,9 +2,12 @@
 """Panoramas, lenses, borders, shifts and clip distances, against Cycles."""
 
 import math
+import tempfile
+from pathlib import Path
 
 import bpy
 import numpy as np
+import OpenEXR
 import pytest
 
 from .comparison import CONVERGED, compare
@@ -14,6 +17,7 @@ from .scenes import (
     ball,
     box,
     camera,
+    exported_scene,
     light,
     material,
     new_scene,
@@ -147,7 +151,7 @@ def test_clip_distances(renderer, name):
 def bright_ball(**properties: object) -> None:
     """A small bright ball far behind the distance of focus, off the axis, before a dim wall."""
     new_scene(world=0.0)
-    ball(0.05, material(EMISSION, Color=(1.0, 1.0, 1.0), Strength=50.0), place(at=(0.3, 4.0, 0.2)))
+    ball(0.1, material(EMISSION, Color=(1.0, 1.0, 1.0), Strength=4.0), place(at=(0.3, 4.0, 0.2)))
     plane(4.0, material(DIFFUSE, Color=(0.5, 0.5, 0.5)), place(at=(0.0, 5.0, 0.0), turn=(90.0, 0.0, 0.0)))
     light("AREA", 50.0, place(at=(0.0, 0.0, 3.0), turn=(50.0, 0.0, 0.0)), shape="SQUARE", size=1.0)
     data = camera((0.0, -1.0, 0.0), (0.0, 1.0, 0.0)).data
@@ -182,8 +186,52 @@ PROJECTIONS = {
 def test_bokeh(renderer, projection, opening):
     bright_ball(**PROJECTIONS[projection], **OPENINGS[opening])
     reference = render_cycles(samples=1024)
-    result = render_rppm(renderer, photons=2048, photon_path_length=2, iterations=256)
+    result = render_rppm(renderer, photons=1024, photon_path_length=2, iterations=128, seeds=2)
     compare(f"bokeh_{projection}_{opening}", result.pictures, reference, CONVERGED)
+
+
+def cycles_passes() -> dict[str, np.ndarray]:
+    """Depth (H, W), normal (H, W, 3) and alpha (H, W) through the pixels' middles, row 0 at the bottom."""
+    scene = bpy.context.scene
+    layer = scene.view_layers[0]
+    layer.use_pass_z = layer.use_pass_normal = True
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 0.01
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.filepath = str(Path(folder) / "cycles.exr")
+        bpy.ops.render.render(write_still=True)
+        parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
+        channels = {name: channel for part in parts for name, channel in part.channels.items()}
+
+    def read(suffix: str) -> np.ndarray:
+        return next(channel for name, channel in channels.items() if name.endswith(suffix)).pixels[::-1].copy()
+
+    return {
+        "depth": read("Depth.Z"),
+        "normal": np.stack([read(f"Normal.{axis}") for axis in "XYZ"], axis=-1),
+        "alpha": read("Combined.A"),
+    }
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+@pytest.mark.parametrize("name", ["equirectangular", "equidistant", "mirrorball", "equisolid"])
+def test_passes_of_panoramas(renderer, name, transparent):
+    """Depth is the distance, and what a fisheye does not see is as Cycles leaves it, also before no background."""
+    camera = room()
+    bpy.data.objects.remove(bpy.data.objects["Mesh"])  # the box: behind the planes there is nothing
+    camera.data.type = "PANO"
+    configure(camera.data, PANORAMAS[name])
+    bpy.context.scene.render.film_transparent = transparent
+    expected = cycles_passes()
+    scene = exported_scene()
+    scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64)
+    frame = renderer.render(scene).frame
+    seen = expected["depth"] < 100.0
+    assert seen.any() and not seen.all()
+    same = np.isclose(frame.depth, expected["depth"], rtol=1e-3)
+    assert same.mean() > 0.98, "more than edges differ"
+    assert (np.abs(frame.normal - expected["normal"]).max(axis=-1) < 0.02).mean() > 0.98
+    assert (np.abs(frame.combined[..., 3] - expected["alpha"]) < 1e-3).mean() > 0.98
 
 
 def test_depth_of_field_in_a_room(renderer):
