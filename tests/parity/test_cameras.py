@@ -83,9 +83,11 @@ def test_panorama(renderer, name):
     reference = render_cycles(samples=128)
     result = render_rppm(renderer, **PHOTONS)
     compare(f"panorama_{name}", result.pictures, reference, CONVERGED)
-    outside = reference.max(axis=(0, -1)) == 0.0
+    # The pixel filter reaches over the rim: black as far as the next pixels are.
+    lit = np.pad(reference.max(axis=(0, -1)) > 0.0, 1, mode="edge")
+    outside = ~np.any([lit[i : i + 64, j : j + 64] for i in range(3) for j in range(3)], axis=0)
     assert (result.pictures[:, outside] == 0.0).all()
-    assert outside.any() == (name in ("equidistant", "mirrorball", "polynomial"))
+    assert outside.any() == (name in ("equidistant", "equisolid", "mirrorball", "polynomial"))
 
 
 def frame(scene: bpy.types.Scene) -> None:
@@ -150,7 +152,7 @@ def test_clip_distances(renderer, name):
 
 def bright_ball(**properties: object) -> None:
     """A small bright ball far behind the distance of focus, off the axis, before a dim wall."""
-    new_scene(world=0.0)
+    new_scene(world=0.05)
     ball(0.1, material(EMISSION, Color=(1.0, 1.0, 1.0), Strength=4.0), place(at=(0.3, 4.0, 0.2)))
     plane(4.0, material(DIFFUSE, Color=(0.5, 0.5, 0.5)), place(at=(0.0, 5.0, 0.0), turn=(90.0, 0.0, 0.0)))
     light("AREA", 50.0, place(at=(0.0, 0.0, 3.0), turn=(50.0, 0.0, 0.0)), shape="SQUARE", size=1.0)
@@ -173,7 +175,7 @@ PROJECTIONS = {
         "dof__aperture_fstop": 0.1,
     },
     "mirrorball": {
-        "type": "PANO", "panorama_type": "MIRRORBALL", "dof__aperture_fstop": 0.05, "shift_x": 0.0,
+        "type": "PANO", "panorama_type": "MIRRORBALL", "dof__aperture_fstop": 0.02,
     },
 }  # fmt: skip
 
