@@ -115,8 +115,10 @@ CAMERA_PATH = Record(
     primary_radius="float",
     flags="uint",
 )
-"""A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4,
-``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit, ``scatter_density`` that of the
+"""A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
+the clip start,
+``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit (before it, the radius of a pixel's
+cone at distance 1, or of its beam of parallel rays), ``scatter_density`` that of the
 scattered direction in 1/sr where next-event rays sample the same light, else 0."""
 
 IMPORTON = Record(
@@ -195,22 +197,36 @@ EMISSIVE_TRIANGLE = Record(
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
 choosing it, and that of choosing it or one before."""
 
+PERSPECTIVE, ORTHOGRAPHIC = range(2)
+"""Projections of cameras; those of panoramas follow in the order of PanoramaKind. As in shaders/gbuffer/."""
+
 CAMERA_VIEW = Record(
     "CameraView",
     position="vec3",
-    orthographic="uint",
+    projection="uint",
     right="vec3",
     clip_start="float",
     up="vec3",
     clip_end="float",
     forward="vec3",
-    pixel_solid_angle="float",
+    pixel_area="float",
     window="vec4",
     width="uint",
     height="uint",
-    unused0="uint",
-    unused1="uint",
+    aperture_blades="uint",
+    aperture_radius="float",
+    focus_distance="float",
+    aperture_rotation="float",
+    aperture_ratio="float",
+    field_of_view="float",
+    panorama_range="vec4",
+    sensor="vec2",
+    lens="float",
+    polynomial_constant="float",
+    polynomial="vec4",
 )
 """The band of the frame being rendered: ``window`` is left, right, bottom, top of the band with the
-iteration's jitter; ``pixel_solid_angle`` is a pixel's area on the plane at distance 1 (m^2 for
-orthographic cameras)."""
+iteration's jitter; ``pixel_area`` is a pixel's area on the window: at distance 1 of perspective
+cameras, m^2 of orthographic ones, share of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
+``panorama_range`` is left, right, bottom, top in radians or of a cylinder of radius 1; ``sensor`` and
+``lens`` are in millimetres."""

@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/gathering.glsl"
+#include "gbuffer/projections.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "emission/lights.glsl"
@@ -23,17 +24,6 @@ layout(std430, binding = 3) writeonly buffer Importons { Importon importons[]; }
 layout(std430, binding = 11) writeonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
 layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
-
-// Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
-float first_radius(vec3 direction, float distance, vec3 normal) {
-    float facing = max(abs(dot(normal, direction)), 1e-4);
-    float area = camera.pixel_solid_angle / facing;
-    if (camera.orthographic == 0u) {
-        float cosine = dot(direction, camera.forward);
-        area *= distance * distance * cosine * cosine * cosine;
-    }
-    return parameters.radius_scale * sqrt(area / PI);
-}
 
 Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
@@ -108,12 +98,15 @@ void main() {
 
     vec3 viewer = -ray.direction;
     path.total_length += closure.distance;
+    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC;
     if (parameters.segment == 0u) {
-        path.primary_distance = closure.distance;
-        path.primary_radius = first_radius(ray.direction, closure.distance, geometric);
+        // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
+        float facing = max(abs(dot(geometric, ray.direction)), 1e-4);
+        path.primary_distance = path.total_length;
+        path.primary_radius *= parameters.radius_scale * (parallel ? 1.0 : path.primary_distance) / sqrt(facing);
     }
     // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
-    float growth = camera.orthographic != 0u ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
+    float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
     float radius = path.primary_radius * growth;
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
     if (gathered) radius = max(radius, parameters.radius_by_ray);
