@@ -70,7 +70,13 @@ class Importons:
     def resolve(self, stages: Stages, count: int, iteration: int, segment: int) -> None:
         """Hits to closures."""
         stages.resolve.run(
-            self.rays.buffer, self.hits.buffer, self.closures.buffer, count, iteration, segment, self.paths.buffer
+            self.rays.buffer,
+            self.hits.buffer,
+            self.closures.buffer,
+            count,
+            iteration,
+            segment,
+            camera_paths=self.paths.buffer,
         )
 
     def scatter(

@@ -59,7 +59,13 @@ class Photons:
                     stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
             with timers.stage("photon resolve"):
                 stages.resolve.run(
-                    self._rays.buffer, self._hits.buffer, self._closures.buffer, self.photon_count, iteration, segment
+                    self._rays.buffer,
+                    self._hits.buffer,
+                    self._closures.buffer,
+                    self.photon_count,
+                    iteration,
+                    segment,
+                    photon_paths=self._paths.buffer,
                 )
             with timers.stage("photon scattering"):
                 self._scatter.run(

@@ -249,11 +249,11 @@ class ProgressivePhotonMapper:
             with self.timers.stage("learning"):
                 self._learn()
         self._photons.run(self._stages, self.iteration)
-        # With next-event rays the photons' first hits would count direct light twice.
-        first = self._photons.photon_count if self.scene.settings.direct_light is DirectLightMode.RAYS else 0
+        # With next-event rays direct photons would count direct light twice.
+        indirect_only = self.scene.settings.direct_light is DirectLightMode.RAYS
         with self.timers.stage("photon list"):
             self._splatting.collect(
-                self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, first
+                self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, indirect_only
             )
         if self.iteration == 1:
             spread = wide_radius(

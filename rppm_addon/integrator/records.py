@@ -103,8 +103,9 @@ PHOTON_STORED = 2
 PHOTON_ESCAPED = 4
 PHOTON_DIFFUSED = 8
 PHOTON_INDIRECT = 16
+PHOTON_DIRECT = 32
 """Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before; INDIRECT: by what stores
-photons there."""
+photons there; DIRECT: nothing has, but for objects that cast no shadow."""
 
 CAMERA_PATH = Record(
     "CameraPath",

@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 #include <EmitParameters>
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
+#include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
 #include "emission/photons.glsl"
 layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
@@ -62,7 +63,7 @@ void main() {
     Emission emission = emit_photon(light, choice);
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
-    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, 0u);
+    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, PHOTON_DIRECT);
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);
 }

@@ -12,6 +12,9 @@ layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_va
 // The rays that Cycles tells apart. Photons count as rays that a diffuse surface sends out.
 const uint RAY_CAMERA = 1u, RAY_DIFFUSE = 2u, RAY_GLOSSY = 4u, RAY_TRANSMISSION = 8u, RAY_SINGULAR = 16u;
 
+// scene.RayVisibility: the same, but for
+const uint VISIBLE_TO_SHADOW_RAYS = 16u;
+
 struct Surface {
     vec3 position;      // world space, metres; of a world: the direction
     vec3 normal;        // shading normal, on the viewer's side

@@ -117,6 +117,7 @@ void main() {
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
             path_flags |= scattering.flags;
+            if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             photon_paths[index].flags = path_flags;
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);

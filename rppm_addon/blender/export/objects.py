@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 
-from ...scene import Instance, Mesh, Scene
+from ...scene import Instance, Mesh, RayVisibility, Scene
 from .attributes import add_attributes, attribute_of
 from .images import ImageTable
 from .lights import export_light
@@ -17,7 +17,11 @@ from .report import Report
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
 UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
-RAY_VISIBILITY = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
+
+
+def visibility_of(source: bpy.types.Object) -> RayVisibility:
+    """The rays that see an object."""
+    return RayVisibility(sum(ray for ray in RayVisibility if getattr(source, f"visible_{ray.name.lower()}")))
 
 
 class ObjectExporter:
@@ -64,7 +68,7 @@ class ObjectExporter:
             return
         if source.type not in CONVERTED_TYPES and source.type != "MESH":
             return
-        if not self._is_seen(source):
+        if not visibility_of(source):
             return
         if source.type != "MESH":
             self._unconverted.append((source.original, matrix, self._shading(instance, source)))
@@ -80,6 +84,8 @@ class ObjectExporter:
             "color": tuple(source.color),
             "random": (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF,
             "particle": particle_of(instance, self._frame),
+            "visibility": visibility_of(source),
+            "holdout": source.is_holdout,
         }
         instancer = instance.parent if instance.is_instance else None
         materials = self._material_slots(source)
@@ -118,15 +124,6 @@ class ObjectExporter:
                 continue
             source = original.evaluated_get(depsgraph)
             self._place(source, None, matrix, shading)
-
-    def _is_seen(self, source: bpy.types.Object) -> bool:
-        flags = [getattr(source, name) for name in RAY_VISIBILITY]
-        if all(flags):
-            return True
-        if not any(flags):
-            return False
-        self._report.warn(f'Object "{source.name}": its ray visibility is not rendered yet; all rays see it')
-        return True
 
     def _mesh_index(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str]) -> int | None:
         """Index of a mesh, exported now if it is new, with the named attributes; None when it has no triangles.
