@@ -13,6 +13,7 @@ from ..gl.records import Record
 from ..materials.tables import MaterialTables
 from ..scene.errors import SceneError
 from ..scene.lights import Light, LightKind
+from ..scene.meshes import RayVisibility
 from ..scene.scene import Scene
 from .emitters import Emitters
 from .environment import Environment
@@ -22,7 +23,7 @@ from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
 from .targets import caustic_targets
 
-_VISIBLE, _SOFT = 1, 2
+_SOFT = 32
 
 LIGHT_PARAMETERS = {
     "scene_centre": "vec3",
@@ -158,11 +159,11 @@ class Emission:
             add(entry, power, light.photon_share)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"] = MESH
+        entry["kind"], entry["flags"] = MESH, int(RayVisibility.ALL)
         add(entry, self.emitters.power)
         self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"] = WORLD
+        entry["kind"], entry["flags"] = WORLD, int(RayVisibility.ALL)
         add(entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
         if not entries:
             raise SceneError(
@@ -273,7 +274,7 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     entry["strength"] = strength = np.maximum(light.strength, 0.0)
     entry["radius"] = max(light.radius, 0.0)
     soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
-    entry["flags"] = (_VISIBLE if light.visible_to_camera else 0) | (_SOFT if soft else 0)
+    entry["flags"] = int(light.visibility) | (_SOFT if soft else 0)
     if light.kind is LightKind.POINT:
         entry["kind"] = POINT
         return entry, 4 * math.pi * strength

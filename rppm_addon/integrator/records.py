@@ -104,8 +104,11 @@ PHOTON_ESCAPED = 4
 PHOTON_DIFFUSED = 8
 PHOTON_INDIRECT = 16
 PHOTON_DIRECT = 32
+PHOTON_NOT_DIFFUSE = 64
+PHOTON_NOT_SPECULAR = 128
 """Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before; INDIRECT: by what stores
-photons there; DIRECT: nothing has, but for objects that cast no shadow."""
+photons there; DIRECT: nothing has, but for objects that cast no shadow; NOT_DIFFUSE,
+NOT_SPECULAR: while it is direct, from a light that does not light such surfaces."""
 
 CAMERA_PATH = Record(
     "CameraPath",

@@ -63,7 +63,9 @@ void main() {
     Emission emission = emit_photon(light, choice);
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
-    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, PHOTON_DIRECT);
+    uint path_flags = PHOTON_DIRECT | ((light.flags & RAY_DIFFUSE) == 0u ? PHOTON_NOT_DIFFUSE : 0u)
+        | ((light.flags & (RAY_GLOSSY | RAY_TRANSMISSION)) == 0u ? PHOTON_NOT_SPECULAR : 0u);
+    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags);
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);
 }

@@ -6,6 +6,7 @@
 #include <EmissiveTriangle>
 #include "emission/environment.glsl"
 #include "common/spherical_triangle.glsl"
+#include "common/ray_kinds.glsl"
 layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
@@ -14,7 +15,8 @@ layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]
 // The numbers of rppm_addon/integrator/records.py and emission.py.
 const uint LIGHT_POINT = 0u, LIGHT_SPOT = 1u, LIGHT_SUN = 2u, LIGHT_RECTANGLE = 3u, LIGHT_ELLIPSE = 4u,
            LIGHT_MESH = 5u, LIGHT_WORLD = 6u;
-const uint LIGHT_VISIBLE = 1u, LIGHT_SOFT = 2u;
+// Flags: bits of scene.RayVisibility, and
+const uint LIGHT_SOFT = 32u;
 
 
 // Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.
@@ -292,11 +294,11 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
 }
 
 // Radiance of the light objects that a ray passes; they hide nothing.
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, bool from_camera, float scatter_density) {
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_density) {
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < parameters.light_count; ++index) {
         Light light = lights[index];
-        if (from_camera && (light.flags & LIGHT_VISIBLE) == 0u) continue;
+        if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) continue;
         float density;
         vec3 passed = passed_light(light, origin, direction, maximum_distance, density);
         radiance += passed * scattered_share(scatter_density, density * light.selection_probability);

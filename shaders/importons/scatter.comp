@@ -72,7 +72,7 @@ void main() {
     if (gathered && !hit) return;
     vec4 seen = vec4(0.0);
 
-    vec3 lights_passed = gathered ? vec3(0.0) : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, straight, path.scatter_density);
+    vec3 lights_passed = gathered ? vec3(0.0) : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, camera_ray_kind(path.flags), path.scatter_density);
     seen.rgb += path.throughput * lights_passed;
     if (!hit) {
         bool background = largest(lights_passed) <= 0.0;

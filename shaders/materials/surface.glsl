@@ -4,16 +4,11 @@
 #include <ShadingInstance>
 #include <TriangleAttributes>
 #include "common/geometry.glsl"
+#include "common/ray_kinds.glsl"
 layout(std430, binding = 3) readonly buffer Triangles { vec4 triangle_vertices[]; };
 layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
 layout(std430, binding = 10) readonly buffer ShadingInstances { ShadingInstance shading_instances[]; };
 layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
-
-// The rays that Cycles tells apart. Photons count as rays that a diffuse surface sends out.
-const uint RAY_CAMERA = 1u, RAY_DIFFUSE = 2u, RAY_GLOSSY = 4u, RAY_TRANSMISSION = 8u, RAY_SINGULAR = 16u;
-
-// scene.RayVisibility: the same, but for
-const uint VISIBLE_TO_SHADOW_RAYS = 16u;
 
 struct Surface {
     vec3 position;      // world space, metres; of a world: the direction

@@ -103,7 +103,7 @@ void main() {
     bool stores = largest(closure.diffuse + closure.translucent) > 0.0;
     for (int k = 0; k < CLOSURE_LOBES; ++k)
         stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
-    if (stores) photon.flags |= PHOTON_STORED;
+    if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) photon.flags |= PHOTON_STORED;
 
     if (parameters.last_segment == 0u && largest(photon.flux) > 0.0) {
         vec3 geometric = unpack_unit_vector(closure.geometric_normal);
@@ -117,6 +117,9 @@ void main() {
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
             path_flags |= scattering.flags;
+            bool unlit = !straight && (path_flags & ((scattering.flags & PHOTON_DIFFUSED) != 0u ? PHOTON_NOT_DIFFUSE : PHOTON_NOT_SPECULAR)) != 0u;
+            if (unlit) photon_paths[index].flux = vec3(0.0);
+            if (!straight) path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_SPECULAR);
             if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             photon_paths[index].flags = path_flags;

@@ -15,7 +15,6 @@ layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; }
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
-#include "common/camera_path.glsl"
 #include "common/photon.glsl"
 #include "resolve/ranges.glsl"
 
@@ -35,14 +34,6 @@ const uint PATH_OF_CAMERA = 1u, PATH_OF_PHOTON = 2u;
 uint path_flags(uint index) {
     if (parameters.path_kind == PATH_OF_CAMERA) return path_words[parameters.camera_stride * index + parameters.camera_flags];
     return parameters.path_kind == PATH_OF_PHOTON ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
-}
-
-// What the camera path's last event tells; photons see materials as diffuse rays do.
-uint ray_kind(uint flags) {
-    if (parameters.path_kind != PATH_OF_CAMERA) return RAY_DIFFUSE;
-    if ((flags & PATH_STRAIGHT) != 0u) return RAY_CAMERA;
-    if ((flags & PATH_DIFFUSE) != 0u) return RAY_DIFFUSE;
-    return ((flags & PATH_TRANSMITTED) != 0u ? RAY_TRANSMISSION : RAY_GLOSSY) | ((flags & PATH_SINGULAR) != 0u ? RAY_SINGULAR : 0u);
 }
 
 void main() {
@@ -81,7 +72,7 @@ void main() {
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;
     uint flags = path_flags(index);
-    surface.ray = ray_kind(flags);
+    surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags) : RAY_DIFFUSE;
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
 
@@ -92,7 +83,7 @@ void main() {
     bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;
     // Light reaches what casts no shadow, and what lies behind it too.
     bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & VISIBLE_TO_SHADOW_RAYS) == 0u;
-    bool unseen = (camera || (photon && (flags & PHOTON_DIRECT) == 0u)) && (instance.visibility & surface.ray & 15u) == 0u;
+    bool unseen = (camera || (photon && (flags & PHOTON_DIRECT) == 0u)) && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
     if (camera && instance.holdout != 0u && (surface.ray & RAY_CAMERA) != 0u) {
         vec3 transparent = clamp(builder.closure.transparent, 0.0, 1.0);

@@ -172,6 +172,8 @@ class GraphExporter:
         options: dict[str, object] = {}
         for name, values in kind.options.items():
             value = getattr(node, name, values[0])
+            if value == "":  # a choice of a newer version of Blender, which shows it as none
+                value = values[0]
             if value not in values:
                 self.warn(node, f"has the {name.replace('_', ' ')} {value}, which is not rendered; {values[0]} is used")
                 value = values[0]

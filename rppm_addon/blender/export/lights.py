@@ -11,6 +11,7 @@ from ...scene import Light, LightKind, NodeGraph
 from .graphs import GraphExporter
 from .images import ImageTable
 from .report import Report
+from .visibility import visibility_of
 
 
 def export_light(
@@ -30,7 +31,7 @@ def export_light(
         kind=LightKind[data.type],
         matrix=matrix,
         strength=power,
-        visible_to_camera=light_object.visible_camera,
+        visibility=visibility_of(light_object),
         graph=graph,
         photon_share=data.rppm.photon_share if hasattr(data, "rppm") else 1.0,
     )

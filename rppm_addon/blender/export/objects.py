@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 
-from ...scene import Instance, Mesh, RayVisibility, Scene
+from ...scene import Instance, Mesh, Scene
 from .attributes import add_attributes, attribute_of
 from .images import ImageTable
 from .lights import export_light
@@ -13,15 +13,11 @@ from .matrices import usable_matrices
 from .meshes import export_mesh
 from .particles import particle_of
 from .report import Report
+from .visibility import visibility_of
 
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
 UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
-
-
-def visibility_of(source: bpy.types.Object) -> RayVisibility:
-    """The rays that see an object."""
-    return RayVisibility(sum(ray for ray in RayVisibility if getattr(source, f"visible_{ray.name.lower()}")))
 
 
 class ObjectExporter:
