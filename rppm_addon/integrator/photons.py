@@ -98,8 +98,8 @@ class Photons:
             )
         with stages.timers.stage("photon tracing"):
             stages.deep_cubemap.trace(rays, hits, self.photon_count)
-            if stages.emission.has_soft_lights:
-                stages.emission.soften(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
+            if stages.emission.has_falloff:
+                stages.emission.fall_off(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
 
     def read_emitted(self, stages: Stages, iteration: int) -> np.ndarray:
         """(photon_count, 3) flux in W with which an iteration's photons leave their lights."""

@@ -184,9 +184,14 @@ LIGHT = Record(
     flags="uint",
     first_cell="uint",
     cells="uvec4",
+    falloff="float",
+    unused0="float",
+    unused1="float",
+    unused2="float",
 )
 """A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
-unit axes, ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
+unit axes, ``falloff`` the power of the distance that the light is multiplied by (Light Falloff nodes),
+``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
 ``first_cell`` those of integrator/guide.py."""
 
 EMISSIVE_TRIANGLE = Record(

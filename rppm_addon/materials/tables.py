@@ -97,13 +97,21 @@ class MaterialTables:
                 record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
         self._buffers["Materials"].upload(records)
 
-    def evaluate(self, graph: NodeGraph, width: int = 1, height: int = 1, from_camera: bool = False) -> np.ndarray:
+    def evaluate(
+        self,
+        graph: NodeGraph,
+        width: int = 1,
+        height: int = 1,
+        from_camera: bool = False,
+        ray_length: float = 0.0,
+    ) -> np.ndarray:
         """(height, width, 3) float32 emission of a graph of the scene that belongs to no surface.
 
-        Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it.
+        Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
+        ray_length: what Light Path tells, metres.
         """
         text, first = self._others[id(graph)]
-        return self._evaluator.run(text, first, self.buffers, width, height, from_camera)
+        return self._evaluator.run(text, first, self.buffers, width, height, from_camera, ray_length)
 
     def release(self) -> None:
         self._evaluator.release()

@@ -37,6 +37,11 @@ float spread_attenuation(Light light, float cosine) {
     return max(0.0, (light.spread_tangent - tangent) * light.spread_scale);
 }
 
+// Light Falloff nodes: what a light gives may grow with a power of the distance.
+float distance_factor(Light light, float distance) {
+    return light.falloff == 0.0 ? 1.0 : pow(max(distance, 1e-6), light.falloff);
+}
+
 vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
 }
@@ -173,7 +178,7 @@ vec3 sample_area_light(Light light, vec3 point, vec2 u, out float density) {
     return to_light;
 }
 
-LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
+LightSample sample_light_at_one_metre(Light light, vec3 point, float u_choice, vec2 u) {
     LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
     if (light.kind == LIGHT_WORLD) {
         result.direction = sample_world(u, result.density);
@@ -234,6 +239,12 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
     return result;
 }
 
+LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
+    LightSample result = sample_light_at_one_metre(light, point, u_choice, u);
+    result.weight *= distance_factor(light, result.distance);
+    return result;
+}
+
 // --- lights that a specular path meets ----------------------------------------------------------
 
 // Share of a light met by scattering, with a density, when next-event rays find it with another.
@@ -280,7 +291,7 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
             density = sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
         }
         if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
-        return radiant_strength(light, -direction) / (PI * radius2);
+        return radiant_strength(light, -direction) * (distance_factor(light, distance) / (PI * radius2));
     }
     if (light.kind != LIGHT_RECTANGLE && light.kind != LIGHT_ELLIPSE) return vec3(0.0);
     float cosine = -dot(direction, light.normal);
@@ -290,7 +301,7 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
     vec2 at = area_light_coordinates(light, origin + distance * direction - light.position);
     if (light.kind == LIGHT_ELLIPSE ? dot(at, at) > 1.0 : max(abs(at.x), abs(at.y)) > 1.0) return vec3(0.0);
     density = area_light_density(light, origin, distance * direction);
-    return light.strength * spread_attenuation(light, cosine);
+    return light.strength * (spread_attenuation(light, cosine) * distance_factor(light, distance));
 }
 
 // Radiance of the light objects that a ray passes; they hide nothing.

@@ -6,7 +6,8 @@ import math
 import bpy
 import numpy as np
 
-from ...materials.emitted import Emits, emits
+from ...materials.emitted import Emits, emits, reachable
+from ...materials.nodes import KINDS
 from ...scene import Light, LightKind, NodeGraph
 from .graphs import GraphExporter
 from .images import ImageTable
@@ -99,6 +100,7 @@ def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable)
     exporter = GraphExporter(f'Light "{name}"', report, images)
     if output is not None:
         exporter.graph.surface = exporter.shader(output.inputs["Surface"])
-    if emits(exporter.graph) is Emits.VARYING:
+    kinds = {exporter.graph.nodes[index].kind for index in reachable(exporter.graph, exporter.graph.surface)}
+    if any(KINDS[kind].surface for kind in kinds - {"light_path"}):
         report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; one value is used')
     return exporter.graph

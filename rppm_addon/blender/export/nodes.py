@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 
-from ...materials.sky import sky_picture, stands_in
+from ...materials.sky import sky_picture
 from ...scene import Image, Link
 from ...scene.sky import Sky
 from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, attribute_of
@@ -122,8 +122,6 @@ def _other_geometry(exporter: GraphExporter, node, output, path: Path):
 @handles("TEX_SKY")
 def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
     sky = sky_of(node)
-    if stands_in(sky):
-        exporter.warn(node, "is a Hosek-Wilkie sky, whose data RPPM does not have; a Preetham sky stands in")
     image = exporter.images.add(Image(node.name, sky_picture(sky)))
     vector = exporter.coordinates_of(node, path)
     link = exporter.graph.add("tex_environment", "color", name=node.name, image=image, vector=vector)
