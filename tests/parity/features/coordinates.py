@@ -155,8 +155,16 @@ value("Object Info", "Material Index, set", _with_material_index, 0.1)
 
 # --- tangents, normal maps and bump -------------------------------------------------------------------
 
+
+
+def _ball_alone() -> None:
+    """A plane's tangents about its own axes have no length, of which Cycles makes NaN."""
+    bpy.data.objects.remove(bpy.data.objects["Ground"])
+
+
 for _axis in "XYZ":
-    value("Tangent", f"Radial {_axis}", (lambda axis: lambda net: net.out("Tangent", axis=axis))(_axis), 0.5, 0.5)
+    value("Tangent", f"Radial {_axis}", (lambda axis: lambda net: net.out("Tangent", axis=axis))(_axis), 0.5, 0.5,
+          _ball_alone)  # fmt: skip
 value("Tangent", "UV Map", lambda net: net.out("Tangent", direction_type="UV_MAP"), 0.5, 0.5)
 value("Tangent", "UV Map, named", lambda net: net.out("Tangent", direction_type="UV_MAP", uv_map="Second"), 0.5, 0.5,
       prepare=_second_uv)  # fmt: skip
@@ -193,10 +201,9 @@ def _bump(inputs, **properties):
     return give
 
 
-# Cycles takes differences of a pixel, RPPM of a tenth: of the height's gradient they see nearly the same.
-BUMP = {"mean": 0.01, "block": 0.03}
 value("Bump", "noise", _bump({"Distance": 0.3}), 0.5, 0.5)
 value("Bump", "inverted, strength 0.6", _bump({"Distance": 0.3, "Strength": 0.6}, invert=True), 0.5, 0.5)
+value("Bump", "filter width 1", _bump({"Distance": 0.3, "Filter Width": 1.0}), 0.5, 0.5)
 value("Bump", "no height", lambda net: net.out("Bump"), 0.5, 0.5)
 value("Bump", "seen from behind", _bump({"Distance": 0.3}), 0.5, 0.5, prepare=_turned)
 

@@ -26,6 +26,7 @@ def mesh_object(mesh: bmesh.types.BMesh, name: str, surface: bpy.types.Material 
 def ball(surface: bpy.types.Material | None, where: dict = BALL, segments: int = 32) -> bpy.types.Object:
     """A smooth sphere of radius 0.9 with a UV map."""
     mesh = bmesh.new()
+    mesh.loops.layers.uv.new("UVMap")
     bmesh.ops.create_uvsphere(mesh, u_segments=segments, v_segments=segments // 2, radius=0.9, calc_uvs=True)
     made = mesh_object(mesh, "Ball", surface, where)
     made.data.shade_smooth()
@@ -35,6 +36,7 @@ def ball(surface: bpy.types.Material | None, where: dict = BALL, segments: int =
 def ground(surface: bpy.types.Material | None, half: float = 2.2, where: dict = GROUND) -> bpy.types.Object:
     """A square of 2 x 2 faces with a UV map."""
     mesh = bmesh.new()
+    mesh.loops.layers.uv.new("UVMap")
     bmesh.ops.create_grid(mesh, x_segments=2, y_segments=2, size=half, calc_uvs=True)
     return mesh_object(mesh, "Ground", surface, where)
 
