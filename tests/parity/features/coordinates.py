@@ -32,7 +32,7 @@ value(GROUP, "Object, of another", lambda net: net.out("TexCoord", "Object", obj
 value("UV Map", "active", lambda net: net.out("UVMap"))
 
 
-def _second_uv() -> None:
+def second_uv() -> None:
     for found in bpy.data.meshes:
         uv = np.empty(2 * len(found.loops), np.float32)
         found.uv_layers[0].data.foreach_get("uv", uv)
@@ -40,7 +40,7 @@ def _second_uv() -> None:
         layer.data.foreach_set("uv", 0.6 * uv + 0.2)
 
 
-value("UV Map", "second", lambda net: net.out("UVMap", uv_map="Second"), prepare=_second_uv)
+value("UV Map", "second", lambda net: net.out("UVMap", uv_map="Second"), prepare=second_uv)
 
 for _output, _scale, _offset in (
     ("Position", 0.1, 0.5), ("Normal", 0.5, 0.5), ("Tangent", 0.5, 0.5), ("True Normal", 0.5, 0.5),
@@ -167,7 +167,7 @@ for _axis in "XYZ":
           _ball_alone)  # fmt: skip
 value("Tangent", "UV Map", lambda net: net.out("Tangent", direction_type="UV_MAP"), 0.5, 0.5)
 value("Tangent", "UV Map, named", lambda net: net.out("Tangent", direction_type="UV_MAP", uv_map="Second"), 0.5, 0.5,
-      prepare=_second_uv)  # fmt: skip
+      prepare=second_uv)  # fmt: skip
 
 
 def _bumpy_color(net):
@@ -188,7 +188,7 @@ value("Normal Map", "TANGENT, strength 2",
       lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net), "Strength": 2.0}), 0.5, 0.5)  # fmt: skip
 value("Normal Map", "TANGENT, named UV map",
       lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}, uv_map="Second"), 0.5, 0.5,
-      prepare=_second_uv)  # fmt: skip
+      prepare=second_uv)  # fmt: skip
 value("Normal Map", "TANGENT, seen from behind",
       lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}), 0.5, 0.5, prepare=_turned)  # fmt: skip
 
