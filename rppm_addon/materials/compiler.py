@@ -66,7 +66,9 @@ class _Compiler:
     def compile(self) -> CompiledGraph:
         scope = _Scope()
         if self._graph.normal is not None:
-            scope.lines.append(f"surface.normal = {self._converted(scope, self._graph.normal, SocketType.VECTOR)};")
+            self._sources[KINDS[BUMP].source] = None
+            normal = self._converted(scope, self._graph.normal, SocketType.VECTOR)
+            scope.lines.append(f"surface.normal = visible_normal(surface, {normal});")
             scope.known.clear()  # what has been asked of the surface may change with its normal
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
@@ -188,10 +190,11 @@ class _Compiler:
             self._heights[index] = name
         function, value = self._heights[index], f"n{index}_normal"
         others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
+        width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         invert = _choice(self._graph.nodes[index], "invert", kind.options["invert"])
         scope.lines += [
             f"vec3 {value};",
-            "{ vec3 along_x, along_y; bump_offsets(surface, along_x, along_y);",
+            f"{{ vec3 along_x, along_y; bump_offsets(surface, {width}, along_x, along_y);",
             f"  float height = {function}(surface, first);",
             f"  float height_x = {function}(surface_beside(surface, along_x), first) - height;",
             f"  float height_y = {function}(surface_beside(surface, along_y), first) - height;",

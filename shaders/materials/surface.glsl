@@ -119,11 +119,16 @@ vec3 within_texture_space(Surface surface) {
     return (point_to_object(surface, surface.position) - at.texture_location) * at.texture_scale + 0.5;
 }
 
+// A tangent in object space, turned as Cycles turns it, and laid across the shading normal.
+vec3 surface_tangent(Surface surface, vec3 in_object) {
+    vec3 across = normal_to_world(surface, in_object);
+    across -= dot(across, surface.normal) * surface.normal;
+    float size = length(across);
+    return size > 1e-20 ? across / size : vec3(0.0);
+}
+
 // Around the object's Z axis, where no tangent is given.
 vec3 default_tangent(Surface surface) {
     vec3 at = within_texture_space(surface) - 0.5;
-    vec3 around = normal_to_world(surface, vec3(-at.y, at.x, 0.0));
-    vec3 across = around - dot(around, surface.normal) * surface.normal;
-    float size = length(across);
-    return size > 1e-20 ? across / size : vec3(0.0);
+    return surface_tangent(surface, vec3(-at.y, at.x, 0.0));
 }

@@ -220,7 +220,7 @@ class GraphExporter:
         return None
 
 
-_IRREGULAR = {"RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve", "BsdfAnisotropic": "bsdf_glossy"}
+_IRREGULAR = {"CameraData": "camera", "RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve", "BsdfAnisotropic": "bsdf_glossy"}
 
 def _own_properties(node: bpy.types.Node) -> set[str]:
     """Numbers that a node has and nodes in general have not, such as a brick texture's offset."""

@@ -7,7 +7,7 @@ import numpy as np
 from ...materials.sky import sky_picture
 from ...scene import Image, Link
 from ...scene.sky import Sky
-from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, attribute_of
+from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, TANGENT, attribute_of
 from .graphs import STAND_INS, GraphExporter, handles, snake_case
 from .images import is_associated
 from .links import Path
@@ -70,13 +70,13 @@ def _view_layer_attribute(exporter: GraphExporter, node, output):
 
 @handles("TANGENT")
 def _tangent(exporter: GraphExporter, node, output, path: Path):
-    attribute = GENERATED if node.direction_type == "RADIAL" else (node.uv_map or NO_ATTRIBUTE)
+    attribute = GENERATED if node.direction_type == "RADIAL" else TANGENT + node.uv_map
     return exporter.add("tangent", node, path, "tangent", attribute=attribute)
 
 
 @handles("NORMAL_MAP")
 def _normal_map(exporter: GraphExporter, node, output, path: Path):
-    return exporter.add("normal_map", node, path, "normal", attribute=node.uv_map or NO_ATTRIBUTE)
+    return exporter.add("normal_map", node, path, "normal", attribute=TANGENT + node.uv_map)
 
 
 @handles("BEVEL", "AMBIENT_OCCLUSION")

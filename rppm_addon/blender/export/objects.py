@@ -78,7 +78,7 @@ class ObjectExporter:
         """What shading nodes may ask about an instance: members of scene.Instance."""
         members: dict[str, object] = {
             "color": tuple(source.color),
-            "random": (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF,
+            "random": _random(instance, source),
             "particle": particle_of(instance, self._frame),
             "visibility": visibility_of(source),
             "holdout": source.is_holdout,
@@ -179,3 +179,29 @@ class ObjectExporter:
                 f'Object "{name}": {count} placements have no extent (scale 0) or are not finite and were left out; '
                 "give them a scale"
             )
+
+
+def _random(instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object) -> float:
+    """From 0 to 1: Blender's number of an instance; of an object, which has none there, Cycles' hash of its name."""
+    if instance.is_instance:
+        return (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF
+    number = 0
+    for byte in source.name.encode():
+        number = (37 * number + byte) & 0xFFFFFFFF
+    return _hashed(number) / 0xFFFFFFFF
+
+
+_MIXED = ((2, 1, 14), (0, 2, 11), (1, 0, 25), (2, 1, 16), (0, 2, 4), (1, 0, 14), (2, 1, 24))
+"""Which of three numbers is mixed with which, turned by how many bits."""
+
+
+def _hashed(number: int) -> int:
+    """The last mix of Bob Jenkins' lookup3 of a number and 0."""
+    a = b = c = (0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF
+    a = (a + number) & 0xFFFFFFFF
+    for first, second, third in _MIXED:
+        values = [a, b, c]
+        rotated = ((values[second] << third) | (values[second] >> (32 - third))) & 0xFFFFFFFF
+        values[first] = ((values[first] ^ values[second]) - rotated) & 0xFFFFFFFF
+        a, b, c = values
+    return c
