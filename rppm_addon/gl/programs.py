@@ -170,6 +170,8 @@ class ProgramLibrary:
         self.context = context
         self._cache = BinaryCache(context)
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
+        self.made = 0
+        """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
 
     def compute(
         self,
@@ -195,6 +197,7 @@ class ProgramLibrary:
         if key not in self._programs:
             start = time.perf_counter()
             self._programs[key] = make()
+            self.made += 1
             log.debug("%s ready in %.3f s", key[0], time.perf_counter() - start)
         return self._programs[key]
 

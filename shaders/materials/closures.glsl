@@ -2,6 +2,7 @@
 // From shader nodes to a closure, seen from one side: what Cycles' shader nodes set up.
 
 #include "common/bsdf/closure.glsl"
+#include "common/finite.glsl"
 #include "materials/albedo_tables.glsl"
 
 struct ClosureBuilder { Closure closure; int lobes; float cosine; bool backfacing; float u_choice; };
@@ -80,4 +81,28 @@ void add_glass(inout ClosureBuilder builder, vec3 reflected, vec3 passed, float 
 float index_from_reflectance(float f0) {
     float root = sqrt(clamp(f0, 0.0, 0.99));
     return (1.0 + root) / (1.0 - root);
+}
+
+// Numbers from a node graph may be anything; what they make of light stays finite. Weights beyond the limit would
+// overflow within a path.
+const float LARGEST_WEIGHT = 1e3, LARGEST_EMISSION = 1e12;
+
+vec3 usable(vec3 value, float limit) { return is_finite(value) ? clamp(value, 0.0, limit) : vec3(0.0); }
+
+float usable(float value, float low, float high) { return is_finite(vec3(value)) ? clamp(value, low, high) : low; }
+
+void make_usable(inout Closure closure) {
+    closure.emission = usable(closure.emission, LARGEST_EMISSION);
+    closure.diffuse = usable(closure.diffuse, LARGEST_WEIGHT);
+    closure.transparent = usable(closure.transparent, LARGEST_WEIGHT);
+    closure.lobe0_weight = usable(closure.lobe0_weight, LARGEST_WEIGHT);
+    closure.lobe1_weight = usable(closure.lobe1_weight, LARGEST_WEIGHT);
+    closure.lobe2_weight = usable(closure.lobe2_weight, LARGEST_WEIGHT);
+    closure.lobe0_f0 = usable(closure.lobe0_f0, LARGEST_WEIGHT);
+    closure.lobe1_f0 = usable(closure.lobe1_f0, LARGEST_WEIGHT);
+    closure.lobe2_f0 = usable(closure.lobe2_f0, LARGEST_WEIGHT);
+    closure.lobe0_alpha = usable(closure.lobe0_alpha, 0.0, 1.0);
+    closure.lobe1_alpha = usable(closure.lobe1_alpha, 0.0, 1.0);
+    closure.lobe2_alpha = usable(closure.lobe2_alpha, 0.0, 1.0);
+    closure.lobe_ior = vec3(usable(closure.lobe_ior.x, 1e-5, 1e5), usable(closure.lobe_ior.y, 1e-5, 1e5), usable(closure.lobe_ior.z, 1e-5, 1e5));
 }

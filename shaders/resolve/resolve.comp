@@ -87,5 +87,6 @@ void main() {
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
     builder.closure.shading_normal = pack_unit_vector(shading);
     evaluate_material(surface, materials[material].first_constant, builder);
+    make_usable(builder.closure);
     closures[index] = builder.closure;
 }

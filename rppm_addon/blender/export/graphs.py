@@ -48,6 +48,18 @@ def kind_name(node: bpy.types.Node) -> str:
                    for i, c in enumerate(name))  # fmt: skip
 
 
+_DEEPEST = 40
+"""Nodes that are followed one from another before the rest is put off: Python's stack holds some hundred of them."""
+
+
+class _TooDeep(Exception):
+    """An output that has to be known before anything else is."""
+
+    def __init__(self, source: Source) -> None:
+        super().__init__(source.node.name)
+        self.source = source
+
+
 class GraphExporter:
     """Builds the graph of one material, world or light.
 
@@ -64,6 +76,7 @@ class GraphExporter:
         self._report = report
         self._known: dict[tuple, object] = {}
         self._open: set[tuple] = set()
+        self._waiting: set[tuple] = set()
 
     def warn(self, node: bpy.types.Node, text: str) -> None:
         """Tell the user what is done about a node."""
@@ -71,14 +84,14 @@ class GraphExporter:
 
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
         """The shader that feeds an input; a colour in place of it glows, as in Cycles."""
-        try:
-            source = find_source(socket, path)
-            if not isinstance(source, Source):
-                return None
-            value = self._output(source)
-        except RecursionError:
-            self._report.warn(f"{self.owner}: its nodes are nested too deeply and are left out; simplify them")
+        source = find_source(socket, path)
+        if not isinstance(source, Source):
+            if source.broken is not None:
+                self.warn(source.broken, "is a group whose node tree is missing; nothing is there instead")
             return None
+        value = self._output(source)
+        if value is None and _is_undefined(source.node):
+            return self.graph.add("bsdf_diffuse", "bsdf", name=source.node.name, color=0.8)
         if isinstance(value, Link) and KINDS[self.graph.nodes[value.node].kind].outputs[value.output] is SHADER:
             return value
         return None if value is None else self.graph.add("emission", "emission", name=source.node.name, color=value)
@@ -102,17 +115,40 @@ class GraphExporter:
 
     def _output(self, source: Source) -> object:
         """The value of an output, None when nothing is known."""
+        if self._open:
+            return self._found(source)
+        pending = [source]
+        try:
+            while True:
+                try:
+                    value = self._found(pending[-1])
+                except _TooDeep as deeper:
+                    self._waiting.add(_output_key(pending[-1]))
+                    pending.append(deeper.source)
+                    continue
+                pending.pop()
+                if not pending:
+                    return value
+                self._waiting.discard(_output_key(pending[-1]))
+        finally:
+            self._waiting.clear()
+
+    def _found(self, source: Source) -> object:
         node = source.node
-        key = (node.as_pointer(), *(group.as_pointer() for group in source.path))
-        output_key = (*key, source.output.identifier)
+        output_key = _output_key(source)
         if output_key in self._known:
             return self._known[output_key]
-        if output_key in self._open:
+        if output_key in self._open or output_key in self._waiting:
             self.warn(node, "is linked to itself through other nodes; the link is left out")
             return None
+        if len(self._open) >= _DEEPEST:
+            raise _TooDeep(source)
         self._open.add(output_key)
         try:
-            value = self._make(node, source.output, source.path, key)
+            value = self._make(node, source.output, source.path, output_key[:-1])
+        except _UNREADABLE as error:
+            self.warn(node, f"cannot be read ({error}); the value of the socket it feeds is used")
+            value = None
         finally:
             self._open.discard(output_key)
         self._known[output_key] = value
@@ -205,6 +241,22 @@ class GraphExporter:
         self.warn(node, "is not rendered yet; the value of the socket it feeds is used")
         return None
 
+
+def _is_undefined(node: bpy.types.Node) -> bool:
+    """Whether this Blender does not know the type of a node, which another version or an add-on made."""
+    return not node.bl_idname.startswith("ShaderNode")
+
+
+def _output_key(source: Source) -> tuple:
+    return (
+        source.node.as_pointer(),
+        *(group.as_pointer() for group in source.path),
+        source.output.identifier,
+    )
+
+
+_UNREADABLE = (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError)
+"""What reading a node raises that is broken or of another version of Blender."""
 
 _IRREGULAR = {"RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve"}
 
