@@ -33,16 +33,16 @@ def camera_at_resolution(camera: Camera, width: int, height: int) -> Camera:
     """The camera with other pixels of the same shape.
 
     Where the frame's proportions change, its longer side keeps what it sees, as Blender's
-    automatic sensor fit does. A crop keeps its share of the frame.
+    automatic sensor fit does; a panorama fills any frame. A crop keeps its share of the frame.
     """
     left, right, bottom, top = camera.window
-    window_width, window_height = right - left, top - bottom
-    fitted = max(window_width, window_height)
-    pixel_aspect = (window_width / camera.width) / (window_height / camera.height)
-    proportion = width * pixel_aspect / height
-    half_width = 0.5 * fitted * min(1.0, proportion)
-    half_height = 0.5 * fitted / max(1.0, proportion)
-    x, y = 0.5 * (left + right), 0.5 * (bottom + top)
+    window, panorama = camera.window, camera.panorama
+    if panorama is None:
+        half_width, half_height = _fitted((0.5 * (right - left), 0.5 * (top - bottom)), camera, width, height)
+        x, y = 0.5 * (left + right), 0.5 * (bottom + top)
+        window = x - half_width, x + half_width, y - half_height, y + half_height
+    else:
+        panorama = dataclasses.replace(panorama, sensor=_fitted(panorama.sensor, camera, width, height))
     crop = camera.crop
     if crop is not None:
         x_min, x_max = round(crop[0] * width / camera.width), round(crop[2] * width / camera.width)
@@ -51,8 +51,16 @@ def camera_at_resolution(camera: Camera, width: int, height: int) -> Camera:
         crop = (x_min, y_min, max(x_max, x_min + 1), max(y_max, y_min + 1))
     return dataclasses.replace(
         camera,
-        window=(x - half_width, x + half_width, y - half_height, y + half_height),
+        window=window,
         width=width,
         height=height,
         crop=crop,
+        panorama=panorama,
     )
+
+
+def _fitted(size: tuple[float, float], camera: Camera, width: int, height: int) -> tuple[float, float]:
+    """Width and height of what a camera's frame covers, for other pixels of the same shape."""
+    pixel_aspect = (size[0] / camera.width) / (size[1] / camera.height)
+    proportion = width * pixel_aspect / height
+    return max(size) * min(1.0, proportion), max(size) / max(1.0, proportion)

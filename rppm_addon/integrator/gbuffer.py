@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """DirectCameraHits: the camera's first hits by rasterization, in bands of rows."""
 
-import math
-
 import moderngl
 import numpy as np
 
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
-from ..scene.camera import Camera
-from ..scene.errors import SceneError
-from .geometry import Geometry
+from .importons import Importons
 from .records import CAMERA_VIEW
+from .stages import Stages
 
 MAXIMUM_BAND_PIXELS = 1 << 18
 """Pixels of a band: bounds the memory of camera paths and the length of one dispatch."""
@@ -40,41 +37,10 @@ def filter_offsets(iteration: int, width: float, seed: int) -> tuple[float, floa
     return tuple(float(2.0 * width * np.interp(value, cumulated / cumulated[-1], x)) for value in u)
 
 
-def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, float]) -> np.ndarray:
-    """CAMERA_VIEW record of a band of the camera's region, shifted by a subpixel offset.
-
-    Raises SceneError when the camera's matrix, window or clip range cannot be used.
-    """
-    left, right, bottom, top = camera.window
-    pixel_width, pixel_height = (right - left) / camera.width, (top - bottom) / camera.height
-    if not (
-        np.isfinite(camera.matrix).all()
-        and math.isfinite(pixel_width * pixel_height)
-        and pixel_width * pixel_height > 0
-    ):
-        raise SceneError("the camera's matrix or lens is not finite or has no extent; reset its transform and lens")
-    x_min, y_min, x_max, _ = camera.region
-    x0 = left + pixel_width * (x_min + offset[0])
-    y0 = bottom + pixel_height * (y_min + first_row + offset[1])
-    view = CAMERA_VIEW.zeros(1)
-    axes = camera.matrix[:3, :3] / np.linalg.norm(camera.matrix[:3, :3], axis=0)
-    view["position"], view["right"], view["up"], view["forward"] = (
-        camera.matrix[:3, 3],
-        axes[:, 0],
-        axes[:, 1],
-        -axes[:, 2],
-    )
-    view["orthographic"] = camera.orthographic
-    start = camera.clip_start if camera.orthographic else max(camera.clip_start, 1e-6)
-    view["clip_start"], view["clip_end"] = start, max(camera.clip_end, start * (1 + 1e-3) + 1e-6)
-    view["pixel_solid_angle"] = pixel_width * pixel_height
-    view["window"] = x0, x0 + pixel_width * (x_max - x_min), y0, y0 + pixel_height * rows
-    view["width"], view["height"] = x_max - x_min, rows
-    return view
-
-
 class GBuffer:
     """A visibility buffer of one band: the nearest triangle of each pixel."""
+
+    rasterizes = True
 
     def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
         gl = context.moderngl
@@ -90,10 +56,9 @@ class GBuffer:
     def memory_bytes(self) -> int:
         return 12 * self._visibility.width * self._visibility.height
 
-    def run(
-        self, geometry: Geometry, view: np.ndarray, rays: moderngl.Buffer, hits: moderngl.Buffer, paths: moderngl.Buffer
-    ) -> None:
+    def run(self, stages: Stages, importons: Importons, view: np.ndarray, first_pixel: int, iteration: int) -> None:
         """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) describes."""
+        geometry = stages.geometry
         self.camera.write(view.tobytes())
         width, rows = int(view["width"][0]), int(view["height"][0])
         self._framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
@@ -110,9 +75,9 @@ class GBuffer:
             {
                 "Camera": self.camera,
                 "Triangles": geometry.triangles.buffer,
-                "Rays": rays,
-                "Hits": hits,
-                "CameraPaths": paths,
+                "Rays": importons.rays.buffer,
+                "Hits": importons.hits.buffer,
+                "CameraPaths": importons.paths.buffer,
             },
         )
 

@@ -24,12 +24,13 @@ from .bandwidth import (
     wide_radius,
     widest_radius,
 )
+from .camera_view import camera_view, is_rasterized
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
 from .final_gather import FinalGather
-from .gbuffer import GBuffer, bands_of, camera_view, filter_offsets
+from .gbuffer import GBuffer, bands_of, filter_offsets
 from .geometry import Geometry
 from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
@@ -37,6 +38,7 @@ from .inspection import inspect_deep_cubemap
 from .memory import Memory, reckon_memory
 from .photons import Photons, flux_balance
 from .placement import cubemap_centres, radius_about
+from .primary_rays import PrimaryRays
 from .resolve import Resolve
 from .splatting import Splatting, radiance_quantum
 from .stages import Stages
@@ -80,7 +82,11 @@ class ProgressivePhotonMapper:
         self._bands = bands_of(width, height)
         rows = self._bands[0][1]
         self._photons = Photons(self.context, self._library, settings.photons, settings.photon_path_length)
-        self._gbuffer = GBuffer(self.context, self._library, width, rows)
+        self._gbuffer = (
+            GBuffer(self.context, self._library, width, rows)
+            if is_rasterized(scene.camera)
+            else PrimaryRays(self.context, self._library)
+        )
         self._importons = Importons(self.context, self._library, width * rows)
         self._splatting = Splatting(self.context, self._library, width, rows)
         self._direct_light = DirectLight(self.context, self._library, width * rows)
@@ -139,10 +145,11 @@ class ProgressivePhotonMapper:
                 self._trace_importons(segment)
                 self._add_direct_light(segment)
                 self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits)
-                if segment == 0:
+                # Photons are projected onto the camera's view only where it is a raster.
+                if segment == 0 and self._gbuffer.rasterizes:
                     self._direct_splatting()
                 else:
-                    self._indirect_splatting()
+                    self._indirect_splatting(segment)
             if self._gathers:
                 self._share_gathered_light()
             self._update_film()
@@ -230,7 +237,7 @@ class ProgressivePhotonMapper:
         footprints = []
         for first_row, rows in self._bands:
             view = camera_view(self.scene.camera, first_row, rows, (0.0, 0.0))
-            self._begin_band(view, first_row)
+            self._begin_band(view, first_row, 0)
             self._importons.resolve(self._stages, self._count, 0, 0)
             self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
             footprints.append(self._importons.footprints(self._count))
@@ -275,13 +282,11 @@ class ProgressivePhotonMapper:
         """Odd, so never 0, and another one for each iteration and seed."""
         return (2 * (self.iteration + 0x9E3779B1 * self.scene.settings.seed) + 1) % (1 << 32)
 
-    def _begin_band(self, view: np.ndarray, first_row: int) -> None:
+    def _begin_band(self, view: np.ndarray, first_row: int, iteration: int) -> None:
         self._count = int(view["width"][0] * view["height"][0])
         self._rows = int(view["height"][0])
         self._first_pixel = first_row * self.film.width
-        self._gbuffer.run(
-            self._geometry, view, self._importons.rays.buffer, self._importons.hits.buffer, self._importons.paths.buffer
-        )
+        self._gbuffer.run(self._stages, self._importons, view, self._first_pixel, iteration)
 
     def _direct_camera_hits(self, first_row: int, rows: int) -> None:
         """DirectCameraHits of a band of rows."""
@@ -292,7 +297,7 @@ class ProgressivePhotonMapper:
             self._splatting.begin()
             if self._gathers:
                 self._final_gather.begin()
-            self._begin_band(view, first_row)
+            self._begin_band(view, first_row, self.iteration)
 
     def _trace_importons(self, segment: int) -> None:
         if segment > 0:
@@ -346,15 +351,18 @@ class ProgressivePhotonMapper:
                 self._gathers,
             )
 
-    def _indirect_splatting(self) -> None:
+    def _indirect_splatting(self, segment: int) -> None:
         narrow, wide = self.splat_radii
+        if segment > 0 and self._gathers:
+            narrow = radius_by_ray(narrow, wide)
         with self.timers.stage("indirect splatting"):
             self._splatting.indirect(
                 self._photons.photons.buffer,
                 self._importons.importons.buffer,
                 self._count,
                 self.centre,
-                (radius_by_ray(narrow, wide) if self._gathers else narrow, wide),
+                (narrow, wide),
+                segment == 0 and self._gathers,
             )
 
     def _share_gathered_light(self) -> None:

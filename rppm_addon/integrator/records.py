@@ -32,11 +32,17 @@ MICROFACET_LOBE = Record(
     kind="uint",
     f0="vec3",
     alpha="float",
+    tint="vec3",
     ior="float",
+    normal="uint",
+    anisotropy="uint",
 )
-"""A GGX lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
-over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what
-passes (weight is then the tint of what is reflected). The kinds are in common/bsdf/microfacet.glsl."""
+"""A GGX or sheen lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
+(weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
+``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
+(common/bsdf/ggx.glsl), ``normal`` octahedral. The kinds, and what tint is to each, are in
+common/bsdf/microfacet.glsl."""
 
 CLOSURE = Record(
     "Closure",
@@ -48,8 +54,8 @@ CLOSURE = Record(
     geometric_normal="uint",
     transparent="vec3",
     shading_normal="uint",
-    distance="float",
-    material="uint",
+    translucent="vec3",
+    diffuse_normal="uint",
     lobe0_weight="vec3",
     lobe0_kind="uint",
     lobe0_f0="vec3",
@@ -63,10 +69,16 @@ CLOSURE = Record(
     lobe2_f0="vec3",
     lobe2_alpha="float",
     lobe_ior="vec3",
-    unused="float",
+    distance="float",
+    lobe_normals="uvec3",
+    material="uint",
+    lobe_anisotropies="uvec3",
+    diffuse_roughness="uint",
 )
 """All that scattering, storing and estimating need to know about a hit. Normals face the arriving
-path; bit 0 of ``flags`` tells that it came from behind."""
+path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The kind of a lobe
+comes with its tint (common/bsdf/microfacet.glsl), the diffuse roughness with the albedo that its
+interreflection takes (common/bsdf/diffuse.glsl)."""
 
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
@@ -103,8 +115,10 @@ CAMERA_PATH = Record(
     primary_radius="float",
     flags="uint",
 )
-"""A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4,
-``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit, ``scatter_density`` that of the
+"""A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
+the clip start,
+``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit (before it, the radius of a pixel's
+cone at distance 1, or of its beam of parallel rays), ``scatter_density`` that of the
 scattered direction in 1/sr where next-event rays sample the same light, else 0."""
 
 IMPORTON = Record(
@@ -114,26 +128,33 @@ IMPORTON = Record(
     direction="vec3",
     geometric_normal="uint",
     diffuse="vec3",
-    shading_normal="uint",
+    diffuse_normal="uint",
+    translucent="vec3",
+    diffuse_roughness="uint",
     lobe_weight="vec3",
     lobe_kind="uint",
     lobe_f0="vec3",
     lobe_alpha="float",
     lobe_ior="float",
+    lobe_normal="uint",
+    lobe_anisotropy="uint",
     next="uint",
     gathers="uint",
-    unused="uint",
+    shading_normal="uint",
+    unused0="uint",
+    unused1="uint",
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
-the path's throughput. ``direction`` points back to the viewer; ``next`` links lists of the splat
-cubemap; ``gathers`` is one of the values below."""
+the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
+``next`` links lists of the splat cubemap; ``gathers`` is one of the values below."""
 
 GATHERS_ALL, GATHERS_BY_RAY, GATHERED_BY_RAY = range(3)
 """What importons gather, as in shaders/common/gathering.glsl."""
 
 GATHERING_VERTEX = Record("GatheringVertex", position="vec3", radius="float", weight="vec3", normal="uint")
 """Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
-the importon's, metres; 0 where what the ray finds is not shared, less than 0 marks none."""
+the importon's, metres; 0 where what the ray finds is not shared, less than 0 marks none. ``normal`` is on the
+side that the ray went to."""
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 """Kinds of lights, as in shaders/emission/lights.glsl."""
@@ -176,22 +197,36 @@ EMISSIVE_TRIANGLE = Record(
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
 choosing it, and that of choosing it or one before."""
 
+PERSPECTIVE, ORTHOGRAPHIC = range(2)
+"""Projections of cameras; those of panoramas follow in the order of PanoramaKind. As in shaders/gbuffer/."""
+
 CAMERA_VIEW = Record(
     "CameraView",
     position="vec3",
-    orthographic="uint",
+    projection="uint",
     right="vec3",
     clip_start="float",
     up="vec3",
     clip_end="float",
     forward="vec3",
-    pixel_solid_angle="float",
+    pixel_area="float",
     window="vec4",
     width="uint",
     height="uint",
-    unused0="uint",
-    unused1="uint",
+    aperture_blades="uint",
+    aperture_radius="float",
+    focus_distance="float",
+    aperture_rotation="float",
+    aperture_ratio="float",
+    field_of_view="float",
+    panorama_range="vec4",
+    sensor="vec2",
+    lens="float",
+    polynomial_constant="float",
+    polynomial="vec4",
 )
 """The band of the frame being rendered: ``window`` is left, right, bottom, top of the band with the
-iteration's jitter; ``pixel_solid_angle`` is a pixel's area on the plane at distance 1 (m^2 for
-orthographic cameras)."""
+iteration's jitter; ``pixel_area`` is a pixel's area on the window: at distance 1 of perspective
+cameras, m^2 of orthographic ones, share of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
+``panorama_range`` is left, right, bottom, top in radians or of a cylinder of radius 1; ``sensor`` and
+``lens`` are in millimetres."""

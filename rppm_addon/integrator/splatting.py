@@ -29,6 +29,7 @@ Record(
     wide_radius="float",
     resolution="uint",
     quanta="float",
+    gathers="uint",
 )
 
 _STORED_HEADER = 8
@@ -160,8 +161,12 @@ class Splatting:
         count: int,
         centre: np.ndarray,
         radii: tuple[float, float],
+        gathers: bool,
     ) -> None:
-        """IndirectSplatting: photons onto importons anywhere, by the cubemap's lists."""
+        """IndirectSplatting: photons (narrow and wide radius) onto importons anywhere, by the cubemap's lists.
+
+        When the paths go on from there to gather (``gathers``), the importons take no indirect photons.
+        """
         if not self.stored_count:
             return
         self._heads.clear()
@@ -173,6 +178,7 @@ class Splatting:
             "wide_radius": radii[1],
             "resolution": _CUBE_RESOLUTION,
             "quanta": 1.0 / self.quantum,
+            "gathers": gathers,
         }
         stored = {"Photons": photons, "StoredPhotons": self._stored.buffer}
         self._insert.run(

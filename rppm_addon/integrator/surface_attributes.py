@@ -6,7 +6,7 @@ import numpy as np
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.records import Record
-from ..scene.meshes import AttributeDomain, Mesh, MeshAttribute
+from ..scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
 from ..scene.scene import Scene
 from .geometry import Geometry
 
@@ -26,6 +26,10 @@ SHADING_INSTANCE = Record(
     particle_lifetime="float",
     particle_size="float",
     unused="float",
+    texture_location="vec3",
+    unused4="float",
+    texture_scale="vec3",
+    unused5="float",
     particle_location="vec3",
     unused1="float",
     particle_velocity="vec3",
@@ -63,8 +67,8 @@ class SurfaceAttributes:
         end = table.size
         for index, placement in enumerate(geometry.placements):
             instance = placement.instance
-            _fill(records[index], instance, placement.first_triangle)
             mesh = scene.meshes[instance.mesh]
+            _fill(records[index], instance, mesh, placement.first_triangle)
             for number, name in enumerate(names):
                 own = instance.attributes.get(name)
                 key = (instance.mesh, name) if own is None else (name, *own)
@@ -84,7 +88,10 @@ class SurfaceAttributes:
         self._values.release()
 
 
-def _fill(record: np.ndarray, instance, first_triangle: int) -> None:
+def _fill(record: np.ndarray, instance: Instance, mesh: Mesh, first_triangle: int) -> None:
+    size = np.asarray(mesh.texture_size, np.float64)
+    record["texture_location"] = mesh.texture_location
+    record["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)
     rows = np.linalg.inv(instance.matrix)
     record["to_object0"], record["to_object1"], record["to_object2"] = rows[:3]
     record["location"] = instance.matrix[:3, 3]

@@ -8,6 +8,9 @@ The layer below a dielectric coat receives what the coat's albedo leaves.
 Tables are indexed [..., roughness, cosine], both linear from 0 to 1; the index of refraction by
 its parameter z = sqrt(abs((ior - 1) / (ior + 1))), linear from 0 to 1. They are stored beside this
 file; ``python -m rppm_addon.materials.albedo_tables`` computes them anew.
+
+Those of the sheen (a and b of its linearly transformed cosine, and its albedo, (32, 32) each) are what Cycles
+shows: tests/parity/measure_sheen.py measures them.
 """
 
 from pathlib import Path
@@ -18,6 +21,7 @@ SIZE = 16
 WHITE_SIZE = 32
 SAMPLES = 4096
 _FILE = Path(__file__).with_name("albedo_tables.npz")
+_SHEEN_FILE = Path(__file__).with_name("sheen_tables.npz")
 
 
 def fresnel(cosine: np.ndarray, eta: np.ndarray | float) -> np.ndarray:
@@ -116,10 +120,18 @@ def compute(samples: int = SAMPLES) -> dict[str, np.ndarray]:
 
 
 def load() -> np.ndarray:
-    """All tables in one (n,) float32 list: white, white_average, dielectric, glass_entering, glass_leaving."""
-    with np.load(_FILE, allow_pickle=False) as tables:
-        names = ("white", "white_average", "dielectric", "glass_entering", "glass_leaving")
-        return np.concatenate([tables[name].astype(np.float32).ravel() for name in names])
+    """All tables in one (n,) float32 list: white, white_average, dielectric, glass_entering, glass_leaving, and of
+    the sheen a, b and albedo; then the cosine-weighted means of glass_entering and of glass_leaving, (16, 16) each."""
+    lists = []
+    for file, names in (
+        (_FILE, ("white", "white_average", "dielectric", "glass_entering", "glass_leaving")),
+        (_SHEEN_FILE, ("a", "b", "albedo")),
+    ):
+        with np.load(file, allow_pickle=False) as tables:
+            lists += [tables[name].astype(np.float32) for name in names]
+    cosines = np.linspace(0, 1, SIZE)
+    lists += [trapezoid(table * 2 * cosines, cosines).astype(np.float32) for table in lists[3:5]]
+    return np.concatenate([table.ravel() for table in lists])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is to be rendered, as plain NumPy dataclasses; no GL, no Blender."""
 
-from .camera import Camera
+from .camera import Aperture, Camera, Panorama, PanoramaKind
 from .images import Image
 from .lights import Light, LightKind, World
 from .materials import Material
@@ -12,6 +12,7 @@ from .settings import DirectLight, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
+    "Aperture",
     "AttributeDomain",
     "Camera",
     "DirectLight",
@@ -24,6 +25,8 @@ __all__ = [
     "Mesh",
     "MeshAttribute",
     "NodeGraph",
+    "Panorama",
+    "PanoramaKind",
     "Particle",
     "RenderSettings",
     "Scene",

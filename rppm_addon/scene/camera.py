@@ -1,9 +1,60 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The camera, resolved to a window in front of it."""
 
+import enum
+import math
 from dataclasses import dataclass
 
 import numpy as np
+
+
+class PanoramaKind(enum.Enum):
+    """How directions are laid out in a panorama; the names are Blender's."""
+
+    EQUIRECTANGULAR = "EQUIRECTANGULAR"
+    EQUIANGULAR_CUBEMAP_FACE = "EQUIANGULAR_CUBEMAP_FACE"
+    MIRRORBALL = "MIRRORBALL"
+    FISHEYE_EQUIDISTANT = "FISHEYE_EQUIDISTANT"
+    FISHEYE_EQUISOLID = "FISHEYE_EQUISOLID"
+    FISHEYE_LENS_POLYNOMIAL = "FISHEYE_LENS_POLYNOMIAL"
+    CENTRAL_CYLINDRICAL = "CENTRAL_CYLINDRICAL"
+
+
+@dataclass
+class Panorama:
+    """A projection that no plane in front of the camera holds; each kind uses what it needs."""
+
+    kind: PanoramaKind
+    longitude: tuple[float, float] = (-math.pi, math.pi)
+    """Left and right edge, radians, 0 straight ahead (EQUIRECTANGULAR, CENTRAL_CYLINDRICAL)."""
+    latitude: tuple[float, float] = (-0.5 * math.pi, 0.5 * math.pi)
+    """Lower and upper edge, radians (EQUIRECTANGULAR)."""
+    height: tuple[float, float] = (-1.0, 1.0)
+    """Lower and upper edge over the cylinder's radius (CENTRAL_CYLINDRICAL)."""
+    field_of_view: float = math.pi
+    """Radians across the circle of a fisheye."""
+    lens: float = 10.5
+    """Focal length, millimetres (FISHEYE_EQUISOLID)."""
+    sensor: tuple[float, float] = (36.0, 36.0)
+    """Width and height of what the frame covers, millimetres (FISHEYE_EQUISOLID, FISHEYE_LENS_POLYNOMIAL)."""
+    polynomial: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    """k0 to k4: minus the angle off the axis, radians, by powers of millimetres (FISHEYE_LENS_POLYNOMIAL)."""
+
+
+@dataclass
+class Aperture:
+    """A thin lens: what lies at the distance of focus is sharp."""
+
+    radius: float
+    """Metres."""
+    focus_distance: float
+    """Metres: along the view axis, or in a panorama along the ray."""
+    blades: int = 0
+    """Corners of the opening; less than 3 is a disk."""
+    rotation: float = 0.0
+    """Of the opening, radians."""
+    ratio: float = 1.0
+    """Height over width of the opening."""
 
 
 @dataclass
@@ -16,16 +67,21 @@ class Camera:
     matrix: np.ndarray
     """(4, 4) float64, camera to world, a rigid motion (scale removed)."""
     window: tuple[float, float, float, float]
-    """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1) or
-    metres (orthographic)."""
+    """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1), metres
+    (orthographic), or shares of the frame, 0 to 1 without a shift (panorama)."""
     width: int
     """Pixels of the whole frame."""
     height: int
     orthographic: bool = False
     clip_start: float = 0.1
+    """Metres along the view axis, or in a panorama along the ray, as ``clip_end``."""
     clip_end: float = 1000.0
     crop: tuple[int, int, int, int] | None = None
     """x_min, y_min, x_max, y_max in pixels, row 0 at the bottom; None is the whole frame."""
+    panorama: Panorama | None = None
+    """None is a perspective or orthographic camera."""
+    aperture: Aperture | None = None
+    """None is a pinhole: everything is in focus."""
 
     @property
     def region(self) -> tuple[int, int, int, int]:

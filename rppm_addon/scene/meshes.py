@@ -44,6 +44,9 @@ class Mesh:
     """(triangles,) int32, material slot of each triangle."""
     corner_uv: np.ndarray | None = None
     """(corners, 2) float32 of the UV map in use, or None."""
+    texture_location: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    texture_size: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Middle and half extent of the box in which generated coordinates run from 0 to 1, object space."""
     attributes: dict[str, MeshAttribute] = field(default_factory=dict)
     """By name, those that the materials in use ask for."""
 

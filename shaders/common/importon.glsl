@@ -3,12 +3,29 @@
 #include "common/bsdf/microfacet.glsl"
 #include "common/gathering.glsl"
 
-// BSDF times path throughput of an importon for light from wi.
-vec3 evaluate_importon(Importon importon, vec3 shading, vec3 wi) {
-    vec3 value = dot(shading, wi) > 0.0 ? importon.diffuse : vec3(0.0);
-    if (importon.lobe_kind != LOBE_NONE) {
-        MicrofacetLobe lobe = MicrofacetLobe(importon.lobe_weight, importon.lobe_kind, importon.lobe_f0, importon.lobe_alpha, importon.lobe_ior);
-        value += evaluate_lobe(lobe, shading, importon.direction, wi);
+// Flux arrived by the geometric cosine; a part of the BSDF asks for that of its own normal.
+float shading_correction(float cosine, float geometric_cosine) { return min(abs(cosine) / max(geometric_cosine, 1e-5), 4.0); }
+
+// BSDF times path throughput of an importon for a photon from wi, in front or behind; geometric_cosine: by which
+// the photon arrived.
+vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_cosine) {
+    vec3 normal = unpack_unit_vector(importon.diffuse_normal);
+    float cosine = dot(normal, wi);
+    vec3 value = vec3(0.0);
+    if ((cosine > 0.0) == front) {
+        value = front ? importon.diffuse * rough_diffuse_factor(importon.diffuse_roughness, normal, importon.direction, wi)
+                      : importon.translucent;
+        value *= bump_shadowing(unpack_unit_vector(importon.shading_normal), normal, wi) * shading_correction(cosine, geometric_cosine);
+    }
+    uint kind = unpack_kind(importon.lobe_kind);
+    if (kind != LOBE_NONE) {
+        normal = unpack_unit_vector(importon.lobe_normal);
+        cosine = dot(normal, wi);
+        MicrofacetLobe lobe = MicrofacetLobe(importon.lobe_weight, kind, importon.lobe_f0, importon.lobe_alpha, unpack_tint(importon.lobe_kind),
+                                             importon.lobe_ior, importon.lobe_normal, importon.lobe_anisotropy);
+        if ((cosine > 0.0) == front)
+            value += evaluate_lobe(lobe, normal, importon.direction, wi)
+                   * (lobe_shadowing(lobe, importon.shading_normal, wi) * shading_correction(cosine, geometric_cosine));
     }
     return value;
 }
@@ -35,13 +52,12 @@ bool density_estimate(uint importon_number, uint photon_number, float wide_radiu
     float alignment = dot(geometric, photon_normal);
     if (abs(alignment) < NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
-    if (alignment < 0.0 && !lobe_transmits(importons[importon_number].lobe_kind)) return false;
+    if (alignment < 0.0 && !lobe_transmits(unpack_kind(importons[importon_number].lobe_kind))
+        && largest(importons[importon_number].translucent) <= 0.0) return false;
     vec3 direction = photons[photon_number].direction;
     Importon importon = importons[importon_number];
-    vec3 shading = unpack_unit_vector(importon.shading_normal);
-    // Flux arrived by the geometric cosine; shading asks for its own.
-    float correction = min(abs(dot(shading, direction)) / max(abs(dot(photon_normal, direction)), 1e-5), 4.0);
     float kernel = 2.0 * (1.0 - distance2 / radius2) / (PI * radius2);
-    radiance = evaluate_importon(importon, shading, direction) * photons[photon_number].flux * (kernel * correction);
+    float geometric_cosine = abs(dot(photon_normal, direction));
+    radiance = evaluate_importon(importon, direction, alignment > 0.0, geometric_cosine) * photons[photon_number].flux * kernel;
     return largest(radiance) > 0.0;
 }

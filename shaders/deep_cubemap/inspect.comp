@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) restrict readonly buffer Camera { CameraView camera; };
 layout(std430, binding = 1) restrict writeonly buffer Inspections { vec4 inspections[]; };
+#include "gbuffer/panorama.glsl"
 
 // Triangles listed in the leaf that a point lies in; those in several depth bins count as often.
 uint listed_at(vec3 point) {
@@ -34,12 +35,8 @@ uint listed_at(vec3 point) {
 void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
-    vec2 fraction = (vec2(index % camera.width, index / camera.width) + 0.5) / vec2(camera.width, camera.height);
-    vec2 at = mix(camera.window.xz, camera.window.yw, fraction);
-    vec3 aside = at.x * camera.right + at.y * camera.up;
-    Ray ray = camera.orthographic != 0u
-        ? Ray(camera.position + aside, NO_TRIANGLE, camera.forward, camera.clip_end)
-        : Ray(camera.position, NO_TRIANGLE, normalize(camera.forward + aside), INFINITY_DISTANCE);
+    vec2 at = window_point(index), centre = vec2(0.0);
+    Ray ray = world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, centre) : panorama_ray(at, centre));
     Hit hit = deep_cubemap_hit(ray);
     uint listed = hit.triangle == NO_TRIANGLE
         ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.centre);

@@ -33,20 +33,20 @@ uint choose_light(float u) {
 // Diffuse and rough lobes are lit by these rays alone. Specular lobes are also followed to lights with
 // extent: the power heuristic shares those out between both ways, lobe by lobe.
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
-vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, vec3 shading, vec3 wo, vec3 wi, float light_density) {
-    vec3 value = dot(shading, wi) > 0.0 ? closure.diffuse / PI : vec3(0.0);
-    float cosine = clamp(dot(shading, wo), 0.0, 1.0);
-    vec4 shares = camera_path_shares(closure, throughput, cosine, parameters.specular_alpha, false);
+// Times the cosine, of each part its own. front: the light is on the geometric normal's side.
+vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, vec3 wo, vec3 wi, bool front, float light_density) {
+    vec3 value = diffuse_scattered(closure, wo, wi, front);
+    vec4 shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, false);
     float total = sum(shares);
     if (parameters.final_gather != 0u && !gathered)
-        total += sum(camera_path_shares(closure, throughput, cosine, parameters.specular_alpha, true));
+        total += sum(camera_path_shares(closure, throughput, wo, parameters.specular_alpha, true));
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (!lobe_stores(lobe, gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha))) continue;
         float share = 1.0;
         if (lobe_is_specular(lobe, parameters.specular_alpha) && light_density > 0.0 && parameters.last_segment == 0u)
-            share = first_way_share(light_density, lobe_probability(shares, total, k) * lobe_density(lobe, shading, wo, wi));
-        value += share * evaluate_lobe(lobe, shading, wo, wi);
+            share = first_way_share(light_density, lobe_probability(shares, total, k) * lobe_density(lobe, lobe_normal(lobe), wo, wi));
+        value += share * lobe_scattered(closure, lobe, wo, wi, front);
     }
     return value;
 }
@@ -64,14 +64,14 @@ void main() {
     Light light = lights[choose_light(u.x)];
     LightSample sampled = sample_light(light, closure.position, u.y, u.zw);
     if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return;
-    vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
-    float side = dot(geometric, sampled.direction), cosine = dot(shading, sampled.direction);
-    if (side * cosine <= 0.0) return;
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    float side = dot(geometric, sampled.direction);
+    if (side == 0.0) return;
     vec3 throughput = camera_paths[index].throughput * segment_transmittance(camera_paths[index].flags, closure);
     bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
-    vec3 scattered = evaluate_closure(closure, throughput, gathered, shading, -ray.direction, sampled.direction,
-                                      sampled.density * light.selection_probability);
-    vec3 radiance = throughput * scattered * sampled.weight * (abs(cosine) / light.selection_probability);
+    vec3 scattered = evaluate_closure(closure, throughput, gathered, -ray.direction, sampled.direction,
+                                      side > 0.0, sampled.density * light.selection_probability);
+    vec3 radiance = throughput * scattered * sampled.weight / light.selection_probability;
     if (!(largest(radiance) > 0.0)) return;
     contributions[index] = vec4(radiance, gathered ? 1.0 : 0.0);
     light_triangles[index] = sampled.triangle;

@@ -1,7 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the camera sees first: normals averaged over the iterations, depth of the first that found one. As in
-// Cycles, surfaces that let more than half of the light straight through are passed.
+// Cycles, surfaces that let more than half of the light straight through are passed, and depth lies along the view
+// axis, or in a panorama along the ray.
 
 layout(local_size_x = 64) in;
 
@@ -12,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/geometry.glsl"
 #include "common/camera_path.glsl"
+#include "gbuffer/projections.glsl"
 layout(std140, binding = 0) uniform Parameters { SurfaceParameters parameters; };
 layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
 layout(std430, binding = 1) readonly buffer Closures { Closure closures[]; };
@@ -37,7 +39,9 @@ void main() {
     vec3 normal = hit ? unpack_unit_vector(closures[index].shading_normal) : vec3(0.0);
     vec4 surface = surfaces[pixel];
     // A path may have ended on its way through: the next that finds a surface tells the depth.
-    if (hit && surface.w == BACKGROUND_DEPTH) surface.w = dot(closures[index].position - camera.position, camera.forward);
+    vec3 offset = closures[index].position - camera.position;
+    if (hit && surface.w == BACKGROUND_DEPTH)
+        surface.w = camera.projection <= PROJECTION_ORTHOGRAPHIC ? dot(offset, camera.forward) : length(offset);
     surface.xyz += (normal - surface.xyz) / float(parameters.iteration);
     surfaces[pixel] = surface;
 }

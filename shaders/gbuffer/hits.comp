@@ -8,7 +8,6 @@ layout(local_size_x = 64) in;
 #include <Ray>
 #include <Hit>
 #include "common/invocation.glsl"
-#include "common/constants.glsl"
 #include "common/camera_path.glsl"
 layout(binding = 0) uniform sampler2D visibility;
 layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
@@ -16,6 +15,7 @@ layout(std430, binding = 1) readonly buffer Triangles { vec4 triangle_vertices[]
 layout(std430, binding = 2) writeonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 3) writeonly buffer Hits { Hit hits[]; };
 layout(std430, binding = 4) writeonly buffer CameraPaths { CameraPath camera_paths[]; };
+#include "gbuffer/camera_ray.glsl"
 
 Hit intersect_plane(Ray ray, uint triangle) {
     vec3 v0 = triangle_vertices[3u * triangle].xyz;
@@ -34,16 +34,11 @@ Hit intersect_plane(Ray ray, uint triangle) {
 void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
-    ivec2 pixel = ivec2(index % camera.width, index / camera.width);
-    vec2 fraction = (vec2(pixel) + 0.5) / vec2(camera.width, camera.height);
-    vec2 at = mix(camera.window.xz, camera.window.yw, fraction);
-    vec3 aside = at.x * camera.right + at.y * camera.up;
-    Ray ray = camera.orthographic != 0u
-        ? Ray(camera.position + aside, NO_TRIANGLE, camera.forward, camera.clip_end)
-        : Ray(camera.position, NO_TRIANGLE, normalize(camera.forward + aside), INFINITY_DISTANCE);
-    vec2 visible = texelFetch(visibility, pixel, 0).xy;
+    CameraRay seen = plane_ray(window_point(index), vec2(0.0));
+    Ray ray = world_ray(seen);
+    vec2 visible = texelFetch(visibility, ivec2(index % camera.width, index / camera.width), 0).xy;
     uint number = uint(visible.x + 0.5) | (uint(visible.y + 0.5) << 16u);
     rays[index] = ray;
     hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : intersect_plane(ray, number - 1u);
-    camera_paths[index] = CameraPath(vec3(1.0), 0.0, 0.0, 0.0, 0.0, PATH_STRAIGHT);
+    camera_paths[index] = CameraPath(vec3(1.0), 0.0, seen.passed, 0.0, sqrt(seen.area / PI), PATH_STRAIGHT);
 }

@@ -3,6 +3,7 @@
 // The number of the nearest triangle, as two 16-bit parts that floats hold exactly.
 
 #include <CameraView>
+#include "gbuffer/projections.glsl"
 layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
 
 flat in uint triangle;
@@ -11,7 +12,7 @@ layout(location = 0) out vec2 visible;
 
 void main() {
     // Logarithmic in perspective: the same relative resolution near and far.
-    gl_FragDepth = camera.orthographic != 0u
+    gl_FragDepth = camera.projection == PROJECTION_ORTHOGRAPHIC
         ? (view_depth - camera.clip_start) / (camera.clip_end - camera.clip_start)
         : log(view_depth / camera.clip_start) / log(camera.clip_end / camera.clip_start);
     uint number = triangle + 1u;

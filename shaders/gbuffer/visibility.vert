@@ -3,6 +3,7 @@
 // DirectCameraHits: every triangle, projected by the camera of the band.
 
 #include <CameraView>
+#include "gbuffer/projections.glsl"
 layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
 layout(std430, binding = 1) readonly buffer Triangles { vec4 triangle_vertices[]; };
 
@@ -16,7 +17,7 @@ void main() {
     view_depth = p.z;
     vec2 middle = camera.window.xz + camera.window.yw, extent = camera.window.yw - camera.window.xz;
     float near = camera.clip_start, far = camera.clip_end;
-    if (camera.orthographic != 0u)
+    if (camera.projection == PROJECTION_ORTHOGRAPHIC)
         gl_Position = vec4((2.0 * p.xy - middle) / extent, (2.0 * p.z - near - far) / (far - near), 1.0);
     else
         gl_Position = vec4((2.0 * p.xy - middle * p.z) / extent, ((far + near) * p.z - 2.0 * far * near) / (far - near), p.z);

@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/gathering.glsl"
+#include "gbuffer/projections.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "emission/lights.glsl"
@@ -24,42 +25,34 @@ layout(std430, binding = 11) writeonly buffer GatheringVertices { GatheringVerte
 layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
 
-// Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
-float first_radius(vec3 direction, float distance, vec3 normal) {
-    float facing = max(abs(dot(normal, direction)), 1e-4);
-    float area = camera.pixel_solid_angle / facing;
-    if (camera.orthographic == 0u) {
-        float cosine = dot(direction, camera.forward);
-        area *= distance * distance * cosine * cosine * cosine;
-    }
-    return parameters.radius_scale * sqrt(area / PI);
-}
-
 Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
-                                 throughput * closure.diffuse / PI, closure.shading_normal,
-                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, gathers, 0u);
+                                 throughput * closure.diffuse / PI, closure.diffuse_normal,
+                                 throughput * closure.translucent / PI, closure.diffuse_roughness,
+                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers, closure.shading_normal, 0u, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
-    float cosine = clamp(dot(unpack_unit_vector(closure.shading_normal), viewer), 0.0, 1.0);
     float total = 0.0;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (!lobe_stores(lobe, parameters.specular_alpha)) continue;
-        float share = largest(throughput * lobe_albedo(lobe, cosine));
+        float share = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
         if (share <= 0.0) continue;
         total += share;
         if (u * total < share) {
             u = u * total / share;
             importon.lobe_weight = throughput * lobe.weight / share;
-            importon.lobe_kind = lobe.kind;
-            importon.lobe_f0 = lobe.kind == LOBE_GLASS ? throughput * lobe.f0 / share : lobe.f0;
+            importon.lobe_kind = pack_kind(lobe.kind, lobe.tint);
+            importon.lobe_f0 = passes_by_f0(lobe.kind) ? throughput * lobe.f0 / share : lobe.f0;
             importon.lobe_alpha = lobe.alpha;
             importon.lobe_ior = lobe.ior;
+            importon.lobe_normal = lobe.normal;
+            importon.lobe_anisotropy = lobe.anisotropy;
         } else u = (u * total - share) / (total - share);
     }
     importon.lobe_weight *= total;
-    if (importon.lobe_kind == LOBE_GLASS) importon.lobe_f0 *= total;
-    if (importon.lobe_kind == LOBE_NONE && largest(importon.diffuse) <= 0.0) importon.radius = 0.0;
+    uint kind = unpack_kind(importon.lobe_kind);
+    if (passes_by_f0(kind)) importon.lobe_f0 *= total;
+    if (kind == LOBE_NONE && largest(importon.diffuse + importon.translucent) <= 0.0) importon.radius = 0.0;
     return importon;
 }
 
@@ -100,17 +93,20 @@ void main() {
             share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle));
         seen.rgb += path.throughput * closure.emission * share;
     }
+    if (straight) seen.a -= closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
     radiances[index] += seen;
 
-    vec3 shading = unpack_unit_vector(closure.shading_normal);
     vec3 viewer = -ray.direction;
     path.total_length += closure.distance;
+    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC;
     if (parameters.segment == 0u) {
-        path.primary_distance = closure.distance;
-        path.primary_radius = first_radius(ray.direction, closure.distance, geometric);
+        // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
+        float facing = max(abs(dot(geometric, ray.direction)), 1e-4);
+        path.primary_distance = path.total_length;
+        path.primary_radius *= parameters.radius_scale * (parallel ? 1.0 : path.primary_distance) / sqrt(facing);
     }
     // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
-    float growth = camera.orthographic != 0u ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
+    float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
     float radius = path.primary_radius * growth;
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
     if (gathered) radius = max(radius, parameters.radius_by_ray);
@@ -123,10 +119,9 @@ void main() {
                                      gathers ? GATHERS_BY_RAY : (gathered ? GATHERED_BY_RAY : GATHERS_ALL));
 
     if (parameters.last_segment != 0u) return;
-    float cosine = clamp(dot(shading, viewer), 0.0, 1.0);
-    vec4 shares = camera_path_shares(closure, path.throughput, cosine, parameters.specular_alpha, false);
+    vec4 shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, false);
     vec4 gathering_shares = vec4(0.0);
-    if (gathers) gathering_shares = camera_path_shares(closure, path.throughput, cosine, parameters.specular_alpha, true);
+    if (gathers) gathering_shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, true);
     float gathering = sum(gathering_shares), total = sum(shares) + gathering;
     if (total <= 0.0) return;
     float survival = path_survival(total);
@@ -145,11 +140,15 @@ void main() {
         shares = gathering_shares;
     } else u -= gathering;
     bool diffuse = sets_out && u < shares.x;
+    vec3 normal = unpack_unit_vector(closure.diffuse_normal), found_weight = vec3(1.0);
     if (diffuse) {
-        direction = sample_cosine_hemisphere(shading, u_direction);
-        weight = closure.diffuse;
-        transmitted = false;
-        probability = shares.x;
+        float reflected = largest(path.throughput * closure.diffuse);
+        transmitted = u >= reflected;
+        probability = transmitted ? shares.x - reflected : reflected;
+        if (transmitted) normal = -normal;
+        direction = sample_cosine_hemisphere(normal, u_direction);
+        weight = transmitted ? closure.translucent : closure.diffuse;
+        found_weight = diffuse_factor(closure, transmitted ? -normal : normal, viewer, direction);
     } else if (u < shares.x) {
         direction = ray.direction;
         weight = closure.transparent;
@@ -161,11 +160,12 @@ void main() {
         probability = shares[1 + chosen];
         if (probability <= 0.0) return;
         MicrofacetLobe lobe = closure_lobe(closure, chosen);
-        LobeSample sampled = sample_lobe(lobe, shading, viewer, u_direction, u_event, true);
+        normal = lobe_normal(lobe);
+        LobeSample sampled = sample_lobe(lobe, normal, viewer, u_direction, u_event, true);
         if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
-            path.scatter_density = lobe_probability(shares, total, chosen) * lobe_density(lobe, shading, viewer, sampled.direction);
+            path.scatter_density = lobe_probability(shares, total, chosen) * lobe_density(lobe, normal, viewer, sampled.direction);
         direction = sampled.direction;
-        weight = sampled.weight;
+        weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
         transmitted = sampled.transmitted;
         path.flags &= ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR);
         if (transmitted) path.flags |= PATH_TRANSMITTED;
@@ -175,8 +175,8 @@ void main() {
     path.throughput *= weight * (total / (probability * survival));
     if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
-        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, closure.shading_normal);
-        path.throughput = vec3(1.0);
+        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, pack_unit_vector(normal));
+        path.throughput = found_weight;
     }
     float side = dot(direction, geometric);
     if (!(largest(path.throughput) > 0.0) || (transmitted ? side >= 0.0 : side <= 0.0)) return;

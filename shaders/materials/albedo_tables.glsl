@@ -9,6 +9,9 @@ const int WHITE_AVERAGE = WHITE_SIZE * WHITE_SIZE;
 const int DIELECTRIC_TABLE = WHITE_AVERAGE + WHITE_SIZE;
 const int GLASS_ENTERING_TABLE = DIELECTRIC_TABLE + TABLE_SIZE * TABLE_SIZE * TABLE_SIZE;
 const int GLASS_LEAVING_TABLE = GLASS_ENTERING_TABLE + TABLE_SIZE * TABLE_SIZE * TABLE_SIZE;
+const int SHEEN_TABLES = GLASS_LEAVING_TABLE + TABLE_SIZE * TABLE_SIZE * TABLE_SIZE;
+const int GLASS_ENTERING_AVERAGE = SHEEN_TABLES + 3 * WHITE_SIZE * WHITE_SIZE;
+const int GLASS_LEAVING_AVERAGE = GLASS_ENTERING_AVERAGE + TABLE_SIZE * TABLE_SIZE;
 
 float table_plane(int first, int size, float roughness, float cosine) {
     vec2 p = clamp(vec2(cosine, roughness), 0.0, 1.0) * float(size - 1);
@@ -19,8 +22,10 @@ float table_plane(int first, int size, float roughness, float cosine) {
                mix(albedo_tables[at + size], albedo_tables[at + size + 1], f.x), f.y);
 }
 
+float ior_place(float ior) { return sqrt(abs((ior - 1.0) / (ior + 1.0))); }
+
 float table_volume(int first, float ior, float roughness, float cosine) {
-    float z = sqrt(abs((ior - 1.0) / (ior + 1.0))) * float(TABLE_SIZE - 1);
+    float z = ior_place(ior) * float(TABLE_SIZE - 1);
     int i = clamp(int(z), 0, TABLE_SIZE - 2);
     int plane = TABLE_SIZE * TABLE_SIZE;
     return mix(table_plane(first + i * plane, TABLE_SIZE, roughness, cosine),
@@ -40,7 +45,20 @@ float glass_albedo(float ior, float roughness, float cosine) {
                       : table_volume(GLASS_LEAVING_TABLE, 1.0 / ior, roughness, cosine);
 }
 
+float glass_average_albedo(float ior, float roughness) {
+    return ior >= 1.0 ? table_plane(GLASS_ENTERING_AVERAGE, TABLE_SIZE, ior_place(ior), roughness)
+                      : table_plane(GLASS_LEAVING_AVERAGE, TABLE_SIZE, ior_place(1.0 / ior), roughness);
+}
+
 // Albedo of a lobe whose reflectance is dielectric_interpolation: what grazing incidence adds.
 float dielectric_grazing_albedo(float ior, float roughness, float cosine) {
     return table_volume(DIELECTRIC_TABLE, ior, roughness, cosine);
+}
+
+// Of the sheen: the coefficients of its transformation, and its albedo.
+vec3 sheen_parameters(float roughness, float cosine) {
+    const int plane = WHITE_SIZE * WHITE_SIZE;
+    return vec3(table_plane(SHEEN_TABLES, WHITE_SIZE, roughness, cosine),
+                table_plane(SHEEN_TABLES + plane, WHITE_SIZE, roughness, cosine),
+                table_plane(SHEEN_TABLES + 2 * plane, WHITE_SIZE, roughness, cosine));
 }

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { EvaluateParameters parameters; };
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
-#include "materials/closures.glsl"
+#include "materials/builder.glsl"
 layout(std430, binding = 0) writeonly buffer Emissions { vec4 emissions[]; };
 
 #include "materials/generated.glsl"
@@ -27,7 +27,7 @@ void main() {
     vec3 direction = direction_of(index);
     Surface surface = Surface(direction, -direction, -direction, -direction, vec2(0.0), vec3(0.0), NO_TRIANGLE, 0u, false,
                               parameters.from_camera != 0u ? RAY_CAMERA : RAY_DIFFUSE, 0.0, 0u);
-    ClosureBuilder builder = empty_builder(surface, 0.0);
+    ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, surface.normal, false, 0.0);
     evaluate_material(surface, parameters.first_constant, builder);
     emissions[index] = vec4(builder.closure.emission, 0.0);
 }

@@ -113,3 +113,19 @@ Surface surface_beside(Surface surface, vec3 way) {
     surface.uv = triangle_uv(surface.triangle, surface.barycentrics);
     return surface;
 }
+
+// Generated coordinates of a mesh that nothing deforms; of a world, the direction.
+vec3 within_texture_space(Surface surface) {
+    if (surface.triangle == NO_TRIANGLE) return surface.position;
+    ShadingInstance at = shading_instances[surface.instance];
+    return (point_to_object(surface, surface.position) - at.texture_location) * at.texture_scale + 0.5;
+}
+
+// Around the object's Z axis, where no tangent is given.
+vec3 default_tangent(Surface surface) {
+    vec3 at = within_texture_space(surface) - 0.5;
+    vec3 around = normal_to_world(surface, vec3(-at.y, at.x, 0.0));
+    vec3 across = around - dot(around, surface.normal) * surface.normal;
+    float size = length(across);
+    return size > 1e-20 ? across / size : vec3(0.0);
+}

@@ -18,40 +18,50 @@ layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
 layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
 
-struct Scattering { vec3 direction; vec3 weight; bool transmitted; uint flags; };
+struct Scattering { vec3 direction; vec3 weight; vec3 normal; bool transmitted; uint flags; };
 
 // Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
 const float SHARPEST_ALPHA = 0.05;
 
 // One event by its share of the flux; what is left of the probability is absorption.
-Scattering scatter(Closure closure, vec3 flux, vec3 shading, vec3 arrival, inout RandomSequence random) {
-    Scattering result = Scattering(shading, vec3(0.0), false, PHOTON_DIFFUSED | PHOTON_INDIRECT);
-    float cosine = clamp(dot(shading, arrival), 0.0, 1.0);
+Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
+    vec3 normal = unpack_unit_vector(closure.diffuse_normal);
+    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT);
     float scale = 1.0 / largest(flux);
     float share[5];
     share[0] = largest(flux * closure.diffuse) * scale;
     share[1] = largest(flux * closure.transparent) * scale;
-    for (int k = 0; k < CLOSURE_LOBES; ++k)
-        share[2 + k] = largest(flux * lobe_albedo(closure_lobe(closure, k), cosine)) * scale;
-    float total = share[0] + share[1] + share[2] + share[3] + share[4];
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        share[2 + k] = largest(flux * lobe_albedo(lobe, lobe_cosine(lobe, arrival))) * scale;
+    }
+    float translucent = largest(flux * closure.translucent) * scale;
+    float total = share[0] + share[1] + share[2] + share[3] + share[4] + translucent;
     float norm = max(total, 1.0);
     float u = next_random(random) * norm;
     vec2 u_direction = next_random2(random);
     float u_event = next_random(random);
     if (u >= total) return result;
     if (u < share[0]) {
-        result.direction = sample_cosine_hemisphere(shading, u_direction);
-        result.weight = closure.diffuse * (norm / share[0]);
+        result.direction = sample_cosine_hemisphere(normal, u_direction);
+        result.weight = closure.diffuse * diffuse_factor(closure, normal, arrival, result.direction) * (norm / share[0]);
         return result;
     }
     u -= share[0];
-    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), true, 0u);
+    if (u < translucent) {
+        result.direction = sample_cosine_hemisphere(-normal, u_direction);
+        result.weight = closure.translucent * diffuse_factor(closure, normal, arrival, result.direction) * (norm / translucent);
+        result.transmitted = true;
+        return result;
+    }
+    u -= translucent;
+    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u);
     u -= share[1];
     int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
     float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
-    LobeSample sampled = sample_lobe(lobe, shading, arrival, u_direction, u_event, false);
-    return Scattering(sampled.direction, sampled.weight * (norm / max(probability, 1e-20)), sampled.transmitted,
+    LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, u_direction, u_event, false);
+    return Scattering(sampled.direction, sampled.weight * (lobe_shadowing(lobe, closure.shading_normal, sampled.direction) * norm / max(probability, 1e-20)), lobe_normal(lobe), sampled.transmitted,
                       (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_DIFFUSED)
                           | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u));
 }
@@ -90,20 +100,20 @@ void main() {
     photon.position = closure.position;
     photon.triangle = closure.triangle;
     photon.geometric_normal = closure.geometric_normal;
-    bool stores = largest(closure.diffuse) > 0.0;
+    bool stores = largest(closure.diffuse + closure.translucent) > 0.0;
     for (int k = 0; k < CLOSURE_LOBES; ++k)
         stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
     if (stores) photon.flags |= PHOTON_STORED;
 
     if (parameters.last_segment == 0u && largest(photon.flux) > 0.0) {
-        vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
+        vec3 geometric = unpack_unit_vector(closure.geometric_normal);
         RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS, parameters.segment, index);
-        Scattering scattering = scatter(closure, photon.flux, shading, photon.direction, random);
+        Scattering scattering = scatter(closure, photon.flux, photon.direction, random);
         float side = dot(scattering.direction, geometric);
         bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
         if (largest(scattering.weight) > 0.0 && passes) {
             bool straight = scattering.direction == ray.direction;
-            if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, shading);
+            if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, scattering.normal);
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
             path_flags |= scattering.flags;

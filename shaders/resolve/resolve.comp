@@ -14,7 +14,8 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; };
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
-#include "materials/closures.glsl"
+#include "materials/builder.glsl"
+#include "materials/usable.glsl"
 #include "common/camera_path.glsl"
 #include "resolve/ranges.glsl"
 
@@ -77,7 +78,7 @@ void main() {
     surface.ray_depth = parameters.segment + (parameters.path_stride == 0u ? 1u : 0u);
 
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment, index);
-    ClosureBuilder builder = empty_builder(surface, next_random(random));
+    ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, next_random(random));
     uint material = attributes[hit.triangle].material;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include <SplatParameters>
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
+#include "gbuffer/projections.glsl"
 #include "splatting/sphere_bounds.glsl"
 #include "splatting/jobs.glsl"
 layout(std140, binding = 0) uniform Parameters { SplatParameters parameters; };
@@ -26,7 +27,7 @@ void main() {
     float radius = photon_radius(photons[number].flags, parameters.radius, parameters.wide_radius);
     if (p.z < -radius) return;
     vec2 across = vec2(p.x - radius, p.x + radius), along = vec2(p.y - radius, p.y + radius);
-    if (camera.orthographic == 0u) {
+    if (camera.projection != PROJECTION_ORTHOGRAPHIC) {
         if (!sphere_tangents(p.xz, radius, camera.window.xy, across)) return;
         if (!sphere_tangents(p.yz, radius, camera.window.zw, along)) return;
     }

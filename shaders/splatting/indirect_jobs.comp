@@ -53,6 +53,7 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count || !any_importon(int(parameters.resolution))) return;
     uint number = stored_photons[index];
+    if (parameters.gathers != 0u && (photons[number].flags & PHOTON_INDIRECT) != 0u) return;
     vec3 p = photons[number].position - parameters.centre;
     float distance = length(p), radius = photon_radius(photons[number].flags, parameters.radius, parameters.wide_radius);
     if (distance < radius * 0.9999) return;

@@ -229,8 +229,8 @@ def reported_error(lit):
 
 
 def test_a_scene_error_is_shown_with_its_remedy(lit):
-    lit.camera.data.type = "PANO"
-    assert "Perspective or Orthographic" in reported_error(lit)
+    lit.camera.data.type = "CUSTOM"
+    assert "Perspective, Orthographic or Panoramic" in reported_error(lit)
 
 
 def test_no_camera_is_an_error(lit):
@@ -262,12 +262,12 @@ def test_a_defect_is_shown_and_the_next_render_works(lit, monkeypatch, caplog):
 def test_warnings_are_reported(lit, monkeypatch):
     reports = []
     replace_methods(monkeypatch, report=lambda kind, text: reports.append((kind, text)))
-    lit.camera.data.dof.use_dof = True
+    lit.camera.scale = (-1.0, 1.0, 1.0)
     for index in range(20):
         lit.collection.objects.link(bpy.data.objects.new(f"Hair{index}", bpy.data.hair_curves.new("Hair")))
     bpy.ops.render.render()
     texts = [text for kind, text in reports if kind == {"WARNING"}]
-    assert any("depth of field" in text for text in texts)
+    assert any("not mirrored" in text for text in texts)
     assert 2 < len(texts) < 12 and texts[-1].startswith("13 more")
 
 

@@ -27,6 +27,8 @@ def test_blenders_panels_show(scene):
     assert shown >= {
         "DATA_PT_camera",
         "DATA_PT_lens",
+        "DATA_PT_camera_dof",
+        "DATA_PT_camera_dof_aperture",
         "DATA_PT_context_light",
         "EEVEE_MATERIAL_PT_context_material",
         "EEVEE_MATERIAL_PT_surface",
@@ -38,7 +40,7 @@ def test_blenders_panels_show(scene):
         "VIEWLAYER_PT_layer",
         "DATA_PT_uv_texture",
     }
-    assert not shown & {"DATA_PT_light", "DATA_PT_camera_dof", "RENDER_PT_eevee_sampling", "RENDER_PT_simplify"}
+    assert not shown & {"DATA_PT_light", "RENDER_PT_eevee_sampling", "RENDER_PT_simplify"}
 
 
 def test_unregister_leaves_nothing(scene):
@@ -95,11 +97,24 @@ def test_panels_show_every_setting(scene):
 @pytest.mark.parametrize("kind", ["POINT", "SPOT", "SUN", "AREA"])
 def test_light_panels(scene, kind):
     light = bpy.data.lights.new("Light", kind)
-    context = SimpleNamespace(engine="RPPM", light=light)
+    context = SimpleNamespace(engine="RPPM", light=light, camera=None)
     shown = [name for cls in panels.data.CLASSES if cls.poll(context) for name in drawn(cls, context)]
     assert {"energy", "color", "photon_share"} <= set(shown)
     assert ("spot_size" in shown) == (kind == "SPOT") and ("spread" in shown) == (kind == "AREA")
-    assert not any(cls.poll(SimpleNamespace(engine="RPPM", light=None)) for cls in panels.data.CLASSES)
+    assert not any(cls.poll(SimpleNamespace(engine="RPPM", light=None, camera=None)) for cls in panels.data.CLASSES)
+
+
+def test_the_panorama_panel(scene):
+    camera = scene.camera.data
+    panel = panels.data.RPPM_PT_panorama
+    context = SimpleNamespace(engine="RPPM", light=None, camera=camera)
+    assert not panel.poll(context)
+    camera.type = "PANO"
+    assert panel.poll(context)
+    expected = {"EQUIRECTANGULAR": "latitude_min", "FISHEYE_EQUISOLID": "fisheye_lens", "MIRRORBALL": "panorama_type"}
+    for kind, name in expected.items():
+        camera.panorama_type = kind
+        assert name in drawn(panel, context)
 
 
 def test_the_viewport_says_that_it_is_not_there(scene):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """BSDF lobes: sampling against evaluation, conservation, reciprocity."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,15 +13,30 @@ from rppm_addon.materials import albedo_tables
 
 Record(
     "LobeTestParameters",
-    weight="vec3", count="uint", f0="vec3", kind="uint", alpha="float", ior="float", cosine="float", radiance="uint",
+    weight="vec3", count="uint", f0="vec3", kind="uint", tint="vec3", alpha="float", ior="float", cosine="float",
+    aspect="float", radiance="uint",
 )  # fmt: skip
 SHADER = str(Path(__file__).with_name("lobe_albedo.comp"))
-MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION = 1, 2, 3, 4, 5
+MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEEN, VELVET = range(1, 9)
 COUNT = 1 << 18
 
 
-def run(context, library, kind, alpha, ior, cosine, radiance=1, weight=(1, 1, 1), f0=(1, 1, 1)):
-    results = context.moderngl.buffer(reserve=48 * COUNT)
+@dataclass
+class Lobe:
+    """What a lobe gave, (COUNT, 4) each: samples with their side, evaluations with theirs, pairs for reciprocity,
+    and functions of the direction weighted by sampling and by density."""
+
+    sampled: np.ndarray
+    evaluated: np.ndarray
+    pairs: np.ndarray
+    drawn: np.ndarray
+    expected: np.ndarray
+
+
+def run(
+    context, library, kind, alpha, ior, cosine, radiance=1, weight=(1, 1, 1), f0=(1, 1, 1), tint=(1, 1, 1), aspect=1.0
+) -> Lobe:
+    results = context.moderngl.buffer(reserve=80 * COUNT)
     library.compute(SHADER).run(
         COUNT,
         {"Results": results},
@@ -29,15 +45,17 @@ def run(context, library, kind, alpha, ior, cosine, radiance=1, weight=(1, 1, 1)
             "count": COUNT,
             "f0": f0,
             "kind": kind,
+            "tint": tint,
             "alpha": alpha,
             "ior": ior,
             "cosine": cosine,
+            "aspect": aspect,
             "radiance": radiance,
         },
     )
-    table = np.frombuffer(results.read(), np.float32).reshape(COUNT, 3, 4).astype(np.float64)
+    table = np.frombuffer(results.read(), np.float32).reshape(COUNT, 5, 4).astype(np.float64)
     results.release()
-    return table[:, 0], table[:, 1], table[:, 2]
+    return Lobe(*np.moveaxis(table, 1, 0))
 
 
 def assert_equal_means(sampled, evaluated, what):
@@ -48,21 +66,54 @@ def assert_equal_means(sampled, evaluated, what):
     assert abs(difference) < 4.5 * error + 1e-6, what
 
 
+def assert_sampled_as_evaluated(lobe: Lobe, what: str) -> None:
+    for side in (0.0, 1.0):
+        for channel in (0, 2):
+            a = np.where(lobe.sampled[:, 3] == side, lobe.sampled[:, channel], 0)
+            b = np.where(lobe.evaluated[:, 3] == side, lobe.evaluated[:, channel], 0)
+            assert_equal_means(a, b, f"{what} side {side} channel {channel}")
+    for moment in range(4):
+        assert_equal_means(lobe.drawn[:, moment], lobe.expected[:, moment], f"{what} moment {moment}")
+
+
+COLORS = {"f0": (0.3, 0.5, 0.9), "weight": (0.9, 0.8, 0.7)}
+
+
 @pytest.mark.parametrize("kind", [MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION])
 @pytest.mark.parametrize("alpha", [0.2, 0.6, 1.0])
 @pytest.mark.parametrize("ior", [1.5, 1 / 1.5])
 def test_sampling_has_the_mean_of_evaluation(context, library, kind, alpha, ior):
     for cosine in (0.35, 0.95):
-        sampled, evaluated, _ = run(
-            context, library, kind, alpha, ior, cosine, f0=(0.3, 0.5, 0.9), weight=(0.9, 0.8, 0.7)
-        )
-        for side in (0.0, 1.0):
-            for channel in (0, 2):
-                a = np.where(sampled[:, 3] == side, sampled[:, channel], 0)
-                b = np.where(evaluated[:, 3] == side, evaluated[:, channel], 0)
-                assert_equal_means(
-                    a, b, f"kind {kind} alpha {alpha} ior {ior:.2f} cosine {cosine} side {side} channel {channel}"
-                )
+        lobe = run(context, library, kind, alpha, ior, cosine, **COLORS)
+        assert_sampled_as_evaluated(lobe, f"kind {kind} alpha {alpha} ior {ior:.2f} cosine {cosine}")
+
+
+@pytest.mark.parametrize("kind", [METAL, GLASS, COATED_GLASS])
+@pytest.mark.parametrize("aspect", [0.4, 0.8])
+def test_stretched_and_tinted_lobes(context, library, kind, aspect):
+    for cosine in (0.35, 0.95):
+        lobe = run(context, library, kind, 0.4, 1.5, cosine, tint=(0.2, 0.6, 0.4), aspect=aspect, **COLORS)
+        assert_sampled_as_evaluated(lobe, f"kind {kind} aspect {aspect} cosine {cosine}")
+
+
+@pytest.mark.parametrize("coefficients", [(0.15, -0.1, 0.0), (0.7, 0.0, 0.0), (0.3, -0.17, 0.0)])
+def test_sheen(context, library, coefficients):
+    """A linearly transformed cosine: all of it is scattered, by the density of its samples."""
+    for cosine in (0.35, 0.95):
+        lobe = run(context, library, SHEEN, 1.0, 1.0, cosine, f0=coefficients)
+        assert_sampled_as_evaluated(lobe, f"sheen {coefficients} cosine {cosine}")
+        assert (lobe.sampled[:, :3] == 1.0).mean() > 0.999
+        assert lobe.expected[:, 0].mean() == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("sigma", [0.2, 0.5, 1.0])
+def test_velvet(context, library, sigma):
+    for cosine in (0.35, 0.95):
+        lobe = run(context, library, VELVET, 1.0, 1.0, cosine, f0=(sigma, 0.0, 0.0))
+        assert_sampled_as_evaluated(lobe, f"velvet {sigma} cosine {cosine}")
+        # Light along the surface is left out.
+        reflected = lobe.pairs[(lobe.pairs[:, 2] == 0) & (lobe.pairs[:, :2] > 1e-4).all(axis=1)]
+        np.testing.assert_allclose(reflected[:, 0], reflected[:, 1], rtol=2e-3)
 
 
 @pytest.mark.parametrize("alpha", [0.0, 0.3, 1.0])
@@ -70,26 +121,27 @@ def test_sampling_has_the_mean_of_evaluation(context, library, kind, alpha, ior)
 def test_albedo_is_that_of_the_tables(context, library, alpha, ior):
     for cosine in (0.4, 1.0):
         white, _, glass = albedo_tables.lobe_albedos(max(alpha, 1e-4), cosine, np.array([ior]), 65536)
-        mirror_samples, _, _ = run(context, library, MIRROR, alpha, 1.0, cosine)
-        glass_samples, _, _ = run(context, library, GLASS, alpha, ior, cosine, radiance=0)
+        mirror_samples = run(context, library, MIRROR, alpha, 1.0, cosine).sampled
+        glass_samples = run(context, library, GLASS, alpha, ior, cosine, radiance=0).sampled
         assert mirror_samples[:, 0].mean() == pytest.approx(white, abs=5e-3)
         assert glass_samples[:, 0].mean() == pytest.approx(glass[0], abs=5e-3)
         assert mirror_samples[:, :3].max() < 1.0001 and glass_samples[:, :3].max() < 1.0001
 
 
 def test_radiance_and_flux_differ_by_the_squared_index(context, library):
-    radiance, _, _ = run(context, library, REFRACTION, 0.3, 1.5, 0.8, radiance=1)
-    flux, _, _ = run(context, library, REFRACTION, 0.3, 1.5, 0.8, radiance=0)
+    radiance = run(context, library, REFRACTION, 0.3, 1.5, 0.8, radiance=1).sampled
+    flux = run(context, library, REFRACTION, 0.3, 1.5, 0.8, radiance=0).sampled
     assert radiance[:, 0].mean() * 1.5**2 == pytest.approx(flux[:, 0].mean(), rel=1e-5)
 
 
 @pytest.mark.parametrize("kind", [MIRROR, METAL, DIELECTRIC, GLASS])
-def test_lobes_are_reciprocal(context, library, kind):
+@pytest.mark.parametrize("aspect", [1.0, 0.5])
+def test_lobes_are_reciprocal(context, library, kind, aspect):
     ior = 1.5
-    _, _, pairs = run(context, library, kind, 0.5, ior, 0.6, f0=(0.4, 0.4, 0.4), weight=(1, 1, 1))
+    pairs = run(context, library, kind, 0.5, ior, 0.6, f0=(0.4, 0.4, 0.4), aspect=aspect).pairs
     reflected = pairs[(pairs[:, 2] == 0) & (pairs[:, 0] > 1e-4)]
     np.testing.assert_allclose(reflected[:, 0], reflected[:, 1], rtol=2e-3)
-    if kind == GLASS:
+    if kind == GLASS and aspect == 1.0:
         # f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2 for radiance (Veach 1997, eq. 5.14); ours carries the
         # index ratio of its own side
         through = pairs[(pairs[:, 2] == 1) & (pairs[:, 0] > 1e-4)]

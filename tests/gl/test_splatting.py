@@ -33,7 +33,7 @@ def brute_force(importons, photons, wide):
         offset = (stored["position"] - importon["position"]).astype(np.float64)
         radius = np.where(diffused, max(importon["radius"], wide), importon["radius"]).astype(np.float64)
         distance2 = (offset**2).sum(1)
-        geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["shading_normal"][None])[0]
+        geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["diffuse_normal"][None])[0]
         near = (distance2 < radius**2) & (normals @ geometric > 0.7) & (abs(offset @ geometric) <= 0.35 * radius)
         near &= stored["direction"] @ shading > 0
         if importon["gathers"] == GATHERS_BY_RAY:

@@ -157,6 +157,14 @@ def test_voronoi(library, tmp_path, dimensions):
     chosen = {"voronoi_dimensions": (dimensions,)}
     cases = combinations("tex_voronoi", VORONOI_INPUTS, **chosen, feature=("F1", "F2", "SMOOTH_F1"), normalize=(True,))
     cases += combinations("tex_voronoi", VORONOI_INPUTS, **chosen, distance=("EUCLIDEAN",), normalize=(False,))
+    cases += combinations(
+        "tex_voronoi",
+        [{"exponent": 0.2}, {"exponent": 5.0}],
+        **chosen,
+        distance=("MINKOWSKI",),
+        feature=("F1", "F2"),
+        normalize=(True,),
+    )
     cases += combinations("tex_voronoi", VORONOI_EXTREMES, **chosen, distance=("EUCLIDEAN",), normalize=(True,))
     assert_equal_values(library, tmp_path, "tex_voronoi", cases)
 

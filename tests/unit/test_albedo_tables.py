@@ -58,7 +58,7 @@ def test_stored_tables_are_those_that_the_module_computes():
     size, cube = tables.WHITE_SIZE, tables.SIZE
     white = stored[: size * size].reshape(size, size)
     glass = stored[size * size + size + cube**3 :][: cube**3].reshape(cube, cube, cube)
-    assert len(stored) == size * size + size + 3 * cube**3
+    assert len(stored) == size * size + size + 3 * cube**3 + 3 * size * size + 2 * cube * cube
     rng = np.random.default_rng(0)
     for r, c in rng.integers(1, size, (6, 2)):
         value = tables.lobe_albedos((r / (size - 1)) ** 2, c / (size - 1), np.array([]), tables.SAMPLES)[0]

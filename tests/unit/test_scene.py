@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from lobes import image_world, material, Lobe, LobeKind
 
+from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.scene import (
+    Aperture,
     Camera,
     DirectLight,
     Image,
@@ -15,6 +17,8 @@ from rppm_addon.scene import (
     Light,
     LightKind,
     Mesh,
+    Panorama,
+    PanoramaKind,
     RenderSettings,
     Scene,
     World,
@@ -72,6 +76,21 @@ def test_a_stored_scene_comes_back_whole(tmp_path):
     scene = full_scene()
     save_scene(scene, tmp_path / "scene.npz")
     assert_same(scene, load_scene(tmp_path / "scene.npz"))
+
+
+def test_lens_and_panorama_come_back(tmp_path):
+    scene = full_scene()
+    scene.camera.aperture = Aperture(0.01, 3.0, 5, 0.2, 1.5)
+    scene.camera.panorama = Panorama(PanoramaKind.MIRRORBALL, sensor=(36.0, 18.0))
+    save_scene(scene, tmp_path / "scene.npz")
+    assert_same(scene, load_scene(tmp_path / "scene.npz"))
+
+
+def test_other_resolutions_of_a_panorama():
+    camera = Camera(np.eye(4), (0, 1, 0, 1), 64, 64, panorama=Panorama(PanoramaKind.FISHEYE_EQUISOLID))
+    wide = camera_at_resolution(camera, 200, 100)
+    assert wide.window == (0, 1, 0, 1) and wide.panorama.sensor == (36.0, 18.0)
+    assert camera_at_resolution(wide, 50, 100).panorama.sensor == (18.0, 36.0)
 
 
 def test_other_files_are_refused_in_one_line(tmp_path):

@@ -46,7 +46,8 @@ def export_scene(
     if hasattr(source, "cycles"):
         scene.exposure = source.cycles.film_exposure
     ObjectExporter(scene, report, images).export(depsgraph)
-    scene.world = export_world(source.world, report, images)
+    scene.world, suns = export_world(source.world, report, images)
+    scene.lights += suns
     scene.images = images.images
     scene.warnings = report.warnings
     return scene

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...scene import Camera
 from ...scene.errors import SceneError
+from .lens import export_aperture, export_panorama
 from .matrices import rigid
 from .report import Report
 
@@ -24,13 +25,11 @@ def export_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, report
             "choose a camera in Scene properties > Camera"
         )
     camera = camera_object.data
-    if camera.type not in {"PERSP", "ORTHO"}:
+    if camera.type not in {"PERSP", "ORTHO", "PANO"}:
         raise SceneError(
             f'camera "{camera_object.name}" is of type {camera.type}, which RPPM cannot render; '
-            "set its lens type to Perspective or Orthographic"
+            "set its lens type to Perspective, Orthographic or Panoramic"
         )
-    if camera.dof.use_dof:
-        report.warn(f'Camera "{camera_object.name}": depth of field is not rendered yet; everything is in focus')
     try:
         matrix, mirrored = rigid(np.array(camera_object.matrix_world, np.float64))
     except ValueError:
@@ -41,15 +40,19 @@ def export_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, report
     if mirrored:
         report.warn(f'Camera "{camera_object.name}": its negative scale is ignored; the picture is not mirrored')
     width, height = frame_size(scene.render)
+    across, upward = frame_shape(scene.render, width, height)
+    panoramic = camera.type == "PANO"
     return Camera(
         matrix=matrix,
-        window=window(camera, scene.render, width, height),
+        window=window(camera, across, upward),
         width=width,
         height=height,
         orthographic=camera.type == "ORTHO",
         clip_start=camera.clip_start,
         clip_end=max(camera.clip_end, camera.clip_start * 1.001),
         crop=crop(scene.render, width, height),
+        panorama=export_panorama(camera, camera_object.name, across, upward) if panoramic else None,
+        aperture=export_aperture(camera, matrix, depsgraph),
     )
 
 
@@ -60,12 +63,16 @@ def frame_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
     )
 
 
-def window(
-    camera: bpy.types.Camera, render: bpy.types.RenderSettings, width: int, height: int
-) -> tuple[float, float, float, float]:
-    """left, right, bottom, top: tangents for a perspective camera, metres for an orthographic one."""
-    # Sizes of the frame in units of a pixel's width: pixels may not be square.
-    across, upward = float(width), height * render.pixel_aspect_y / render.pixel_aspect_x
+def frame_shape(render: bpy.types.RenderSettings, width: int, height: int) -> tuple[float, float]:
+    """Sizes of the frame in units of a pixel's width: pixels may not be square."""
+    return float(width), height * render.pixel_aspect_y / render.pixel_aspect_x
+
+
+def window(camera: bpy.types.Camera, across: float, upward: float) -> tuple[float, float, float, float]:
+    """left, right, bottom, top: tangents for a perspective camera, metres for an orthographic one, shares of a
+    panorama's frame, which is ``across`` by ``upward`` pixel widths."""
+    if camera.type == "PANO":
+        return camera.shift_x, camera.shift_x + 1.0, camera.shift_y, camera.shift_y + 1.0
     fit = camera.sensor_fit
     if fit == "AUTO":
         fit = "HORIZONTAL" if across >= upward else "VERTICAL"

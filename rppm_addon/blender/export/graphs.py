@@ -9,6 +9,7 @@ import numpy as np
 from ...materials.node_kinds import SHADER, VECTOR, NodeKind
 from ...materials.nodes import KINDS
 from ...scene import Link, NodeGraph
+from ...scene.sky import Sky
 from .attributes import GENERATED
 from .images import ImageTable
 from .links import Path, Source, find_source
@@ -72,6 +73,8 @@ class GraphExporter:
         self.owner = owner
         self.images = images
         self.pass_index = pass_index
+        self.skies: dict[int, Sky] = {}
+        """Sky textures by the index of their node."""
         self.is_world = owner.startswith("World")
         self._report = report
         self._known: dict[tuple, object] = {}
@@ -189,11 +192,13 @@ class GraphExporter:
         for name, (socket_type, default) in kind.inputs.items():
             socket = sockets.get(name) or sockets.get(_OLDER.get(name, ""))
             if socket is None:
-                continue  # another version of Blender
+                if name in _own_properties(node):
+                    inputs[name] = float(getattr(node, name))
+                continue  # or another version of Blender
             linked = self.is_linked(socket, path)
             if not linked and isinstance(default, str):
                 continue  # the surface's own
-            if not linked and socket_type is VECTOR and socket.hide_value and node.type.startswith("TEX_"):
+            if not linked and socket_type is VECTOR and socket.hide_value and _is_placed(node):
                 inputs[name] = self.implicit_coordinates(node)
                 continue
             inputs[name] = self.value(socket, path)
@@ -209,11 +214,18 @@ class GraphExporter:
             options[name] = value
         return options
 
+    def coordinates_of(self, node: bpy.types.Node, path: Path) -> object:
+        """What the Vector input of a texture node gets."""
+        socket = next((socket for socket in node.inputs if socket.identifier == "Vector"), None)
+        if socket is None or not self.is_linked(socket, path):
+            return self.implicit_coordinates(node)
+        return self.value(socket, path)
+
     def implicit_coordinates(self, node: bpy.types.Node) -> Link:
         """Where a texture is placed without a link."""
         if node.type == "TEX_IMAGE":
             return self.shared("tex_coord", "uv")
-        if node.type == "TEX_ENVIRONMENT":
+        if node.type in {"TEX_ENVIRONMENT", "TEX_SKY"} and self.is_world:
             return self.shared("new_geometry", "position")
         return self.shared("generated_coord", "generated", GENERATED)
 
@@ -258,7 +270,19 @@ def _output_key(source: Source) -> tuple:
 _UNREADABLE = (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError)
 """What reading a node raises that is broken or of another version of Blender."""
 
-_IRREGULAR = {"RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve"}
+_IRREGULAR = {"RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve", "BsdfAnisotropic": "bsdf_glossy"}
+
+
+def _own_properties(node: bpy.types.Node) -> set[str]:
+    """Numbers that a node has and nodes in general have not, such as a brick texture's offset."""
+    own = set(node.bl_rna.properties.keys()) - set(bpy.types.ShaderNode.bl_rna.properties.keys())
+    return {name for name in own if node.bl_rna.properties[name].type in {"INT", "FLOAT"}}
+
+
+def _is_placed(node: bpy.types.Node) -> bool:
+    """Whether coordinates stand in for a vector that is not linked: Cycles gives white noise zero."""
+    return node.type.startswith("TEX_") and node.type != "TEX_WHITE_NOISE"
+
 
 _OLDER = {"factor": "fac", "fac": "factor", "bsdf": "bsdf"}
 """Identifiers that differ between versions of Blender."""

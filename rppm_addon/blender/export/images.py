@@ -33,6 +33,11 @@ class ImageTable:
         path = image.filepath_from_user(image_user=node.image_user)
         return self._index((image.as_pointer(), path), lambda: _load(path, image), image, node, exporter)
 
+    def add(self, image: Image) -> int:
+        """Index of an image that belongs to no datablock."""
+        self.images.append(image)
+        return len(self.images) - 1
+
     def tiles(self, node: bpy.types.Node, exporter: "GraphExporter") -> np.ndarray | None:
         """(n,) float32 index of the image of each UDIM tile from 1001 on, -1 where none is; None without tiles."""
         image = node.image

@@ -51,6 +51,8 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report) -> Mesh | None:
         triangle_corners=triangles,
         triangle_slots=triangle_slots,
         corner_uv=_render_uv(mesh),
+        texture_location=tuple(mesh.texspace_location),
+        texture_size=tuple(mesh.texspace_size),
     )
 
 

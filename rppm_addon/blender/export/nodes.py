@@ -4,6 +4,9 @@
 import bpy
 import numpy as np
 
+from ...materials.sky import sky_picture, stands_in
+from ...scene import Image, Link
+from ...scene.sky import Sky
 from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, attribute_of
 from .graphs import STAND_INS, GraphExporter, handles, snake_case
 from .images import is_associated
@@ -114,3 +117,25 @@ def _environment_texture(exporter: GraphExporter, node, output, path: Path):
 @handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")
 def _other_geometry(exporter: GraphExporter, node, output, path: Path):
     return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
+
+
+@handles("TEX_SKY")
+def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
+    sky = sky_of(node)
+    if stands_in(sky):
+        exporter.warn(node, "is a Hosek-Wilkie sky, whose data RPPM does not have; a Preetham sky stands in")
+    image = exporter.images.add(Image(node.name, sky_picture(sky)))
+    vector = exporter.coordinates_of(node, path)
+    link = exporter.graph.add("tex_environment", "color", name=node.name, image=image, vector=vector)
+    exporter.skies[link.node] = sky
+    return link
+
+
+def sky_of(node: bpy.types.Node) -> Sky:
+    """What a Sky Texture node says."""
+    values = {name: getattr(node, name) for name in Sky.__dataclass_fields__ if hasattr(node, name)}
+    values["sun_direction"] = tuple(values.get("sun_direction", (0.0, 0.0, 1.0)))
+    if values["sky_type"] == "NISHITA":  # Blender 4
+        values["sky_type"] = "SINGLE_SCATTERING"
+        values["aerosol_density"] = node.dust_density
+    return Sky(**values)

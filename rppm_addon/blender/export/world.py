@@ -1,32 +1,62 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's world to a node graph."""
 
+import copy
+
 import bpy
 import numpy as np
+from mathutils import Vector
 
-from ...scene import World
+from ...materials.sky_sun import sun_disc
+from ...scene import Light, LightKind, Link, NodeGraph, ShaderNode, World
+from ...scene.sky import Sky
 from .graphs import GraphExporter
 from .images import ImageTable
 from .links import node_tree
 from .report import Report
 
 
-def export_world(world: bpy.types.World | None, report: Report, images: ImageTable) -> World:
-    """The surroundings; black where the scene has no world."""
+def export_world(world: bpy.types.World | None, report: Report, images: ImageTable) -> tuple[World, list[Light]]:
+    """The surroundings, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
-        return World()
+        return World(), []
     tree = node_tree(world)
     if tree is None:
-        return World(radiance=_finite(np.array(world.color, np.float64)))
+        return World(radiance=_finite(np.array(world.color, np.float64))), []
     owner = f'World "{world.name}"'
     output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
-        return World()
+        return World(), []
     exporter = GraphExporter(owner, report, images)
     if output.inputs["Volume"].is_linked:
         report.warn(f"{owner}: its volume is not rendered yet and is ignored")
     exporter.graph.surface = exporter.shader(output.inputs["Surface"])
-    return World(np.ones(3), exporter.graph) if exporter.graph.surface is not None else World()
+    if exporter.graph.surface is None:
+        return World(), []
+    suns = [_sun(exporter.graph, index, sky, owner) for index, sky in exporter.skies.items()]
+    return World(np.ones(3), exporter.graph), [sun for sun in suns if sun is not None]
+
+
+def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:
+    """The sun of a sky texture: what the world makes of its irradiance, apart from what does not depend on it."""
+    disc = sun_disc(sky)
+    if disc is None:
+        return None
+    nodes = copy.deepcopy(graph.nodes)
+    nodes[index] = ShaderNode(
+        "combine_color", inputs=dict(zip(("red", "green", "blue"), map(float, disc.irradiance())))
+    )
+    depends = {index}
+    for number, node in enumerate(nodes):
+        if any(isinstance(value, Link) and value.node in depends for value in node.inputs.values()):
+            depends.add(number)
+        elif node.kind in {"background", "emission"}:
+            node.inputs["strength"] = 0.0
+    backward = np.asarray(disc.direction, np.float64)  # lights shine along -Z
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(Vector(backward).to_track_quat("Z", "Y").to_matrix())
+    return Light(f"{owner} sun", LightKind.SUN, matrix, np.ones(3), sun_angle=disc.angle,
+                 graph=NodeGraph(nodes, graph.surface))  # fmt: skip
 
 
 def _finite(radiance: np.ndarray) -> np.ndarray:

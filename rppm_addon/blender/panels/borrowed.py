@@ -13,7 +13,6 @@ UNFIT = {
     "NODE_DATA_PT_light",
     "NODE_DATA_PT_spot",
     "DATA_PT_falloff_curve",
-    "DATA_PT_camera_dof",  # depth of field is not rendered
     "MATERIAL_PT_preview",
     "RENDER_PT_freestyle",
     "RENDER_PT_gpencil",
@@ -23,12 +22,14 @@ UNFIT = {
 """Panels for all engines that promise something that RPPM does not do."""
 
 FITTING = {
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_MATERIAL_PT_surface",
     "EEVEE_MATERIAL_PT_volume",
     "EEVEE_WORLD_PT_surface",
 }
-"""Panels of EEVEE that edit what RPPM reads: material slots and node trees."""
+"""Panels of EEVEE that edit what RPPM reads: depth of field, material slots and node trees."""
 
 
 def _panels() -> Iterator[type]:

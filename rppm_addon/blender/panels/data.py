@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the tab of a light."""
+"""Panels of the tabs of a light and of a camera."""
 
 import bpy
 
@@ -56,4 +56,43 @@ class RPPM_PT_light_beam(RppmLightPanel, bpy.types.Panel):
         column.prop(context.light, "show_cone")
 
 
-CLASSES = (RPPM_PT_light, RPPM_PT_light_beam)
+class RPPM_PT_panorama(RppmPanel, bpy.types.Panel):
+    """What Blender's Lens panel shows for Cycles only."""
+
+    bl_label = "Panorama"
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.camera is not None and context.camera.type == "PANO"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        camera = context.camera
+        # Before Blender 5 Cycles adds the properties.
+        source = camera if hasattr(camera, "panorama_type") else getattr(camera, "cycles", None)
+        if source is None:
+            self.layout.label(text="Enable the add-on Cycles Render Engine", icon="INFO")
+            return
+        column = self.column()
+        column.prop(source, "panorama_type")
+        for name in _PANORAMA_PROPERTIES.get(source.panorama_type, ()):
+            column.prop(source, name)
+
+
+_FISHEYE_POLYNOMIAL = tuple(f"fisheye_polynomial_k{power}" for power in range(5))
+_PANORAMA_PROPERTIES = {
+    "EQUIRECTANGULAR": ("latitude_min", "latitude_max", "longitude_min", "longitude_max"),
+    "FISHEYE_EQUIDISTANT": ("fisheye_fov",),
+    "FISHEYE_EQUISOLID": ("fisheye_lens", "fisheye_fov"),
+    "FISHEYE_LENS_POLYNOMIAL": ("fisheye_fov", *_FISHEYE_POLYNOMIAL),
+    "CENTRAL_CYLINDRICAL": (
+        "central_cylindrical_range_v_min",
+        "central_cylindrical_range_v_max",
+        "central_cylindrical_range_u_min",
+        "central_cylindrical_range_u_max",
+        "central_cylindrical_radius",
+    ),
+}
+
+
+CLASSES = (RPPM_PT_light, RPPM_PT_light_beam, RPPM_PT_panorama)

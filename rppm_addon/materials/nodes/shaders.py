@@ -1,39 +1,121 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shader nodes."""
+"""Shader nodes.
 
-from ..node_kinds import COLOR, FLOAT, SHADER, NodeKind
+Stand-ins: GGX for the distributions of Beckmann and of Ashikhmin and Shirley; diffuse for subsurface scattering and
+for toon shading, whose glossy part is GGX; for hair, GGX stretched across the fibre and translucency; for the physical
+conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
+"""
+
+from ..node_kinds import COLOR, FLOAT, SHADER, VECTOR, NodeKind
 
 
-def _shader(output: str = "bsdf", **members: object) -> NodeKind:
-    return NodeKind("shaders.glsl", outputs={output: SHADER}, **members)
+def _shader(output: str, inputs: dict | None = None, options: dict | None = None) -> NodeKind:
+    return NodeKind("shaders.glsl", inputs or {}, {output: SHADER}, options or {})
 
 
-_COLOR = {"color": (COLOR, 0.8)}
+_NORMAL = {"normal": (VECTOR, "normal")}
+_TANGENT = {"tangent": (VECTOR, "tangent")}
+_ANISOTROPY = {"anisotropy": (FLOAT, 0.0), "rotation": (FLOAT, 0.0)} | _NORMAL | _TANGENT
+_FILM = {"thin_film_thickness": (FLOAT, 0.0), "thin_film_ior": (FLOAT, 1.33)}
+_GREY, _WHITE = {"color": (COLOR, 0.8)}, {"color": (COLOR, 1.0)}
+_SUBSURFACE_METHODS = ("BURLEY", "RANDOM_WALK", "RANDOM_WALK_SKIN")
 
 KINDS = {
-    "mix_shader": _shader("shader", inputs={"fac": (FLOAT, 0.5)}),
+    # Both share out weights and have no GLSL; their shaders are the inputs "shader" and "shader_001".
+    "mix_shader": _shader("shader", {"fac": (FLOAT, 0.5)}),
     "add_shader": _shader("shader"),
-    "bsdf_diffuse": _shader(inputs=_COLOR),
+    # Of a volume, which has no surface, the "emission" is its absorption coefficient in 1/m.
+    "volume_absorption": _shader("volume", _GREY | {"density": (FLOAT, 1.0)}),
+    "bsdf_diffuse": _shader("bsdf", _GREY | {"roughness": (FLOAT, 0.0)} | _NORMAL),
+    "bsdf_translucent": _shader("bsdf", _GREY | _NORMAL),
+    "bsdf_transparent": _shader("bsdf", _WHITE),
+    "emission": _shader("emission", _WHITE | {"strength": (FLOAT, 1.0)}),
+    "background": _shader("background", _GREY | {"strength": (FLOAT, 1.0)}),
+    "holdout": _shader("holdout"),
     "bsdf_glossy": _shader(
-        inputs=_COLOR | {"roughness": (FLOAT, 0.5)},
-        options={"distribution": ("GGX", "BECKMANN", "ASHIKHMIN_SHIRLEY", "MULTI_GGX")},
+        "bsdf",
+        _GREY | {"roughness": (FLOAT, 0.5)} | _ANISOTROPY,
+        {"distribution": ("BECKMANN", "GGX", "ASHIKHMIN_SHIRLEY", "MULTI_GGX")},
     ),
     "bsdf_glass": _shader(
-        inputs={"color": (COLOR, 1.0), "roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.5)},
-        options={"distribution": ("GGX", "BECKMANN", "MULTI_GGX")},
+        "bsdf",
+        _WHITE | {"roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.5)} | _NORMAL | _FILM,
+        {"distribution": ("BECKMANN", "GGX", "MULTI_GGX")},
     ),
-    "bsdf_refraction": _shader(inputs={"color": (COLOR, 1.0), "roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.5)}),
-    "bsdf_transparent": _shader(inputs={"color": (COLOR, 1.0)}),
-    "emission": _shader("emission", inputs={"color": (COLOR, 1.0), "strength": (FLOAT, 1.0)}),
-    # Of a volume, which has no surface, the "emission" is its absorption coefficient in 1/m.
-    "volume_absorption": _shader("volume", inputs={"color": (COLOR, 0.8), "density": (FLOAT, 1.0)}),
-    "background": _shader("background", inputs={"color": (COLOR, 0.8), "strength": (FLOAT, 1.0)}),
+    "bsdf_refraction": _shader(
+        "bsdf",
+        _WHITE | {"roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.45)} | _NORMAL,
+        {"distribution": ("BECKMANN", "GGX")},
+    ),
+    "bsdf_sheen": _shader(
+        "bsdf", _GREY | {"roughness": (FLOAT, 0.5)} | _NORMAL, {"distribution": ("ASHIKHMIN", "MICROFIBER")}
+    ),
+    "subsurface_scattering": _shader(
+        "bssrdf",
+        _GREY
+        | {
+            "scale": (FLOAT, 0.05),
+            "radius": (VECTOR, (1.0, 0.2, 0.1)),
+            "ior": (FLOAT, 1.4),
+            "roughness": (FLOAT, 1.0),
+            "anisotropy": (FLOAT, 0.0),
+        }
+        | _NORMAL,
+    ),
+    "bsdf_metallic": _shader(
+        "bsdf",
+        {
+            "base_color": (COLOR, (0.617, 0.577, 0.540)),
+            "edge_tint": (COLOR, (0.695, 0.726, 0.770)),
+            "ior": (VECTOR, (2.757, 2.513, 2.231)),
+            "extinction": (VECTOR, (3.867, 3.404, 3.009)),
+            "roughness": (FLOAT, 0.5),
+        }
+        | _ANISOTROPY
+        | _FILM,
+        {"distribution": ("BECKMANN", "GGX", "MULTI_GGX"), "fresnel_type": ("PHYSICAL_CONDUCTOR", "F82")},
+    ),
+    "bsdf_toon": _shader(
+        "bsdf", _GREY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL, {"component": ("DIFFUSE", "GLOSSY")}
+    ),
+    "bsdf_hair": _shader(
+        "bsdf",
+        _GREY | {"offset": (FLOAT, 0.0), "roughnessu": (FLOAT, 0.1), "roughnessv": (FLOAT, 1.0)} | _TANGENT,
+        {"component": ("Reflection", "Transmission")},
+    ),
     "bsdf_principled": _shader(
-        inputs={
-            "base_color": (COLOR, 0.8), "metallic": (FLOAT, 0.0), "roughness": (FLOAT, 0.5), "ior": (FLOAT, 1.5),
-            "alpha": (FLOAT, 1.0), "specular_ior_level": (FLOAT, 0.5), "specular_tint": (COLOR, 1.0),
-            "transmission_weight": (FLOAT, 0.0), "emission_color": (COLOR, 1.0), "emission_strength": (FLOAT, 0.0),
+        "bsdf",
+        {
+            "base_color": (COLOR, 0.8),
+            "metallic": (FLOAT, 0.0),
+            "roughness": (FLOAT, 0.5),
+            "ior": (FLOAT, 1.5),
+            "alpha": (FLOAT, 1.0),
+            **_NORMAL,
+            "diffuse_roughness": (FLOAT, 0.0),
+            "subsurface_weight": (FLOAT, 0.0),
+            "subsurface_radius": (VECTOR, (1.0, 0.2, 0.1)),
+            "subsurface_scale": (FLOAT, 0.05),
+            "subsurface_ior": (FLOAT, 1.4),
+            "subsurface_anisotropy": (FLOAT, 0.0),
+            "specular_ior_level": (FLOAT, 0.5),
+            "specular_tint": (COLOR, 1.0),
+            "anisotropic": (FLOAT, 0.0),
+            "anisotropic_rotation": (FLOAT, 0.0),
+            **_TANGENT,
+            "transmission_weight": (FLOAT, 0.0),
+            "coat_weight": (FLOAT, 0.0),
+            "coat_roughness": (FLOAT, 0.03),
+            "coat_ior": (FLOAT, 1.5),
+            "coat_tint": (COLOR, 1.0),
+            "coat_normal": (VECTOR, "normal"),
+            "sheen_weight": (FLOAT, 0.0),
+            "sheen_roughness": (FLOAT, 0.5),
+            "sheen_tint": (COLOR, 1.0),
+            "emission_color": (COLOR, 1.0),
+            "emission_strength": (FLOAT, 0.0),
+            **_FILM,
         },
-        options={"distribution": ("GGX", "MULTI_GGX")},
+        {"distribution": ("GGX", "MULTI_GGX"), "subsurface_method": _SUBSURFACE_METHODS},
     ),
-}  # fmt: skip
+}

@@ -5,13 +5,36 @@
 const int CLOSURE_LOBES = 3;
 const uint CLOSURE_BACKFACING = 1u;
 
-MicrofacetLobe closure_lobe(Closure closure, int index) {
-    if (index == 0)
-        return MicrofacetLobe(closure.lobe0_weight, closure.lobe0_kind, closure.lobe0_f0, closure.lobe0_alpha, closure.lobe_ior.x);
-    if (index == 1)
-        return MicrofacetLobe(closure.lobe1_weight, closure.lobe1_kind, closure.lobe1_f0, closure.lobe1_alpha, closure.lobe_ior.y);
-    return MicrofacetLobe(closure.lobe2_weight, closure.lobe2_kind, closure.lobe2_f0, closure.lobe2_alpha, closure.lobe_ior.z);
+Closure empty_closure() {
+    vec3 none = vec3(0.0);
+    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, none, 0u,
+                   none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0,
+                   vec3(1.0), 0.0, uvec3(0u), 0u, uvec3(ISOTROPIC), 0u);
 }
+
+MicrofacetLobe unpacked_lobe(vec3 weight, uint kind, vec3 f0, float alpha, float ior, uint normal, uint anisotropy) {
+    return MicrofacetLobe(weight, unpack_kind(kind), f0, alpha, unpack_tint(kind), ior, normal, anisotropy);
+}
+
+MicrofacetLobe closure_lobe(Closure c, int index) {
+    if (index == 0)
+        return unpacked_lobe(c.lobe0_weight, c.lobe0_kind, c.lobe0_f0, c.lobe0_alpha, c.lobe_ior.x, c.lobe_normals.x, c.lobe_anisotropies.x);
+    if (index == 1)
+        return unpacked_lobe(c.lobe1_weight, c.lobe1_kind, c.lobe1_f0, c.lobe1_alpha, c.lobe_ior.y, c.lobe_normals.y, c.lobe_anisotropies.y);
+    return unpacked_lobe(c.lobe2_weight, c.lobe2_kind, c.lobe2_f0, c.lobe2_alpha, c.lobe_ior.z, c.lobe_normals.z, c.lobe_anisotropies.z);
+}
+
+void set_closure_lobe(inout Closure c, int index, MicrofacetLobe lobe) {
+    uint kind = pack_kind(lobe.kind, lobe.tint);
+    if (index == 0) { c.lobe0_weight = lobe.weight; c.lobe0_kind = kind; c.lobe0_f0 = lobe.f0; c.lobe0_alpha = lobe.alpha; c.lobe_ior.x = lobe.ior; c.lobe_normals.x = lobe.normal; c.lobe_anisotropies.x = lobe.anisotropy; }
+    else if (index == 1) { c.lobe1_weight = lobe.weight; c.lobe1_kind = kind; c.lobe1_f0 = lobe.f0; c.lobe1_alpha = lobe.alpha; c.lobe_ior.y = lobe.ior; c.lobe_normals.y = lobe.normal; c.lobe_anisotropies.y = lobe.anisotropy; }
+    else { c.lobe2_weight = lobe.weight; c.lobe2_kind = kind; c.lobe2_f0 = lobe.f0; c.lobe2_alpha = lobe.alpha; c.lobe_ior.z = lobe.ior; c.lobe_normals.z = lobe.normal; c.lobe_anisotropies.z = lobe.anisotropy; }
+}
+
+// Share of the background that the surface cuts out of the picture.
+float closure_holdout(Closure closure) { return unpackUnorm2x16(closure.flags).y; }
+
+float lobe_cosine(MicrofacetLobe lobe, vec3 wo) { return clamp(dot(lobe_normal(lobe), wo), 0.0, 1.0); }
 
 bool closure_hit(Closure closure) { return closure.triangle != NO_TRIANGLE; }
 
@@ -22,15 +45,38 @@ bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) { return lobe.k
 // Smoother lobes cannot be evaluated towards a light, only followed.
 const float SMOOTHEST_LIT = 1e-4;
 
+// BSDF of the diffuse and translucent parts over that of smooth ones without a normal map; normal is unpacked.
+vec3 diffuse_factor(Closure closure, vec3 normal, vec3 wo, vec3 wi) {
+    vec3 factor = vec3(bump_shadowing(unpack_unit_vector(closure.shading_normal), normal, wi));
+    return dot(normal, wi) > 0.0 ? factor * rough_diffuse_factor(closure.diffuse_roughness, normal, wo, wi) : factor;
+}
+
+// Diffuse and translucent BSDF times cosine. front: wi is on the geometric normal's side.
+vec3 diffuse_scattered(Closure closure, vec3 wo, vec3 wi, bool front) {
+    vec3 normal = unpack_unit_vector(closure.diffuse_normal);
+    float cosine = dot(normal, wi);
+    if ((cosine > 0.0) != front) return vec3(0.0);
+    return (front ? closure.diffuse : closure.translucent) * diffuse_factor(closure, normal, wo, wi) * (abs(cosine) / PI);
+}
+
+// BSDF of a lobe times cosine.
+vec3 lobe_scattered(Closure closure, MicrofacetLobe lobe, vec3 wo, vec3 wi, bool front) {
+    vec3 normal = lobe_normal(lobe);
+    float cosine = dot(normal, wi);
+    if ((cosine > 0.0) != front) return vec3(0.0);
+    return abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * evaluate_lobe(lobe, normal, wo, wi);
+}
+
 // How a camera path goes on: the shares of the transparent part and of the three lobes, where they are
-// specular; or, stored, of the diffuse part and of the lobes that store photons, by which a path that gathers
-// goes on once.
-vec4 camera_path_shares(Closure closure, vec3 throughput, float cosine, float specular_alpha, bool stored) {
-    vec4 shares = vec4(largest(throughput * (stored ? closure.diffuse : closure.transparent)), 0.0, 0.0, 0.0);
+// specular; or, stored, of the diffuse and translucent parts together and of the lobes that store photons, by
+// which a path that gathers goes on once.
+vec4 camera_path_shares(Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool stored) {
+    vec4 shares = vec4(stored ? largest(throughput * closure.diffuse) + largest(throughput * closure.translucent)
+                              : largest(throughput * closure.transparent), 0.0, 0.0, 0.0);
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (stored ? lobe_stores(lobe, specular_alpha) : lobe_is_specular(lobe, specular_alpha))
-            shares[1 + k] = largest(throughput * lobe_albedo(lobe, cosine));
+            shares[1 + k] = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
     }
     return shares;
 }

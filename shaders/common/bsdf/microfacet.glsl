@@ -1,31 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Isotropic GGX microfacets with height-correlated masking (Walter et al. 2007; Heitz 2014, 2018).
+// Lobes of a closure: GGX microfacets that reflect or refract, and sheen. n is a lobe's own normal.
 
 #include <MicrofacetLobe>
-#include "common/sampling.glsl"
+#include "common/bsdf/diffuse.glsl"
 #include "common/bsdf/fresnel.glsl"
+#include "common/bsdf/ggx.glsl"
+#include "common/bsdf/sheen.glsl"
 
 const uint LOBE_NONE = 0u;
 const uint LOBE_MIRROR = 1u;       // reflects all
-const uint LOBE_METAL = 2u;        // Schlick's Fresnel from f0 to white
+const uint LOBE_METAL = 2u;        // Schlick's Fresnel from f0 to white, tint is of the edge at 82 degrees
 const uint LOBE_DIELECTRIC = 3u;   // reflection of a dielectric, f0 tinted
-const uint LOBE_GLASS = 4u;        // reflects and refracts
+const uint LOBE_GLASS = 4u;        // reflects and refracts, tint is of the reflectance at normal incidence
 const uint LOBE_REFRACTION = 5u;   // refracts only, without Fresnel's loss
+const uint LOBE_COATED_GLASS = 6u; // glass whose reflectance is the tint
+const uint LOBE_SHEEN = 7u;        // f0.xy are the coefficients of sheen_density
+const uint LOBE_VELVET = 8u;       // f0.x is sigma
 
-bool lobe_transmits(uint kind) { return kind == LOBE_GLASS || kind == LOBE_REFRACTION; }
+bool lobe_transmits(uint kind) { return kind >= LOBE_GLASS && kind <= LOBE_COATED_GLASS; }
+bool lobe_is_sheen(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_VELVET; }
+
+// Of these lobes f0 is a share of the light, as weight is of the others'.
+bool passes_by_f0(uint kind) { return kind == LOBE_GLASS || kind == LOBE_COATED_GLASS; }
+
+// Kind and tint in one word, as closures and importons keep them.
+uint pack_kind(uint kind, vec3 tint) {
+    uvec3 parts = uvec3(clamp(tint, 0.0, 1.0) * vec3(511.0, 1023.0, 511.0) + 0.5);
+    return kind | (parts.r << 4u) | (parts.g << 13u) | (parts.b << 23u);
+}
+uint unpack_kind(uint bits) { return bits & 0xfu; }
+vec3 unpack_tint(uint bits) { return vec3((uvec3(bits) >> uvec3(4u, 13u, 23u)) & uvec3(511u, 1023u, 511u)) / vec3(511.0, 1023.0, 511.0); }
+
+// What a normal map takes from light to or from wi; smooth_normal: packed, without the map.
+float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
+    return lobe.kind == LOBE_SHEEN ? bump_shadowing(unpack_unit_vector(smooth_normal), unpack_unit_vector(lobe.normal), wi) : 1.0;
+}
+
+vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
+
+// Share of what glass-like lobes reflect, grey: by it they choose between reflection and refraction.
+float reflected_share(MicrofacetLobe lobe, float cosine) {
+    if (lobe.kind == LOBE_GLASS) return fresnel_dielectric(cosine, lobe.ior);
+    if (lobe.kind == LOBE_COATED_GLASS) return cosine * cosine > 1.0 - lobe.ior * lobe.ior ? clamp(largest(lobe.tint), 0.0, 0.99) : 1.0;
+    return lobe.kind == LOBE_REFRACTION ? 0.0 : 1.0;
+}
 
 // Reflected share per channel at a microfacet, without the lobe's weight.
 vec3 lobe_reflectance(MicrofacetLobe lobe, float cosine) {
     if (lobe.kind == LOBE_MIRROR) return vec3(1.0);
-    if (lobe.kind == LOBE_METAL) return mix(lobe.f0, vec3(1.0), schlick_interpolation(cosine));
+    if (lobe.kind == LOBE_METAL) return f82_reflectance(lobe.f0, lobe.tint, cosine);
     if (lobe.kind == LOBE_DIELECTRIC) return mix(lobe.f0, vec3(1.0), dielectric_interpolation(cosine, lobe.ior));
-    if (lobe.kind == LOBE_GLASS) return vec3(fresnel_dielectric(cosine, lobe.ior));
+    if (lobe.kind == LOBE_GLASS) return tinted_dielectric(cosine, lobe.ior, lobe.tint);
+    if (lobe.kind == LOBE_COATED_GLASS) return reflected_share(lobe, cosine) >= 1.0 ? vec3(1.0) : lobe.tint;
+    if (lobe_is_sheen(lobe.kind)) return vec3(1.0);
     return vec3(0.0);
 }
 
 // Tint and share of what passes a microfacet, without total internal reflection.
 vec3 lobe_transmittance(MicrofacetLobe lobe, float cosine) {
-    if (lobe.kind == LOBE_GLASS) return lobe.f0 * (1.0 - fresnel_dielectric(cosine, lobe.ior));
+    if (lobe.kind == LOBE_GLASS || lobe.kind == LOBE_COATED_GLASS) return lobe.f0 * (1.0 - lobe_reflectance(lobe, cosine));
     if (lobe.kind == LOBE_REFRACTION) return lobe.weight;
     return vec3(0.0);
 }
@@ -36,45 +69,28 @@ vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
     return lobe_transmits(lobe.kind) ? albedo + lobe_transmittance(lobe, cosine) : albedo;
 }
 
-float ggx_density(float cosine, float alpha) {
-    float a2 = alpha * alpha;
-    float d = cosine * cosine * (a2 - 1.0) + 1.0;
-    return a2 / (PI * d * d);
-}
-
-float ggx_lambda(float cosine, float alpha) {
-    float c2 = max(cosine * cosine, 1e-12);
-    return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 - c2) / c2) - 1.0);
-}
-
-// Visible normals in the frame of n (Heitz, JCGT 2018).
-vec3 sample_visible_normal(vec3 n, vec3 wo, float alpha, vec2 u) {
-    if (alpha < 1e-6) return n;
-    vec3 t, b;
-    tangent_frame(n, t, b);
-    vec3 v = normalize(vec3(alpha * dot(wo, t), alpha * dot(wo, b), max(dot(wo, n), 1e-6)));
-    float length2 = v.x * v.x + v.y * v.y;
-    vec3 t1 = length2 > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(length2) : vec3(1.0, 0.0, 0.0);
-    vec3 t2 = cross(v, t1);
-    vec2 p = sample_disk(u);
-    float s = 0.5 * (1.0 + v.z);
-    p.y = (1.0 - s) * sqrt(max(0.0, 1.0 - p.x * p.x)) + s * p.y;
-    vec3 h = p.x * t1 + p.y * t2 + sqrt(max(0.0, 1.0 - dot(p, p))) * v;
-    return normalize(alpha * (h.x * t + h.y * b) + max(1e-9, h.z) * n);
-}
-
 // What sampling a lobe gives: a direction and f cos / pdf. weight is zero when nothing is scattered.
 struct LobeSample { vec3 direction; vec3 weight; bool transmitted; };
 
 LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_event, bool radiance) {
     LobeSample result = LobeSample(n, vec3(0.0), false);
-    vec3 h = sample_visible_normal(n, wo, lobe.alpha, u);
+    if (lobe_is_sheen(lobe.kind)) {
+        SheenFrame sheen = sheen_frame(n, wo);
+        bool fitted = lobe.kind == LOBE_SHEEN;
+        result.direction = fitted ? sample_sheen(lobe.f0.xy, sheen, u) : sample_cosine_hemisphere(n, u);
+        float cosine_i = dot(n, result.direction);
+        if (cosine_i <= 0.0) return result;
+        result.weight = lobe.weight * (fitted ? 1.0 : velvet_scattered(lobe.f0.x, n, wo, result.direction) * PI / cosine_i);
+        return result;
+    }
+    MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
+    vec3 local_wo = to_frame(frame, wo);
+    bool smooth_lobe = lobe.alpha < 1e-6;
+    vec3 h = smooth_lobe ? n : from_frame(frame, sample_visible_normal(local_wo, frame.alpha, u));
     float cosine = dot(wo, h);
     if (cosine <= 0.0) return result;
     vec3 reflected = lobe.weight * lobe_reflectance(lobe, cosine);
-    float probability = 1.0;
-    if (lobe.kind == LOBE_GLASS) probability = fresnel_dielectric(cosine, lobe.ior);
-    if (lobe.kind == LOBE_REFRACTION) probability = 0.0;
+    float probability = reflected_share(lobe, cosine);
     if (u_event < probability) {
         result.direction = normalize(2.0 * cosine * h - wo);
         result.weight = reflected / probability;
@@ -89,9 +105,9 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
         if (radiance) result.weight /= lobe.ior * lobe.ior;
         if (dot(result.direction, n) >= 0.0) result.weight = vec3(0.0);
     }
-    if (lobe.alpha >= 1e-6) {
-        float lambda_o = ggx_lambda(dot(wo, n), lobe.alpha);
-        float lambda_i = ggx_lambda(dot(result.direction, n), lobe.alpha);
+    if (!smooth_lobe) {
+        float lambda_o = ggx_lambda(local_wo, frame.alpha);
+        float lambda_i = ggx_lambda(to_frame(frame, result.direction), frame.alpha);
         result.weight *= (1.0 + lambda_o) / (1.0 + lambda_o + lambda_i);
     }
     return result;
@@ -118,12 +134,19 @@ bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, o
 
 // BSDF for radiance that arrives from wi and leaves to wo (unit vectors away from the surface), 1/sr.
 vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
+    if (lobe_is_sheen(lobe.kind)) {
+        if (cosine_o <= 0.0 || cosine_i <= 0.0) return vec3(0.0);
+        float scattered = lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, sheen_frame(n, wo), wi)
+                                                  : velvet_scattered(lobe.f0.x, n, wo, wi);
+        return lobe.weight * (scattered / cosine_i);
+    }
     vec3 h;
     float oh, ih;
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return vec3(0.0);
-    float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
-    float density = ggx_density(dot(h, n), lobe.alpha);
-    float masking = 1.0 / (1.0 + ggx_lambda(cosine_o, lobe.alpha) + ggx_lambda(cosine_i, lobe.alpha));
+    MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
+    float density = ggx_density(to_frame(frame, h), frame.alpha);
+    float masking = 1.0 / (1.0 + ggx_lambda(to_frame(frame, wo), frame.alpha) + ggx_lambda(to_frame(frame, wi), frame.alpha));
     if (cosine_i > 0.0)
         return lobe.weight * lobe_reflectance(lobe, oh) * (density * masking / (4.0 * cosine_o * cosine_i));
     float spread = lobe.ior * ih + oh;
@@ -133,12 +156,15 @@ vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 
 // Density with which sample_lobe gives a direction, 1/sr.
 float lobe_density(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    if (lobe_is_sheen(lobe.kind))
+        return lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, sheen_frame(n, wo), wi) : max(dot(n, wi), 0.0) / PI;
     vec3 h;
     float oh, ih;
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return 0.0;
+    MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
     float cosine_o = dot(wo, n);
-    float visible = ggx_density(dot(h, n), lobe.alpha) * oh / (cosine_o * (1.0 + ggx_lambda(cosine_o, lobe.alpha)));
-    float reflected = lobe.kind == LOBE_GLASS ? fresnel_dielectric(oh, lobe.ior) : (lobe.kind == LOBE_REFRACTION ? 0.0 : 1.0);
+    float visible = ggx_density(to_frame(frame, h), frame.alpha) * oh / (cosine_o * (1.0 + ggx_lambda(to_frame(frame, wo), frame.alpha)));
+    float reflected = reflected_share(lobe, oh);
     if (dot(wi, n) > 0.0) return visible * reflected / (4.0 * oh);
     float spread = lobe.ior * ih + oh;
     return visible * (1.0 - reflected) * lobe.ior * lobe.ior * abs(ih) / max(spread * spread, 1e-12);

@@ -22,15 +22,6 @@ void corner_uvs(Surface surface, uint layer, out vec2 uv[3]) {
     uv[2] = place.y > 0u ? attribute_corner(place, local, 2u).xy : own.uv2;
 }
 
-// Around the object's Z axis, where no tangent is given.
-vec3 default_tangent(Surface surface) {
-    vec3 at = point_to_object(surface, surface.position);
-    vec3 around = direction_to_world(surface, vec3(-at.y, at.x, 0.0));
-    vec3 across = around - dot(around, surface.normal) * surface.normal;
-    float size = length(across);
-    return size > 1e-20 ? across / size : vec3(0.0);
-}
-
 void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object,
                     out vec3 camera, out vec3 window, out vec3 reflection) {
     bool world = surface.triangle == NO_TRIANGLE;
@@ -59,10 +50,8 @@ void node_attribute(Surface surface, uint layer, out vec3 color, out vec3 vector
     alpha = value.a;
 }
 
-// Without such coordinates, as on a world, those of the object.
 void node_generated_coord(Surface surface, uint layer, out vec3 generated) {
-    generated = attribute_place(surface, layer).y > 0u ? attribute_value(surface, layer).xyz
-                                                       : point_to_object(surface, surface.position);
+    generated = attribute_place(surface, layer).y > 0u ? attribute_value(surface, layer).xyz : within_texture_space(surface);
 }
 
 void node_random_per_island(Surface surface, uint layer, out float random) { random = attribute_value(surface, layer).x; }
@@ -85,7 +74,7 @@ void node_tangent(Surface surface, int direction_type, int axis, uint layer, out
     if (direction_type == 0) {
         vec3 at = attribute_value(surface, layer).xyz - 0.5;
         across = axis == 0 ? vec3(0.0, -at.z, at.y) : (axis == 1 ? vec3(-at.z, 0.0, at.x) : vec3(-at.y, at.x, 0.0));
-        across = direction_to_world(surface, across);
+        across = normal_to_world(surface, across);
     } else {
         vec2 uv[3];
         corner_uvs(surface, layer, uv);

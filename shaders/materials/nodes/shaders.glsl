@@ -1,76 +1,134 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shader nodes.
+// Shader nodes as Cycles has them. What stands in for something else says so.
 
-#include "materials/closures.glsl"
+#include "materials/principled.glsl"
 
-void node_bsdf_diffuse(inout ClosureBuilder builder, float weight, vec3 color) { builder.closure.diffuse += weight * max(color, 0.0); }
+float unit(float value) { return clamp(value, 0.0, 1.0); }
+float valid_ior(float ior) { return clamp(ior, 1e-3, 1e3); }
 
-void node_bsdf_glossy(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness) {
-    add_mirror(builder, weight, max(color, 0.0), clamp(roughness, 0.0, 1.0), distribution == 3);
+void node_bsdf_diffuse(inout ClosureBuilder builder, float weight, vec3 color, float roughness, vec3 normal) {
+    add_diffuse(builder, vec3(weight), max(color, 0.0), unit(roughness), normal);
 }
 
-void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness, float ior) {
-    vec3 weighted = weight * max(color, 0.0);
-    add_glass(builder, weighted, weighted, clamp(roughness, 0.0, 1.0), max(ior, 1e-5), distribution == 2);
+void node_bsdf_translucent(inout ClosureBuilder builder, float weight, vec3 color, vec3 normal) {
+    add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), normal, 0u);
 }
 
-void node_bsdf_refraction(inout ClosureBuilder builder, float weight, vec3 color, float roughness, float ior) {
-    roughness = clamp(roughness, 0.0, 1.0);
-    ior = max(ior, 1e-5);
-    add_lobe(builder, MicrofacetLobe(weight * max(color, 0.0), LOBE_REFRACTION, vec3(0.0), roughness * roughness,
-                                     builder.backfacing ? 1.0 / ior : ior));
+void node_bsdf_transparent(inout ClosureBuilder builder, float weight, vec3 color) {
+    builder.closure.transparent += weight * max(color, 0.0);
 }
-
-void node_bsdf_transparent(inout ClosureBuilder builder, float weight, vec3 color) { builder.closure.transparent += weight * max(color, 0.0); }
 
 void node_emission(inout ClosureBuilder builder, float weight, vec3 color, float strength) {
     builder.closure.emission += weight * max(color * strength, 0.0);
 }
 
-void node_background(inout ClosureBuilder builder, float weight, vec3 color, float strength) { node_emission(builder, weight, color, strength); }
-
-void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float metallic, float roughness,
-                          float ior, float alpha, float specular_ior_level, vec3 specular_tint, float transmission,
-                          vec3 emission_color, float emission_strength) {
-    color = max(color, 0.0);
-    specular_tint = max(specular_tint, 0.0);
-    roughness = clamp(roughness, 0.0, 1.0);
-    metallic = clamp(metallic, 0.0, 1.0);
-    transmission = clamp(transmission, 0.0, 1.0);
-    alpha = clamp(alpha, 0.0, 1.0);
-    ior = max(ior, 1e-5);
-    bool multiscatter = distribution == 1;
-    float cosine = builder.cosine;
-    builder.closure.transparent += vec3(weight * (1.0 - alpha));
-    weight *= alpha;
-    builder.closure.emission += weight * max(emission_color * emission_strength, 0.0);
-    if (metallic > 0.0) {
-        vec3 average = mix(color, vec3(1.0), 1.0 / 21.0);  // cosine-weighted mean of Schlick's Fresnel
-        vec3 factor = multiscatter ? multiscatter_factor(roughness, cosine, average) : vec3(1.0);
-        add_lobe(builder, MicrofacetLobe(weight * metallic * factor, LOBE_METAL, color, roughness * roughness, 1.0));
-        weight *= 1.0 - metallic;
-    }
-    if (transmission > 0.0) {
-        float share = weight * transmission;
-        add_glass(builder, share * specular_tint, share * sqrt(color), roughness, ior, multiscatter);
-        weight *= 1.0 - transmission;
-    }
-    if (weight <= 0.0) return;
-    float f0 = normal_reflectance(ior) * 2.0 * max(specular_ior_level, 0.0);
-    float adjusted = index_from_reflectance(f0);
-    vec3 below = vec3(weight);
-    if (f0 > 0.0) {
-        vec3 tinted = min(f0 * specular_tint, vec3(1.0));
-        float outside = max(adjusted, 1.0 / adjusted);
-        // Cycles does not compensate this lobe: what it loses passes to the layer below.
-        vec3 albedo = tinted * white_albedo(roughness, cosine)
-                    + (1.0 - tinted) * dielectric_grazing_albedo(outside, roughness, cosine);
-        add_lobe(builder, MicrofacetLobe(vec3(weight), LOBE_DIELECTRIC, tinted, roughness * roughness, outside));
-        below *= 1.0 - largest(albedo);
-    }
-    builder.closure.diffuse += max(below, vec3(0.0)) * color;
+void node_background(inout ClosureBuilder builder, float weight, vec3 color, float strength) {
+    node_emission(builder, weight, color, strength);
 }
 
+void node_holdout(inout ClosureBuilder builder, float weight) { add_holdout(builder, weight); }
+
+// Anisotropy from -0.99 to 0.99: above 0 the tangent's axis is the smoother one.
+Microfacets stretched_microfacets(ClosureBuilder builder, vec3 normal, float roughness, float anisotropy, vec3 tangent, float rotation) {
+    anisotropy = clamp(anisotropy, -0.99, 0.99);
+    float aspect = anisotropy < 0.0 ? 1.0 + anisotropy : 1.0 / (1.0 - anisotropy);
+    return anisotropic_microfacets(builder, normal, unit(roughness), aspect, tangent, rotation);
+}
+
+// GGX stands in for Beckmann's and for Ashikhmin and Shirley's distribution.
+void node_bsdf_glossy(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
+                      float anisotropy, float rotation, vec3 normal, vec3 tangent) {
+    Microfacets at = stretched_microfacets(builder, normal, roughness, anisotropy, tangent, rotation);
+    add_mirror(builder, at, weight, max(color, 0.0), distribution == 3);
+}
+
+// GGX stands in for Beckmann's distribution.
+void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
+                     float ior, vec3 normal, float thin_film_thickness, float thin_film_ior) {
+    vec3 weighted = weight * max(color, 0.0);
+    Microfacets at = isotropic_microfacets(builder, normal, unit(roughness));
+    add_glass(builder, at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), valid_ior(ior), distribution == 2);
+}
+
+// GGX stands in for Beckmann's distribution.
+void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
+                          float ior, vec3 normal) {
+    add_refraction(builder, isotropic_microfacets(builder, normal, unit(roughness)), weight * max(color, 0.0), valid_ior(ior));
+}
+
+void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness, vec3 normal) {
+    vec3 weighted = weight * max(color, 0.0);
+    if (distribution == 0) add_velvet(builder, weighted, unit(roughness), normal);
+    else add_sheen(builder, weighted, unit(roughness), normal);
+}
+
+// A diffuse surface of the same colour stands in: as if light left where it came in.
+void node_subsurface_scattering(inout ClosureBuilder builder, float weight, vec3 color, float scale, vec3 radius,
+                                float ior, float roughness, float anisotropy, vec3 normal) {
+    add_diffuse(builder, vec3(weight), max(color, 0.0), 0.0, normal);
+}
+
+vec3 conductor_reflectance(float cosine, vec3 n, vec3 k) {
+    float c2 = cosine * cosine, s2 = 1.0 - c2;
+    vec3 d = n * n - k * k - s2;
+    vec3 root = sqrt(d * d + 4.0 * n * n * k * k), a = sqrt(max(0.5 * (root + d), 0.0));
+    vec3 perpendicular = (root + c2 - 2.0 * a * cosine) / (root + c2 + 2.0 * a * cosine);
+    vec3 both = (c2 * root + s2 * s2 - 2.0 * a * cosine * s2) / (c2 * root + s2 * s2 + 2.0 * a * cosine * s2);
+    return 0.5 * perpendicular * (1.0 + both);
+}
+
+// GGX stands in for Beckmann's distribution; of a physical conductor, the F82 curve that meets its own at normal
+// incidence and at 82 degrees.
+void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribution, int fresnel_type, vec3 base_color,
+                        vec3 edge_tint, vec3 ior, vec3 extinction, float roughness, float anisotropy, float rotation,
+                        vec3 normal, vec3 tangent, float thin_film_thickness, float thin_film_ior) {
+    Microfacets at = anisotropic_microfacets(builder, normal, unit(roughness), sqrt(1.0 - 0.9 * unit(anisotropy)), tangent, rotation);
+    vec3 f0 = clamp(base_color, 0.0, 1.0), edge = clamp(edge_tint, 0.0, 1.0);
+    if (fresnel_type == 0) {
+        const float cosine = 1.0 / 7.0;
+        vec3 n = max(ior, 0.0), k = max(extinction, 0.0);
+        f0 = clamp(conductor_reflectance(1.0, n, k), 0.0, 1.0);
+        edge = clamp(conductor_reflectance(cosine, n, k) / mix(f0, vec3(1.0), schlick_interpolation(cosine)), 0.0, 1.0);
+    }
+    add_metal(builder, at, vec3(weight), f0, edge, distribution == 2);
+}
+
+// A diffuse or a glossy surface stands in.
+void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, vec3 color, float size, float smoothness, vec3 normal) {
+    if (component == 0) add_diffuse(builder, vec3(weight), max(color, 0.0), 0.0, normal);
+    else add_mirror(builder, isotropic_microfacets(builder, normal, unit(size)), weight, max(color, 0.0), false);
+}
+
+// A glossy surface stretched across the fibre, or a translucent one, stands in.
+void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, vec3 color, float offset, float roughnessu,
+                    float roughnessv, vec3 tangent) {
+    if (component == 1) add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), builder.shading, 0u);
+    else {
+        vec2 alpha = clamp(vec2(roughnessv, roughnessu), 0.01, 1.0);
+        Microfacets at = anisotropic_microfacets(builder, builder.shading, sqrt(sqrt(alpha.x * alpha.y)),
+                                                 sqrt(alpha.y / alpha.x), tangent, 0.25);
+        add_mirror(builder, at, weight, max(color, 0.0), false);
+    }
+}
+
+// Subsurface scattering adds to the diffuse base.
+void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method, vec3 base_color,
+                          float metallic, float roughness, float ior, float alpha, vec3 normal, float diffuse_roughness,
+                          float subsurface_weight, vec3 subsurface_radius, float subsurface_scale, float subsurface_ior,
+                          float subsurface_anisotropy, float specular_ior_level, vec3 specular_tint, float anisotropic,
+                          float anisotropic_rotation, vec3 tangent, float transmission_weight, float coat_weight,
+                          float coat_roughness, float coat_ior, vec3 coat_tint, vec3 coat_normal, float sheen_weight,
+                          float sheen_roughness, vec3 sheen_tint, vec3 emission_color, float emission_strength,
+                          float thin_film_thickness, float thin_film_ior) {
+    add_principled(builder, weight, Principled(
+        max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal, unit(diffuse_roughness),
+        max(specular_ior_level, 0.0), max(specular_tint, 0.0), unit(anisotropic), anisotropic_rotation, tangent,
+        unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0), coat_normal,
+        unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0), max(emission_color * emission_strength, 0.0),
+        max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3), distribution == 1));
+}
+
+// What absorbs is not seen: its coefficient takes the place of the emission.
 void node_volume_absorption(inout ClosureBuilder builder, float weight, vec3 color, float density) {
     builder.closure.emission += weight * max(density, 0.0) * (1.0 - clamp(color, 0.0, 1.0));
 }

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "materials/nodes/voronoi_features.glsl"
 
-const int VORONOI_F1 = 0;
-const int VORONOI_F2 = 1;
-const int VORONOI_SMOOTH_F1 = 2;
-const int VORONOI_DISTANCE_TO_EDGE = 3;
-const int VORONOI_N_SPHERE_RADIUS = 4;
-
 void node_tex_voronoi(
     int voronoi_dimensions, int metric, int feature, int normalize_sum,
     vec3 vector, float w, float scale, float detail, float roughness, float lacunarity, float smoothness,
@@ -25,34 +19,26 @@ void node_tex_voronoi(
     color = vec3(0.0);
     position = vec3(0.0);
     w_out = radius = 0.0;
-    if (feature == VORONOI_N_SPHERE_RADIUS) {
-        radius = voronoi_sphere_radius(dimensions, randomness, p);
-        return;
-    }
 
     float furthest = 0.5 + 0.5 * randomness;
-    if (!edge) furthest = voronoi_distance(dimensions, metric, exponent, vec4(0.0), furthest * voronoi_axes(dimensions));
+    if (!edge) {
+        float rank = voronoi_rank(dimensions, metric, exponent, furthest * voronoi_axes(dimensions));
+        furthest = voronoi_root(dimensions, metric, exponent, rank);
+    }
     if (feature == VORONOI_F2) furthest *= 2.0;
     vec4 place = vec4(0.0);
     float amplitude = 1.0, octave_scale = 1.0, total = edge ? furthest : 0.0;
-    int last = roughness == 0.0 ? 0 : int(ceil(detail));
+    int last = roughness == 0.0 || feature == VORONOI_N_SPHERE_RADIUS ? 0 : int(ceil(detail));
     for (int i = 0; i <= last; ++i) {
         float share = float(i) <= detail ? 1.0 : fract(detail);
+        VoronoiOctave octave = voronoi_octave(
+            dimensions, metric, feature, smoothness, exponent, randomness, p * octave_scale
+        );
         if (edge) {
-            float octave = voronoi_edge_distance(dimensions, randomness, p * octave_scale);
+            float reached = min(distance_out, octave.distance / octave_scale);
             total = mix(total, mix(total, furthest / octave_scale, amplitude), share);
-            distance_out = mix(
-                distance_out, mix(distance_out, min(distance_out, octave / octave_scale), amplitude), share
-            );
+            distance_out = mix(distance_out, mix(distance_out, reached, amplitude), share);
         } else {
-            VoronoiOctave octave;
-            if (feature == VORONOI_SMOOTH_F1) {
-                octave = voronoi_smooth(dimensions, metric, smoothness, exponent, randomness, p * octave_scale);
-            } else {
-                octave = voronoi_nearest(
-                    dimensions, metric, feature == VORONOI_F2, exponent, randomness, p * octave_scale
-                );
-            }
             total += share * amplitude;
             distance_out += share * amplitude * octave.distance;
             color += share * amplitude * octave.color;
@@ -61,12 +47,17 @@ void node_tex_voronoi(
         octave_scale *= lacunarity;
         amplitude *= roughness;
     }
-    if (normalize_sum != 0) {
-        distance_out /= edge ? total : total * furthest;
-        color /= total;
+    if (feature == VORONOI_N_SPHERE_RADIUS) {
+        radius = distance_out;
+        distance_out = 0.0;
+    } else {
+        if (normalize_sum != 0) {
+            distance_out /= edge ? total : total * furthest;
+            color /= total;
+        }
+        place = scale != 0.0 ? place / scale : vec4(0.0);
+        if (!edge && dimensions > 1) position = place.xyz;
+        if (!edge && dimensions == 1) w_out = place.x;
+        if (!edge && dimensions == 4) w_out = place.w;
     }
-    place = scale != 0.0 ? place / scale : vec4(0.0);
-    if (!edge && dimensions > 1) position = place.xyz;
-    if (!edge && dimensions == 1) w_out = place.x;
-    if (!edge && dimensions == 4) w_out = place.w;
 }

@@ -7,7 +7,7 @@ const int VORONOI_EUCLIDEAN = 0;
 const int VORONOI_MANHATTAN = 1;
 const int VORONOI_CHEBYCHEV = 2;
 const int VORONOI_MINKOWSKI = 3;
-const float VORONOI_FAR = 3.4e38;
+const float VORONOI_FAR = 3.4028234e38;
 
 // Jarzynski and Olano, Hash Functions for GPU Rendering (JCGT 2020): pcg2d, pcg3d, pcg4d, on signed numbers
 // (the shift keeps the sign) as Cycles has them. One function: what a dimension does not use falls away.
@@ -46,14 +46,20 @@ vec3 voronoi_color(int dimensions, ivec4 cell) {
     return voronoi_hash(dimensions, cell).xyz;
 }
 
-float voronoi_distance(int dimensions, int metric, float exponent, vec4 a, vec4 b) {
-    vec4 way = abs(a - b);
+// Grows with the distance and costs less: distances are voronoi_root of it.
+float voronoi_rank(int dimensions, int metric, float exponent, vec4 way) {
+    way = abs(way);
     if (dimensions == 1) return way.x;
-    if (metric == VORONOI_EUCLIDEAN) return length(way);
-    if (metric == VORONOI_MANHATTAN) return way.x + way.y + way.z + way.w;
+    if (metric == VORONOI_EUCLIDEAN) return dot(way, way);
     if (metric == VORONOI_CHEBYCHEV) return max(max(way.x, way.y), max(way.z, way.w));
-    vec4 powers = pow(way, vec4(exponent)) * voronoi_axes(dimensions);
-    return pow(powers.x + powers.y + powers.z + powers.w, 1.0 / exponent);
+    if (metric == VORONOI_MINKOWSKI) way = pow(way, vec4(exponent)) * voronoi_axes(dimensions);
+    return way.x + way.y + way.z + way.w;
+}
+
+float voronoi_root(int dimensions, int metric, float exponent, float rank) {
+    if (dimensions > 1 && metric == VORONOI_EUCLIDEAN) return sqrt(rank);
+    if (dimensions > 1 && metric == VORONOI_MINKOWSKI) return rank > 0.0 ? pow(rank, 1.0 / exponent) : 0.0;
+    return rank;
 }
 
 // Cells of a neighbourhood 3 or 5 wide.

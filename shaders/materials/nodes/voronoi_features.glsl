@@ -1,24 +1,89 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a Voronoi texture tells of a place: the nearest points and the borders around it.
+// What one octave of a Voronoi texture tells of a place: the nearest points and the borders around it.
 #include "materials/nodes/voronoi_cells.glsl"
 
+const int VORONOI_F1 = 0;
+const int VORONOI_F2 = 1;
+const int VORONOI_SMOOTH_F1 = 2;
+const int VORONOI_DISTANCE_TO_EDGE = 3;
+const int VORONOI_N_SPHERE_RADIUS = 4;
+
+// The distance is that to the edge or the radius where that is the feature, without colour and position then.
 struct VoronoiOctave { float distance; vec3 color; vec4 position; };
 
-// The nearest point, or the second nearest (a literal).
-VoronoiOctave voronoi_nearest(
-    int dimensions, int metric, bool second, float exponent, float randomness, vec4 coordinates
+// Blends a cell in with a polynomial smooth minimum; the first one replaces what is there.
+void voronoi_blend(
+    inout VoronoiOctave octave, bool first, float smoothness, float reached, vec3 color, vec4 point, vec4 axes
 ) {
+    float lead = octave.distance - reached;
+    float share = smoothness > 0.0 ? smoothstep(0.0, 1.0, 0.5 + 0.5 * lead / smoothness) : lead > 0.0 ? 1.0 : 0.0;
+    if (first) share = 1.0;
+    float correction = smoothness * share * (1.0 - share);
+    octave.distance = mix(octave.distance, reached, share) - correction;
+    correction /= 1.0 + 3.0 * smoothness;
+    octave.color = mix(octave.color, color, share) - correction;
+    octave.position = mix(octave.position, point, share) - correction * axes;
+}
+
+// From a place in a cell to the nearest plane halfway between the nearest point and another one; or half the way
+// from the nearest point to the one nearest to that.
+float voronoi_border(
+    int dimensions, bool to_edge, float randomness, vec4 corner, vec4 place, ivec4 chosen, vec4 centre
+) {
+    ivec4 cell = ivec4(corner);
+    if (to_edge && dimensions == 1) {
+        // Cycles looks at the two borders of the cell's own point, whose key may be -0.0.
+        chosen = ivec4(0);
+        centre.x = hash_to_unit(corner.x) * randomness;
+    }
+    float border = VORONOI_FAR;
+    for (int index = 0; index < voronoi_cells(dimensions, 3); ++index) {
+        ivec4 offset = voronoi_offset(dimensions, 3, index);
+        if (!to_edge) offset += chosen;
+        vec4 point = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness;
+        vec4 across = point - centre;
+        float squared = dot(across, across);
+        bool other = to_edge && dimensions > 1 ? squared > 0.0001 : offset != chosen;
+        float reached = 0.5 * sqrt(squared);
+        if (to_edge) reached = dot(0.5 * (point + centre) - place, across * inversesqrt(squared));
+        if (dimensions == 1) reached = abs(reached);
+        if (other) border = min(border, reached);
+    }
+    return border;
+}
+
+// Dimensions, metric and feature are literals. One pass over the cells serves all features, so that little code
+// is left to compile.
+VoronoiOctave voronoi_octave(
+    int dimensions, int metric, int feature, float smoothness, float exponent, float randomness, vec4 coordinates
+) {
+    bool to_edge = feature == VORONOI_DISTANCE_TO_EDGE, to_neighbour = feature == VORONOI_N_SPHERE_RADIUS;
+    if (to_edge || to_neighbour) metric = VORONOI_EUCLIDEAN;
+    bool smoothed = feature == VORONOI_SMOOTH_F1;
+    // As in Cycles; it shows where distances are too large for a float.
+    bool by_distance = smoothed || feature == VORONOI_F2;
+    int width = smoothed ? 5 : 3;
     vec4 corner = floor(coordinates);
     ivec4 cell = ivec4(corner);
     vec4 place = coordinates - corner;
+    VoronoiOctave octave = VoronoiOctave(0.0, vec3(0.0), vec4(0.0));
+
     float nearest = VORONOI_FAR, next = VORONOI_FAR;
-    int middle = voronoi_cells(dimensions, 3) / 2;
-    int nearest_index = middle, next_index = middle;
-    for (int index = 0; index < voronoi_cells(dimensions, 3); ++index) {
-        ivec4 offset = voronoi_offset(dimensions, 3, index);
+    int nearest_index = voronoi_cells(dimensions, 3) / 2, next_index = nearest_index;
+    bool first = true;
+    for (int index = 0; index < voronoi_cells(dimensions, width); ++index) {
+        ivec4 offset = voronoi_offset(dimensions, width, index);
         vec4 point = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness;
-        float reached = voronoi_distance(dimensions, metric, exponent, point, place);
-        if (reached < nearest) {
+        float reached = voronoi_rank(dimensions, metric, exponent, point - place);
+        if (by_distance) reached = voronoi_root(dimensions, metric, exponent, reached);
+        if (smoothed) {
+            // Without smoothness Cycles looks at the 3 cells' width that F1 does.
+            if (smoothness > 0.0 || all(lessThan(abs(offset), ivec4(2)))) {
+                vec3 color = voronoi_color(dimensions, cell + offset);
+                voronoi_blend(octave, first, smoothness, reached, color, point, voronoi_axes(dimensions));
+                first = false;
+            }
+        } else if (reached < nearest) {
             next = nearest;
             next_index = nearest_index;
             nearest = reached;
@@ -28,97 +93,19 @@ VoronoiOctave voronoi_nearest(
             next_index = index;
         }
     }
-    ivec4 offset = voronoi_offset(dimensions, 3, second ? next_index : nearest_index);
-    VoronoiOctave octave;
-    octave.distance = second ? next : nearest;
-    octave.color = voronoi_color(dimensions, cell + offset);
-    octave.position = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness + corner;
-    return octave;
-}
 
-// Blends the cells in turn with a polynomial smooth minimum; as Cycles, of the 3 cells' width where it is not smooth.
-VoronoiOctave voronoi_smooth(
-    int dimensions, int metric, float smoothness, float exponent, float randomness, vec4 coordinates
-) {
-    vec4 corner = floor(coordinates);
-    ivec4 cell = ivec4(corner);
-    vec4 place = coordinates - corner;
-    VoronoiOctave octave = VoronoiOctave(0.0, vec3(0.0), vec4(0.0));
-    bool smoothed = smoothness > 0.0, started = false;
-    for (int index = 0; index < voronoi_cells(dimensions, 5); ++index) {
-        ivec4 offset = voronoi_offset(dimensions, 5, index);
-        vec4 point = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness;
-        float reached = voronoi_distance(dimensions, metric, exponent, point, place);
-        if (smoothed || all(lessThan(abs(offset), ivec4(2)))) {
-            float lead = octave.distance - reached;
-            float share = smoothed ? smoothstep(0.0, 1.0, 0.5 + 0.5 * lead / smoothness) : lead > 0.0 ? 1.0 : 0.0;
-            if (!started) share = 1.0;
-            started = true;
-            float correction = smoothness * share * (1.0 - share);
-            octave.distance = mix(octave.distance, reached, share) - correction;
-            correction /= 1.0 + 3.0 * smoothness;
-            octave.color = mix(octave.color, voronoi_color(dimensions, cell + offset), share) - correction;
-            octave.position = mix(octave.position, point, share) - correction * voronoi_axes(dimensions);
+    if (smoothed) {
+        octave.position += corner;
+    } else {
+        ivec4 chosen = voronoi_offset(dimensions, 3, feature == VORONOI_F2 ? next_index : nearest_index);
+        vec4 centre = vec4(chosen) + voronoi_point(dimensions, cell + chosen) * randomness;
+        if (to_edge || to_neighbour) {
+            octave.distance = voronoi_border(dimensions, to_edge, randomness, corner, place, chosen, centre);
+        } else {
+            octave.distance = by_distance ? next : voronoi_root(dimensions, metric, exponent, nearest);
+            octave.color = voronoi_color(dimensions, cell + chosen);
+            octave.position = centre + corner;
         }
     }
-    octave.position += corner;
     return octave;
-}
-
-// Place in the neighbourhood, 3 cells wide, of the point nearest by Euclidean distance.
-int voronoi_nearest_cell(int dimensions, float randomness, ivec4 cell, vec4 place) {
-    float nearest = VORONOI_FAR;
-    int found = voronoi_cells(dimensions, 3) / 2;
-    for (int index = 0; index < voronoi_cells(dimensions, 3); ++index) {
-        ivec4 offset = voronoi_offset(dimensions, 3, index);
-        vec4 way = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness - place;
-        float reached = dot(way, way);
-        if (reached < nearest) {
-            nearest = reached;
-            found = index;
-        }
-    }
-    return found;
-}
-
-// To the nearest plane halfway between the nearest point and another.
-float voronoi_edge_distance(int dimensions, float randomness, vec4 coordinates) {
-    vec4 corner = floor(coordinates);
-    ivec4 cell = ivec4(corner);
-    vec4 place = coordinates - corner;
-    if (dimensions == 1) {
-        // Cycles looks at the two borders of the cell's own point, whose key may be -0.0 here.
-        float own = hash_to_unit(corner.x) * randomness;
-        float left = voronoi_point(1, cell - 1).x * randomness - 1.0;
-        float right = voronoi_point(1, cell + 1).x * randomness + 1.0;
-        return min(abs(0.5 * (own + left) - place.x), abs(0.5 * (own + right) - place.x));
-    }
-    ivec4 own = voronoi_offset(dimensions, 3, voronoi_nearest_cell(dimensions, randomness, cell, place));
-    vec4 nearest = vec4(own) + voronoi_point(dimensions, cell + own) * randomness - place;
-    float edge = VORONOI_FAR;
-    for (int index = 0; index < voronoi_cells(dimensions, 3); ++index) {
-        ivec4 offset = voronoi_offset(dimensions, 3, index);
-        vec4 way = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness - place;
-        vec4 across = way - nearest;
-        float squared = dot(across, across);
-        if (squared > 0.0001) edge = min(edge, 0.5 * dot(nearest + way, across * inversesqrt(squared)));
-    }
-    return edge;
-}
-
-// Half the way from the nearest point to the point nearest to that.
-float voronoi_sphere_radius(int dimensions, float randomness, vec4 coordinates) {
-    vec4 corner = floor(coordinates);
-    ivec4 cell = ivec4(corner);
-    ivec4 own = voronoi_offset(
-        dimensions, 3, voronoi_nearest_cell(dimensions, randomness, cell, coordinates - corner)
-    );
-    vec4 centre = voronoi_point(dimensions, cell + own) * randomness;
-    float nearest = VORONOI_FAR;
-    for (int index = 0; index < voronoi_cells(dimensions, 3); ++index) {
-        ivec4 offset = voronoi_offset(dimensions, 3, index);
-        vec4 way = vec4(offset) + voronoi_point(dimensions, cell + own + offset) * randomness - centre;
-        if (offset != ivec4(0)) nearest = min(nearest, length(way));
-    }
-    return 0.5 * nearest;
 }

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Anisotropic GGX microfacets with height-correlated masking (Walter et al. 2007; Heitz 2014, 2018), in the
+// coordinates of a frame whose z is the normal.
+
+#include "common/sampling.glsl"
+
+struct MicrofacetFrame { vec3 t; vec3 b; vec3 n; vec2 alpha; };
+
+// Direction and ratio of the axes in two 16-bit parts: the angle of the rougher axis from
+// the normal's own tangent as a share of half a turn, and sqrt(smaller alpha / greater alpha).
+const uint ISOTROPIC = 0xffff0000u;
+
+MicrofacetFrame microfacet_frame(vec3 n, float alpha, uint anisotropy) {
+    vec2 axes = unpackUnorm2x16(anisotropy);
+    vec3 t, b;
+    tangent_frame(n, t, b);
+    float c = cos(PI * axes.x), s = sin(PI * axes.x), aspect = max(axes.y, 1e-3);
+    return MicrofacetFrame(c * t + s * b, c * b - s * t, n, max(vec2(alpha / aspect, alpha * aspect), 1e-7));
+}
+
+// Anisotropy whose greater alpha lies along the tangent; n as a lobe keeps it, unpacked again.
+uint pack_anisotropy(vec3 n, vec3 tangent, float aspect) {
+    vec3 t, b;
+    tangent_frame(n, t, b);
+    vec2 along = vec2(dot(tangent, t), dot(tangent, b));
+    if (aspect >= 1.0 || dot(along, along) < 1e-12) return ISOTROPIC;
+    return packUnorm2x16(vec2(fract(atan(along.y, along.x) / PI), aspect));
+}
+
+vec3 to_frame(MicrofacetFrame frame, vec3 v) { return vec3(dot(v, frame.t), dot(v, frame.b), dot(v, frame.n)); }
+vec3 from_frame(MicrofacetFrame frame, vec3 v) { return v.x * frame.t + v.y * frame.b + v.z * frame.n; }
+
+float ggx_density(vec3 h, vec2 alpha) {
+    vec3 stretched = vec3(h.xy / alpha, h.z);
+    float length2 = dot(stretched, stretched);
+    return 1.0 / (PI * alpha.x * alpha.y * length2 * length2);
+}
+
+float ggx_lambda(vec3 w, vec2 alpha) {
+    vec2 stretched = alpha * w.xy;
+    return 0.5 * (sqrt(1.0 + dot(stretched, stretched) / max(w.z * w.z, 1e-12)) - 1.0);
+}
+
+// By the density of visible normals (Heitz, JCGT 2018).
+vec3 sample_visible_normal(vec3 wo, vec2 alpha, vec2 u) {
+    vec3 v = normalize(vec3(alpha * wo.xy, max(wo.z, 1e-6)));
+    float length2 = dot(v.xy, v.xy);
+    vec3 t1 = length2 > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(length2) : vec3(1.0, 0.0, 0.0);
+    vec3 t2 = cross(v, t1);
+    vec2 p = sample_disk(u);
+    float s = 0.5 * (1.0 + v.z);
+    p.y = (1.0 - s) * sqrt(max(0.0, 1.0 - p.x * p.x)) + s * p.y;
+    vec3 h = p.x * t1 + p.y * t2 + sqrt(max(0.0, 1.0 - dot(p, p))) * v;
+    return normalize(vec3(alpha * h.xy, max(1e-9, h.z)));
+}

@@ -1,0 +1,29 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DirectCameraHits where no rasterization can serve: rays to be traced, and fresh camera paths.
+
+layout(local_size_x = 64) in;
+
+#include <CameraView>
+#include <Ray>
+#include <PrimaryRaysParameters>
+#include "common/invocation.glsl"
+#include "common/low_discrepancy.glsl"
+#include "common/camera_path.glsl"
+layout(std140, binding = 0) uniform Parameters { PrimaryRaysParameters parameters; };
+layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 2) writeonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 4) writeonly buffer CameraPaths { CameraPath camera_paths[]; };
+#include "gbuffer/aperture.glsl"
+#include "gbuffer/panorama.glsl"
+
+void main() {
+    uint index = invocation_index();
+    if (index >= camera.width * camera.height) return;
+    // The points of a pixel cover the lens evenly as the iterations go by, and those of its neighbours are others.
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, 0u, parameters.seed, STAGE_CAMERA << 24u));
+    vec2 lens = aperture_point(scrambled_sobol(parameters.iteration, choices)), at = window_point(index);
+    CameraRay ray = camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, lens) : panorama_ray(at, lens);
+    rays[index] = world_ray(ray);
+    camera_paths[index] = CameraPath(vec3(1.0), 0.0, ray.passed, 0.0, sqrt(ray.area / PI), PATH_STRAIGHT);
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The lobes that shader nodes add, with the energy that Cycles gives them.
+
+#include "materials/builder.glsl"
+#include "materials/albedo_tables.glsl"
+
+// Where a node's microfacets lie: normal packed and unpacked, anisotropy packed, roughness of the mean alpha.
+struct Microfacets { vec3 normal; uint packed_normal; uint anisotropy; float alpha; float cosine; };
+
+Microfacets isotropic_microfacets(ClosureBuilder builder, vec3 normal, float roughness) {
+    uint packed_normal = pack_unit_vector(reflecting_normal(builder, normal));
+    vec3 n = unpack_unit_vector(packed_normal);
+    return Microfacets(n, packed_normal, ISOTROPIC, roughness * roughness, clamp(dot(n, builder.viewer), 0.0, 1.0));
+}
+
+// alpha_x = alpha / aspect lies along the tangent turned by `rotation` full turns, alpha_y = alpha aspect across.
+Microfacets anisotropic_microfacets(ClosureBuilder builder, vec3 normal, float roughness, float aspect, vec3 tangent, float rotation) {
+    Microfacets made = isotropic_microfacets(builder, normal, roughness);
+    if (aspect == 1.0) return made;
+    vec3 across = cross(made.normal, tangent);
+    if (dot(across, across) < 1e-12) return made;
+    across = normalize(across);
+    vec3 along = cross(across, made.normal);
+    float c = cos(2.0 * PI * rotation), s = sin(2.0 * PI * rotation);
+    vec3 turned = c * along + s * across;
+    if (aspect > 1.0) {
+        turned = cross(made.normal, turned);
+        aspect = 1.0 / aspect;
+    }
+    made.anisotropy = pack_anisotropy(made.normal, turned, aspect);
+    return made;
+}
+
+MicrofacetLobe microfacet_lobe(Microfacets at, uint kind, vec3 weight, vec3 f0, vec3 tint, float ior) {
+    return MicrofacetLobe(weight, kind, f0, at.alpha, tint, ior, at.packed_normal, at.anisotropy);
+}
+
+// What restores the energy that single scattering loses, given the average reflectance of the
+// microfacets (Kulla and Conty 2017, with the saturation of multiple bounces).
+vec3 restored_energy(float albedo, float average, vec3 average_reflectance) {
+    float missing = (1.0 - albedo) / albedo;
+    vec3 multiple = average_reflectance * average / (1.0 - average_reflectance * (1.0 - average));
+    return 1.0 + multiple * missing;
+}
+
+vec3 multiscatter_factor(Microfacets at, vec3 average_reflectance) {
+    float roughness = sqrt(at.alpha);
+    return restored_energy(white_albedo(roughness, at.cosine), white_average_albedo(roughness), average_reflectance);
+}
+
+void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3 color, bool multiscatter) {
+    vec3 factor = multiscatter ? multiscatter_factor(at, color) : vec3(1.0);
+    add_lobe(builder, microfacet_lobe(at, LOBE_MIRROR, weight * color * factor, vec3(1.0), vec3(1.0), 1.0));
+}
+
+// f0: at normal incidence; edge: the tint at 82 degrees.
+void add_metal(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 f0, vec3 edge, bool multiscatter) {
+    vec3 factor = vec3(1.0);
+    if (multiscatter) {
+        // Cosine-weighted mean of the Fresnel curve: 1/21 of Schlick's rise, 1/126 of the bend.
+        const float far = 6.0 / 7.0, far5 = far * far * far * far * far;
+        vec3 bend = mix(f0, vec3(1.0), far5) * (7.0 / (far5 * far)) * (1.0 - edge);
+        factor = multiscatter_factor(at, clamp(mix(f0, vec3(1.0), 1.0 / 21.0) - bend / 126.0, 0.0, 1.0));
+    }
+    add_lobe(builder, microfacet_lobe(at, LOBE_METAL, weight * factor, f0, edge, 1.0));
+}
+
+// tint: of the reflectance at normal incidence; repeated: of light that facets send to each other.
+void add_glass(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, vec3 tint, vec3 repeated, float ior, bool multiscatter) {
+    float relative = builder.backfacing ? 1.0 / ior : ior;
+    if (multiscatter) {
+        float roughness = sqrt(at.alpha);
+        vec3 factor = restored_energy(max(glass_albedo(relative, roughness, at.cosine), 0.05), glass_average_albedo(relative, roughness), repeated);
+        reflected *= factor;
+        passed *= factor;
+    }
+    add_lobe(builder, microfacet_lobe(at, LOBE_GLASS, reflected, passed, tint, relative));
+}
+
+void add_refraction(inout ClosureBuilder builder, Microfacets at, vec3 weight, float ior) {
+    add_lobe(builder, microfacet_lobe(at, LOBE_REFRACTION, weight, vec3(0.0), vec3(1.0), builder.backfacing ? 1.0 / ior : ior));
+}
+
+// Albedo of the sheen, by which it hides what lies below.
+float add_sheen(inout ClosureBuilder builder, vec3 weight, float roughness, vec3 normal) {
+    vec3 n = given_normal(builder, normal);
+    float cosine = dot(n, builder.viewer);
+    if (cosine <= 0.0) return 0.0;
+    vec3 parameters = sheen_parameters(clamp(roughness, 1e-3, 1.0), cosine);
+    if (parameters.x <= 0.0 || parameters.z <= 0.0) return 0.0;
+    add_lobe(builder, MicrofacetLobe(weight * parameters.z, LOBE_SHEEN, vec3(parameters.xy, 0.0), 1.0, vec3(1.0), 1.0,
+                                     pack_unit_vector(n), ISOTROPIC));
+    return parameters.z;
+}
+
+void add_velvet(inout ClosureBuilder builder, vec3 weight, float sigma, vec3 normal) {
+    add_lobe(builder, MicrofacetLobe(weight, LOBE_VELVET, vec3(max(sigma, 0.01), 0.0, 0.0), 1.0, vec3(1.0), 1.0,
+                                     pack_unit_vector(given_normal(builder, normal)), ISOTROPIC));
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Principled BSDF's layers, from the top: sheen, coat, emission, then metal, transmission and a dielectric over
+// a diffuse base. A layer takes the light that its albedo says and leaves the rest to those below.
+
+#include "materials/lobes.glsl"
+
+struct Principled {
+    vec3 base_color;
+    float metallic, roughness, ior, alpha;
+    vec3 normal;
+    float diffuse_roughness, specular_level;
+    vec3 specular_tint;
+    float anisotropic, anisotropic_rotation;
+    vec3 tangent;
+    float transmission, coat, coat_roughness, coat_ior;
+    vec3 coat_tint, coat_normal;
+    float sheen, sheen_roughness;
+    vec3 sheen_tint, emission;
+    float film_thickness, film_ior;
+    bool multiscatter;
+};
+
+// What only few have.
+Principled plain_principled(ClosureBuilder builder) {
+    return Principled(vec3(0.8), 0.0, 0.5, 1.5, 1.0, builder.shading, 0.0, 0.5, vec3(1.0), 0.0, 0.0, vec3(0.0), 0.0,
+                      0.0, 0.03, 1.5, vec3(1.0), builder.shading, 0.0, 0.5, vec3(1.0), vec3(0.0), 0.0, 1.33, true);
+}
+
+float index_from_reflectance(float f0) {
+    float root = sqrt(clamp(f0, 0.0, 0.99));
+    return (1.0 + root) / (1.0 - root);
+}
+
+// Light left below a layer.
+vec3 beneath(vec3 weight, vec3 albedo) { return weight * clamp(1.0 - largest(albedo), 0.0, 1.0); }
+
+void add_coat(inout ClosureBuilder builder, Principled p, inout vec3 weight) {
+    float ior = max(p.coat_ior, 1.0);
+    Microfacets at = isotropic_microfacets(builder, p.coat_normal, p.coat_roughness);
+    float f0 = normal_reflectance(ior);
+    if (ior > 1.0) {
+        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, vec3(f0), vec3(1.0), ior));
+        float albedo = mix(dielectric_grazing_albedo(ior, p.coat_roughness, at.cosine), white_albedo(p.coat_roughness, at.cosine), f0);
+        weight = beneath(weight, vec3(p.coat * albedo));
+    }
+    // Absorbed along the refracted way through the coat, which is of length 1 at normal incidence.
+    float inside = sqrt(max(1.0 - (1.0 - at.cosine * at.cosine) / (ior * ior), 1e-6));
+    weight *= mix(vec3(1.0), pow(p.coat_tint, vec3(1.0 / inside)), p.coat);
+}
+
+void add_principled(inout ClosureBuilder builder, float node_weight, Principled p) {
+    builder.closure.transparent += vec3(node_weight * (1.0 - p.alpha));
+    vec3 weight = vec3(node_weight * p.alpha);
+    if (p.sheen > 0.0) {
+        vec3 normal = mix(given_normal(builder, p.normal), given_normal(builder, p.coat_normal), clamp(p.coat, 0.0, 1.0));
+        vec3 tint = p.sheen * p.sheen_tint;
+        weight = beneath(weight, tint * add_sheen(builder, weight * tint, p.sheen_roughness, normal));
+    }
+    if (p.coat > 0.0) add_coat(builder, p, weight);
+    builder.closure.emission += weight * p.emission;
+
+    Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic), p.tangent, p.anisotropic_rotation);
+    if (p.metallic > 0.0) {
+        add_metal(builder, at, weight * p.metallic, min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.multiscatter);
+        weight *= 1.0 - p.metallic;
+    }
+    if (p.transmission > 0.0) {
+        vec3 share = weight * p.transmission, passed = sqrt(max(p.base_color, vec3(0.0)));
+        Microfacets even = Microfacets(at.normal, at.packed_normal, ISOTROPIC, p.roughness * p.roughness, at.cosine);
+        add_glass(builder, even, share, share * passed, p.specular_tint, min(passed, 1.0), p.ior, p.multiscatter);
+        weight *= 1.0 - p.transmission;
+    }
+    if (largest(weight) <= 0.0) return;
+    // As in Cycles the index is the same from both sides.
+    float f0 = normal_reflectance(p.ior) * 2.0 * p.specular_level;
+    float ior = index_from_reflectance(f0);
+    if (p.ior < 1.0) ior = 1.0 / ior;
+    if (f0 > 0.0) {
+        vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
+        float white = white_albedo(p.roughness, at.cosine);
+        vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white);
+        if (p.multiscatter) {
+            float base = normal_reflectance(ior);
+            factor = multiscatter_factor(at, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
+            albedo *= factor * white;
+        }
+        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior));
+        weight = beneath(weight, albedo);
+    }
+    add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
+}

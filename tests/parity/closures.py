@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a shader node scatters from a point light to a camera, by Cycles and by the node's closure, pixel by pixel.
+
+A point light without extent makes Cycles' picture of one sample exact: the sum of the BSDFs times cosine and
+irradiance, for as many pairs of directions as there are pixels.
+"""
+
+import math
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+import OpenEXR
+
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.records import Record
+from rppm_addon.integrator import records  # noqa: F401  declares Closure
+from rppm_addon.materials import albedo_tables
+from rppm_addon.materials.node_kinds import FLOAT
+from rppm_addon.materials.nodes.shaders import KINDS
+
+from .scenes import camera, light, new_scene, place, plane
+
+SIZE = 32
+ANGLE = 70.0
+TANGENT = (1.0, 0.0, 0.0)
+Record("ClosureTestParameters", viewer="vec3", count="uint", lamp="vec3", choices="uint", normal="vec3", unused="uint")
+
+_SHADER = """#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+layout(local_size_x = 64) in;
+#include <ClosureTestParameters>
+#include "common/invocation.glsl"
+#include "materials/nodes/shaders.glsl"
+layout(std140, binding = 0) uniform Parameters { ClosureTestParameters parameters; };
+layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };
+layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    vec3 point = points[index].xyz, wo = normalize(parameters.viewer - point), wi = normalize(parameters.lamp - point);
+    vec3 up = vec3(0.0, 0.0, wo.z > 0.0 ? 1.0 : -1.0), normal = parameters.normal * up.z;
+    vec3 sum = vec3(0.0);
+    // More than three lobes take turns.
+    for (uint choice = 0u; choice < parameters.choices; ++choice) {
+        float u = (float(choice) + 0.5) / float(parameters.choices);
+        ClosureBuilder builder = closure_builder(wo, up, up, wo.z < 0.0, u);
+        builder.closure.shading_normal = pack_unit_vector(up);
+        CALL
+        bool front = dot(wi, up) > 0.0;
+        sum += diffuse_scattered(builder.closure, wo, wi, front);
+        for (int k = 0; k < CLOSURE_LOBES; ++k) {
+            MicrofacetLobe lobe = closure_lobe(builder.closure, k);
+            if (lobe.kind != LOBE_NONE) sum += lobe_scattered(builder.closure, lobe, wo, wi, front);
+        }
+    }
+    vec3 apart = parameters.lamp - point;
+    results[index] = vec4(sum / float(parameters.choices) / dot(apart, apart), 0.0);
+}
+"""
+
+
+@dataclass(frozen=True)
+class View:
+    """Where camera and lamp are, about a horizontal plane through the origin."""
+
+    camera: tuple[float, float, float]
+    lamp: tuple[float, float, float]
+
+
+ABOVE = View((0.0, -1.6, 1.2), (0.5, 0.6, 0.9))
+GRAZING = View((0.0, -2.0, 0.5), (-0.3, 1.0, 0.5))
+THROUGH = View((0.0, -1.6, 1.2), (0.3, 0.4, -0.9))
+INSIDE = View((0.0, -1.6, -1.2), (0.3, 0.4, -0.9))
+INSIDE_OUT = View((0.0, -1.0, -1.6), (0.3, 0.4, 1.2))
+
+
+def _camera_rays(view: View) -> np.ndarray:
+    """(pixels, 3) points of the plane at the pixels' centres."""
+    camera(view.camera, (0.0, 0.0, 0.0), ANGLE)
+    bpy.context.view_layer.update()
+    matrix = np.array(bpy.context.scene.camera.matrix_world)
+    at = (np.arange(SIZE) + 0.5) / SIZE * 2.0 - 1.0
+    x, y = np.meshgrid(at, at)
+    local = np.stack([x, y, np.full_like(x, -1.0 / math.tan(math.radians(ANGLE) / 2.0))], -1).reshape(-1, 3)
+    directions = local @ matrix[:3, :3].T
+    with np.errstate(divide="ignore"):
+        distance = -matrix[2, 3] / directions[:, 2]
+    points = matrix[:3, 3] + distance[:, None] * directions
+    points[(distance <= 0.0) | ~np.isfinite(distance)] = np.nan
+    return points
+
+
+def _material(kind: str, bl_idname: str, options: dict, inputs: dict, normal: tuple | None) -> bpy.types.Material:
+    made = bpy.data.materials.new("Material")
+    if made.node_tree is None:
+        made.use_nodes = True
+    tree = made.node_tree
+    tree.nodes.clear()
+    node = tree.nodes.new(bl_idname)
+    for name, value in options.items():
+        setattr(node, name, value)
+    sockets = {socket.identifier.lower().replace(" ", "_"): socket for socket in node.inputs}
+    sockets.pop("weight")
+    assert set(KINDS[kind].inputs) == set(sockets), f"{kind}: {set(KINDS[kind].inputs) ^ set(sockets)}"
+    for name, value in inputs.items():
+        socket = sockets[name]
+        if socket.type == "RGBA":
+            value = (*((value,) * 3 if np.isscalar(value) else value), 1.0)
+        socket.default_value = value
+    vectors = {"tangent": TANGENT} | ({"normal": normal} if normal else {})
+    for name, vector in vectors.items():
+        if name in sockets:
+            combine = tree.nodes.new("ShaderNodeCombineXYZ")
+            for socket, number in zip(combine.inputs, vector):
+                socket.default_value = number
+            tree.links.new(combine.outputs[0], sockets[name])
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return made
+
+
+def by_cycles(
+    kind: str, bl_idname: str, view: View, options: dict, inputs: dict, normal: tuple | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points (pixels, 3) of the plane, NaN where it is not seen, and their radiance (pixels, 3) for 1 W/sr."""
+    scene = new_scene(SIZE)
+    scene.cycles.samples, scene.cycles.max_bounces = 1, 0
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+    # No edge between triangles in sight.
+    plane(100.0, _material(kind, bl_idname, options, inputs, normal), place(at=(40.0, 10.0, 0.0)))
+    light("POINT", 4.0 * math.pi, place(at=view.lamp), shadow_soft_size=0.0)
+    points = _camera_rays(view)
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.engine, scene.render.filepath = "CYCLES", os.path.join(folder, "cycles.exr")
+        bpy.ops.render.render(write_still=True)
+        channels = OpenEXR.File(scene.render.filepath, separate_channels=True).channels()
+        layer = next(name for name in channels if name.endswith("Combined.R")).removesuffix("R")
+        picture = np.stack([channels[layer + c].pixels for c in "RGB"], axis=-1)[::-1].astype(np.float64)
+    return points, picture.reshape(-1, 3)
+
+
+def _literal(name: str, socket_type: object, value: object) -> str:
+    if value == "normal":
+        return "normal" if name == "normal" else "up"
+    if value == "tangent":
+        return f"vec3({', '.join(map(str, TANGENT))})"
+    if socket_type is FLOAT:
+        return f"float({float(value)!r})"
+    numbers = (value,) * 3 if np.isscalar(value) else value
+    return f"vec3({', '.join(repr(float(number)) for number in numbers)})"
+
+
+def node_call(kind: str, options: dict, inputs: dict) -> str:
+    """The call of a node's GLSL function, options and inputs by name."""
+    node = KINDS[kind]
+    arguments = ["builder", "1.0"]
+    arguments += [str(values.index(options.get(name, values[0]))) for name, values in node.options.items()]
+    arguments += [_literal(name, socket, inputs.get(name, default)) for name, (socket, default) in node.inputs.items()]
+    return f"node_{kind}({', '.join(arguments)});"
+
+
+def by_closure(
+    context: Context, folder: Path, kind: str, view: View, points: np.ndarray, options: dict, inputs: dict,
+    normal: tuple | None = None, choices: int = 64,
+) -> np.ndarray:  # fmt: skip
+    """Radiance (pixels, 3) that the node's closure scatters of 1 W/sr."""
+    file = folder / "closure.comp"
+    file.write_text(_SHADER.replace("CALL", node_call(kind, options, inputs)), encoding="utf-8")
+    library = ProgramLibrary(context)
+    padded = np.zeros((len(points), 4), np.float32)
+    padded[:, :3] = np.nan_to_num(points)
+    gl = context.moderngl
+    buffers = {
+        "Points": gl.buffer(padded.tobytes()),
+        "Results": gl.buffer(reserve=16 * len(points)),
+        "AlbedoTables": gl.buffer(albedo_tables.load().tobytes()),
+    }
+    normal = np.array(normal if normal else (0.0, 0.0, 1.0), float)
+    library.compute(str(file)).run(
+        len(points),
+        buffers,
+        {
+            "viewer": view.camera, "count": len(points), "lamp": view.lamp, "choices": choices,
+            "normal": normal / np.linalg.norm(normal), "unused": 0,
+        },
+    )  # fmt: skip
+    results = np.frombuffer(buffers["Results"].read(), np.float32).reshape(-1, 4)[:, :3].astype(np.float64)
+    for buffer in buffers.values():
+        buffer.release()
+    library.release()
+    return results

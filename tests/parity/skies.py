@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cycles' Sky Texture as numbers: renders of nothing but the world, a value per pixel centre."""
+
+import math
+
+import bpy
+import numpy as np
+
+from rppm_addon.scene.sky import Sky
+
+from .scenes import new_scene, render_cycles
+
+HEIGHT = 32
+_SCATTERING = (
+    "sun_elevation",
+    "sun_rotation",
+    "sun_disc",
+    "sun_size",
+    "sun_intensity",
+    "altitude",
+    "air_density",
+    "aerosol_density",
+    "ozone_density",
+)
+_ANALYTIC = ("sun_direction", "turbidity", "ground_albedo")
+
+
+def _world(sky: Sky) -> None:
+    scene = new_scene(world=1.0)
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+    scene.world.cycles.sampling_method = "NONE"
+    tree = scene.world.node_tree
+    node = tree.nodes.new("ShaderNodeTexSky")
+    node.sky_type = sky.sky_type
+    for name in _SCATTERING if sky.scatters else _ANALYTIC:
+        setattr(node, name, getattr(sky, name))
+    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    tree.links.new(node.outputs[0], background.inputs["Color"])
+
+
+def _camera(elevation: float, azimuth: float) -> bpy.types.Camera:
+    data = bpy.data.cameras.new("Camera")
+    made = bpy.data.objects.new("Camera", data)
+    made.rotation_euler = (math.pi / 2 + elevation, 0.0, -azimuth)
+    bpy.context.scene.collection.objects.link(made)
+    bpy.context.scene.camera = made
+    return data
+
+
+def _seen() -> np.ndarray:
+    """(n, 3) float64, as many as pixels."""
+    return render_cycles(samples=1, seeds=1)[0].reshape(-1, 3)
+
+
+def _directions() -> np.ndarray:
+    """(n, 3) float64 unit vectors of the pixels as rendered: the narrowest filter still moves them by 0.005 pixels,
+    which shows beside the sun."""
+    tree = bpy.context.scene.world.node_tree
+    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    positive = tree.nodes.new("ShaderNodeVectorMath")
+    positive.inputs[1].default_value = (2.0, 2.0, 2.0)
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], positive.inputs[0])
+    tree.links.new(positive.outputs[0], background.inputs["Color"])
+    directions = _seen() - 2.0
+    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
+
+
+def panorama(sky: Sky) -> tuple[np.ndarray, np.ndarray]:
+    """Radiance and unit directions, (2 HEIGHT^2, 3) float64 each, evenly spaced in azimuth and elevation."""
+    _world(sky)
+    render = bpy.context.scene.render
+    render.resolution_x, render.resolution_y = 2 * HEIGHT, HEIGHT
+    data = _camera(0.0, 0.0)
+    data.type = "PANO"
+    (data if hasattr(data, "panorama_type") else data.cycles).panorama_type = "EQUIRECTANGULAR"
+    return _seen(), _directions()
+
+
+def close_up(sky: Sky, angle: float, size: int = 48) -> tuple[np.ndarray, np.ndarray]:
+    """Radiance and unit directions, (size^2, 3) float64 each, of a square picture of the sun.
+
+    angle: the camera's field of view, radians.
+    """
+    _world(sky)
+    render = bpy.context.scene.render
+    render.resolution_x = render.resolution_y = size
+    _camera(*sky.sun_angles()).angle = angle
+    return _seen(), _directions()
