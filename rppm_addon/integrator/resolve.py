@@ -8,7 +8,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ComputeProgram, ProgramLibrary
 from ..gl.records import Record
-from ..gl.sources import ShaderError
+from ..gl.sources import CompileError
 from ..materials.compiler import NEUTRAL_TEXT
 from ..materials.tables import MaterialTables, first_line
 from ..scene.scene import Scene
@@ -84,7 +84,7 @@ class Resolve:
     def _program(self, text: str, scene: Scene, materials: MaterialTables) -> ComputeProgram:
         try:
             return self._library.compute(_STAGE, inserts={"materials/generated.glsl": text})
-        except ShaderError as error:
+        except CompileError as error:
             for name in materials.users[text]:
                 reason = first_line(error)
                 scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is grey')

@@ -6,7 +6,7 @@ import numpy as np
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
-from ..gl.sources import ShaderError
+from ..gl.sources import CompileError
 from ..scene.images import Image
 from ..scene.materials import Material
 from ..scene.node_graphs import NodeGraph
@@ -130,7 +130,7 @@ class MaterialTables:
         text, first, owner = self._others[id(graph)]
         try:
             return self._evaluator.run(text, first, self.buffers, width, height, from_camera)
-        except ShaderError as error:
+        except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")
             return np.zeros((height, width, 3), np.float32)
 

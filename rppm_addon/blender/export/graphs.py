@@ -148,7 +148,7 @@ class GraphExporter:
             raise _TooDeep(source)
         self._open.add(output_key)
         try:
-            value = self._make(node, source.output, source.path, output_key[:-1])
+            value = self._make(node, source.output, source.path)
         except _UNREADABLE as error:
             self.warn(node, f"cannot be read ({error}); the value of the socket it feeds is used")
             value = None
@@ -157,7 +157,7 @@ class GraphExporter:
         self._known[output_key] = value
         return value
 
-    def _make(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path, key: tuple) -> object:
+    def _make(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
         handler = HANDLERS.get(node.type)
         if handler is not None:
             return handler(self, node, output, path)
@@ -166,21 +166,25 @@ class GraphExporter:
             return self._stand_in(node, output, path)
         name = snake_case(output.identifier)
         if name not in KINDS[kind].outputs:
+            name = _OLDER.get(name, name)
+        if name not in KINDS[kind].outputs:
             self.warn(node, f'has an output "{output.name}" that is not rendered; 0 is used')
             return 0.0
-        # One node serves all of its outputs.
-        known = self._known.get(key)
-        if not isinstance(known, int):
-            known = self.add(kind, node, path).node
-            self._known[key] = known
-        return Link(known, name)
+        return self.add(kind, node, path, name)
 
     def add(self, kind: str, node: bpy.types.Node, path: Path, output: str = "", **members: object) -> Link:
-        """Append a node of a kind with the inputs and options that the Blender node has by the kind's names."""
+        """A node of a kind with the inputs and options that the Blender node has by the kind's names; one serves all
+        of the outputs."""
+        key = (kind, *node_key(node, path))
+        if key not in self._known:
+            self._known[key] = self._append(kind, node, path, **members).node
+        return Link(self._known[key], output)
+
+    def _append(self, kind: str, node: bpy.types.Node, path: Path, **members: object) -> Link:
         declared = KINDS[kind]
         inputs = self._inputs(declared, node, path) | members.pop("inputs", {})
         options = self._options(declared, node) | members.pop("options", {})
-        return self.graph.add(kind, output, name=node.name, options=options, **members, **inputs)
+        return self.graph.add(kind, name=node.name, options=options, **members, **inputs)
 
     def _inputs(self, kind: NodeKind, node: bpy.types.Node, path: Path) -> dict[str, object]:
         sockets = {snake_case(socket.identifier): socket for socket in node.inputs}
@@ -259,12 +263,13 @@ def _is_undefined(node: bpy.types.Node) -> bool:
     return not node.bl_idname.startswith("ShaderNode")
 
 
+def node_key(node: bpy.types.Node, path: Path) -> tuple[int, ...]:
+    """What tells a node in its groups from all others."""
+    return (node.as_pointer(), *(group.as_pointer() for group in path))
+
+
 def _output_key(source: Source) -> tuple:
-    return (
-        source.node.as_pointer(),
-        *(group.as_pointer() for group in source.path),
-        source.output.identifier,
-    )
+    return (*node_key(source.node, source.path), source.output.identifier)
 
 
 _UNREADABLE = (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError)
@@ -294,5 +299,5 @@ def _stored(socket: bpy.types.NodeSocket) -> object:
     if isinstance(stored, str) or stored is None:
         return 0.0
     if hasattr(stored, "__len__"):
-        return tuple(float(v) if np.isfinite(v) else 0.0 for v in stored[:3])
+        return (*(float(v) if np.isfinite(v) else 0.0 for v in stored[:3]), 0.0, 0.0)[:3]
     return float(stored) if np.isfinite(stored) else 0.0
