@@ -9,7 +9,7 @@ import moderngl
 
 from .binary_cache import BinaryCache
 from .context import Context
-from .sources import ShaderError, Source, expand
+from .sources import CompileError, ShaderError, Source, expand
 
 log = logging.getLogger(__name__)
 
@@ -64,7 +64,7 @@ class ComputeProgram(_Program):
             try:
                 self._program = context.moderngl.compute_shader(source.text)
             except moderngl.Error as error:
-                raise ShaderError(source.name_lines(str(error))) from error
+                raise CompileError(source.name_lines(str(error))) from error
             cache.store(self._program.glo, source.text)
 
     def run(self, threads: int, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None = None) -> None:
@@ -117,7 +117,7 @@ class DrawProgram(_Program):
             except moderngl.Error as error:
                 message = str(error)
                 culprit = next((s for s in sources if s.files[0].endswith(_stage_suffix(message))), vertex)
-                raise ShaderError(culprit.name_lines(message)) from error
+                raise CompileError(culprit.name_lines(message)) from error
             if not geometry:
                 cache.store(self._program.glo, text)
         self._vertex_array = gl.vertex_array(self._program, [])
@@ -170,6 +170,8 @@ class ProgramLibrary:
         self.context = context
         self._cache = BinaryCache(context)
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
+        self.made = 0
+        """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
 
     def compute(
         self,
@@ -179,7 +181,7 @@ class ProgramLibrary:
     ) -> ComputeProgram:
         """The compute program of a .comp file; ``inserts`` are texts that stand for files that it includes.
 
-        Raises ShaderError with file and line.
+        Raises ShaderError with file and line; CompileError where it is the driver that refuses.
         """
         key = (path, *(tuple(sorted((given or {}).items())) for given in (defines, inserts)))
         return self._get(key, lambda: self._compute(path, dict(defines or {}), dict(inserts or {})))
@@ -195,6 +197,7 @@ class ProgramLibrary:
         if key not in self._programs:
             start = time.perf_counter()
             self._programs[key] = make()
+            self.made += 1
             log.debug("%s ready in %.3f s", key[0], time.perf_counter() - start)
         return self._programs[key]
 

@@ -22,6 +22,10 @@ class ShaderError(Exception):
     """A shader is wrong: a missing include or a compile error, by our file names and lines."""
 
 
+class CompileError(ShaderError):
+    """The driver does not compile or link a shader."""
+
+
 @dataclass
 class Source:
     """An expanded shader: its text and the files that its #line numbers stand for."""

@@ -8,7 +8,9 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ComputeProgram, ProgramLibrary
 from ..gl.records import Record
-from ..materials.tables import MaterialTables
+from ..gl.sources import CompileError
+from ..materials.compiler import NEUTRAL_TEXT
+from ..materials.tables import MaterialTables, first_line
 from ..scene.scene import Scene
 from .geometry import Geometry
 from .records import CAMERA_PATH, PHOTON_PATH
@@ -36,6 +38,7 @@ Record(
 _NO_PROGRAM = 0xFFFFFFFF
 _NO_PATHS, _CAMERA, _PHOTONS = range(3)
 _RANGE_SIZE = 8
+_STAGE = "resolve/resolve.comp"
 
 
 class Resolve:
@@ -59,12 +62,10 @@ class Resolve:
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
         """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
 
-        Raises ShaderError, and DeviceError when the device cannot hold the attributes.
+        A program that the driver refuses is replaced by that of a grey surface, with a warning in scene.warnings.
+        Raises DeviceError when the device cannot hold the attributes.
         """
-        self._programs = [
-            self._library.compute("resolve/resolve.comp", inserts={"materials/generated.glsl": text})
-            for text in materials.programs
-        ]
+        self._programs = [self._program(text, scene, materials) for text in materials.programs]
         self._surface_attributes.build(scene, geometry, materials.attribute_names)
         self._buffers = {
             "Triangles": geometry.triangles.buffer,
@@ -86,6 +87,15 @@ class Resolve:
             "photon_stride": PHOTON_PATH.size // 4,
             "photon_flags": PHOTON_PATH.offset("flags") // 4,
         }
+
+    def _program(self, text: str, scene: Scene, materials: MaterialTables) -> ComputeProgram:
+        try:
+            return self._library.compute(_STAGE, inserts={"materials/generated.glsl": text})
+        except CompileError as error:
+            for name in materials.users[text]:
+                reason = first_line(error)
+                scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is grey')
+            return self._library.compute(_STAGE, inserts={"materials/generated.glsl": NEUTRAL_TEXT})
 
     def run(
         self,

@@ -92,7 +92,7 @@ def _fill(record: np.ndarray, instance: Instance, mesh: Mesh, first_triangle: in
     size = np.asarray(mesh.texture_size, np.float64)
     record["texture_location"] = mesh.texture_location
     record["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)
-    rows = np.linalg.inv(instance.matrix)
+    rows = _inverse(instance.matrix)
     record["to_object0"], record["to_object1"], record["to_object2"] = rows[:3]
     record["location"] = instance.matrix[:3, 3]
     record["color"], record["random"] = instance.color, instance.random
@@ -102,6 +102,14 @@ def _fill(record: np.ndarray, instance: Instance, mesh: Mesh, first_triangle: in
     if particle is not None:
         for name in ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity"):
             record[f"particle_{name}"] = getattr(particle, name)
+
+
+def _inverse(matrix: np.ndarray) -> np.ndarray:
+    """(4, 4), all 0 where there is none, as for an instance without extent."""
+    try:
+        return np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        return np.zeros((4, 4))
 
 
 def _per_corner(mesh: Mesh, name: str) -> np.ndarray | None:

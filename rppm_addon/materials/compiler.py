@@ -46,10 +46,24 @@ class CompiledGraph:
     constants: list[float | Resource] = field(default_factory=list)
 
 
+_DEEPEST_BUMP = 2
+"""Each bump whose height depends on the normal of another asks for that three times: 3^2 are enough."""
+
+_LARGEST = float(np.finfo(np.float32).max)
+
+NEUTRAL_TEXT = """void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {
+    builder.closure.diffuse = vec3(0.8);
+}
+"""
+"""What stands in for a graph that cannot be compiled: a grey surface."""
+
+
 class _Scope:
     """Statements of one GLSL function, each output of a node computed once."""
 
-    def __init__(self) -> None:
+    def __init__(self, depth: int = 0) -> None:
+        self.depth = depth
+        """How many heights of bumps lie around it."""
         self.lines: list[str] = []
         self.known: dict[int, dict[str, str]] = {}
 
@@ -61,15 +75,18 @@ class _Compiler:
         self._places: dict[tuple[int, str], int] = {}
         self._sources: dict[str, None] = {}
         self._functions: list[str] = []
-        self._heights: dict[int, str] = {}
+        self._heights: dict[tuple[int, int], str] = {}
+        self._numbers: dict[int, int] = {}
 
     def compile(self) -> CompiledGraph:
         scope = _Scope()
         if self._graph.normal is not None:
             self._sources[KINDS[BUMP].source] = None
-            normal = self._converted(scope, self._graph.normal, SocketType.VECTOR)
-            scope.lines.append(f"surface.normal = visible_normal(surface, {normal});")
-            scope.known.clear()  # what has been asked of the surface may change with its normal
+            # Apart: what nodes ask of the surface may be another with the new normal.
+            normal = _Scope()
+            value = self._converted(normal, self._graph.normal, SocketType.VECTOR)
+            self._functions.append(_function("vec3", "material_normal", normal.lines, value))
+            scope.lines.append("surface.normal = visible_normal(surface, material_normal(surface, first));")
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
         text = "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
@@ -81,7 +98,13 @@ class _Compiler:
         )
         return CompiledGraph(text, self._constants)
 
+    def _number(self, index: int) -> int:
+        """Names go by the order of use, so that nodes that nothing uses leave the text as it is."""
+        return self._numbers.setdefault(index, len(self._numbers))
+
     def _kind(self, index: int) -> NodeKind:
+        if not 0 <= index < len(self._graph.nodes):
+            raise GraphError(f"a link goes to node {index} of {len(self._graph.nodes)}")
         node = self._graph.nodes[index]
         if node.kind not in KINDS:
             raise GraphError(f'node "{node.name}" is of the unknown kind {node.kind}')
@@ -92,16 +115,17 @@ class _Compiler:
     def _add_shaders(self, scope: _Scope, output: Link) -> None:
         """Weights flow from the output to the shaders; each shader is added once with the sum of its weights."""
         weights: dict[int, list[str]] = {output.node: ["1.0"]}
+        self._check_shader(output)
         # Inputs link to earlier nodes only: going down, all weights of a node are known when it is reached.
         for index in range(output.node, -1, -1):
             if index not in weights:
                 continue
             node = self._graph.nodes[index]
-            weight = f"w{index}"
+            weight = f"w{self._number(index)}"
             scope.lines.append(f"float {weight} = {' + '.join(weights[index])};")
             first, second = node.inputs.get("shader"), node.inputs.get("shader_001")
             if node.kind == MIX_SHADER:
-                factor = f"f{index}"
+                factor = f"f{self._number(index)}"
                 scope.lines.append(f"float {factor} = clamp({self._input(scope, index, 'fac', FLOAT, 0.5)}, 0.0, 1.0);")
                 shares = ((first, f"{weight} * (1.0 - {factor})"), (second, f"{weight} * {factor}"))
             elif node.kind == ADD_SHADER:
@@ -111,7 +135,18 @@ class _Compiler:
                 continue
             for shader, share in shares:
                 if isinstance(shader, Link):
+                    self._check_order(index, shader)
+                    self._check_shader(shader)
                     weights.setdefault(shader.node, []).append(share)
+
+    def _check_shader(self, link: Link) -> None:
+        if self._kind(link.node).outputs.get(link.output) is not SHADER:
+            node = self._graph.nodes[link.node]
+            raise GraphError(f'node "{node.name}" ({node.kind}) gives no shader "{link.output}"')
+
+    def _check_order(self, index: int, link: Link) -> None:
+        if link.node >= index:
+            raise GraphError(f'node "{self._graph.nodes[index].name}" links to a node that does not come before it')
 
     # --- values -------------------------------------------------------------------------------------
 
@@ -119,16 +154,23 @@ class _Compiler:
         """GLSL for an input of a node."""
         value = self._graph.nodes[index].inputs.get(name, default)
         if isinstance(value, Link):
-            if value.node >= index:
-                raise GraphError(f'node "{self._graph.nodes[index].name}" links to a node that comes after it')
+            self._check_order(index, value)
             return self._converted(scope, value, kind)
         if isinstance(value, str):
             return _IMPLICIT[value]
-        numbers = [float(value)] * (1 if kind is FLOAT else 3) if np.isscalar(value) else [float(v) for v in value]
-        if kind is FLOAT:
-            numbers = numbers[:1] if len(numbers) == 1 else [float(np.dot(LUMINANCE, numbers[:3]))]
-        place = self._place((index, name), [v if np.isfinite(v) else 0.0 for v in numbers[:3]])
+        place = self._place((index, name), self._constants_of(self._graph.nodes[index], name, value, kind))
         return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
+
+    def _constants_of(self, node: ShaderNode, name: str, value: object, kind: SocketType) -> list[float]:
+        try:
+            numbers = [_finite(v) for v in np.atleast_1d(value)[:3]]
+        except (TypeError, ValueError) as error:
+            raise GraphError(f'node "{node.name}" ({node.kind}): its {name} is no number but {value!r}') from error
+        if len(numbers) not in (1, 3):
+            raise GraphError(f'node "{node.name}" ({node.kind}): its {name} has {len(numbers)} numbers')
+        if kind is FLOAT:
+            return numbers if len(numbers) == 1 else [_finite(np.dot(LUMINANCE, numbers))]
+        return numbers * 3 if len(numbers) == 1 else numbers
 
     def _place(self, key: tuple[int, str], values: list[float | Resource]) -> int:
         if key not in self._places:
@@ -149,9 +191,30 @@ class _Compiler:
         return value
 
     def _value(self, scope: _Scope, link: Link) -> str:
-        if link.node not in scope.known:
-            self._call(scope, link.node, None)
+        # By hand, not by recursion: chains of nodes are longer than Python's stack.
+        pending = [link.node]
+        while pending:
+            index = pending[-1]
+            if index in scope.known:
+                pending.pop()
+                continue
+            unknown = [node for node in self._needed(index) if node not in scope.known]
+            if unknown:
+                pending += reversed(unknown)
+            else:
+                pending.pop()
+                self._call(scope, index, None)
         return scope.known[link.node][link.output]
+
+    def _needed(self, index: int) -> list[int]:
+        """The nodes that must be known before a node is computed. The height of a bump is computed apart."""
+        node, kind = self._graph.nodes[index], self._kind(index)
+        links = [node.inputs[name] for name in kind.inputs if isinstance(node.inputs.get(name), Link)]
+        if node.kind == BUMP:
+            links = [link for link in links if link is not node.inputs.get("height")]
+        for link in links:
+            self._check_order(index, link)
+        return [link.node for link in links]
 
     def _call(self, scope: _Scope, index: int, weight: str | None) -> None:
         """Compute all outputs of a node, or add a shader with a weight."""
@@ -165,30 +228,40 @@ class _Compiler:
             if weight is None:
                 raise GraphError(f'node "{node.name}" is a shader and gives no value')
             arguments += ["builder", weight]
-        arguments += [str(_choice(node, name, values)) for name, values in kind.options.items()]
+        function = f"node_{node.kind}"
+        for name, values in kind.options.items():
+            choice = _choice(node, name, values)
+            if name == kind.function_option:
+                function += f"_{values[choice].lower()}"
+            else:
+                arguments.append(str(choice))
         for what in kind.resources:
             place = self._place((index, f"<{what}>"), [Resource(what, index)])
             arguments.append(f"constant_index(first + {place}u)")
         for name, (socket, default) in kind.inputs.items():
             arguments.append(self._input(scope, index, name, socket, default))
-        values = {name: f"n{index}_{name}" for name, socket in kind.outputs.items() if socket is not SHADER}
+        values = {name: f"n{self._number(index)}_{name}" for name, socket in kind.outputs.items() if socket is not SHADER}
         for name, value in values.items():
             scope.lines.append(f"{kind.outputs[name].glsl} {value};")
-        scope.lines.append(f"node_{node.kind}({', '.join([*arguments, *values.values()])});")
+        scope.lines.append(f"{function}({', '.join([*arguments, *values.values()])});")
         scope.known[index] = values
 
     def _bump(self, scope: _Scope, index: int) -> None:
         """The height is a function of the place, which is asked at three of them."""
         kind = self._kind(index)
         self._sources[kind.source] = None
-        if index not in self._heights:
-            inner = _Scope()
+        number = self._number(index)
+        value = f"n{number}_normal"
+        scope.known[index] = {"normal": value}
+        if scope.depth >= _DEEPEST_BUMP:
+            scope.lines.append(f"vec3 {value} = {self._input(scope, index, 'normal', *kind.inputs['normal'])};")
+            return
+        function = f"height_{number}_{scope.depth}"
+        if (index, scope.depth) not in self._heights:
+            inner = _Scope(scope.depth + 1)
             height = self._input(inner, index, "height", *kind.inputs["height"])
-            body = "".join(f"    {line}\n" for line in inner.lines)
-            name = f"height_{index}"
-            self._functions.append(f"float {name}(Surface surface, uint first) {{\n{body}    return {height};\n}}\n")
-            self._heights[index] = name
-        function, value = self._heights[index], f"n{index}_normal"
+            self._functions.append(_function("float", function, inner.lines, height))
+            self._heights[index, scope.depth] = function
         others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
         width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         invert = _choice(self._graph.nodes[index], "invert", kind.options["invert"])
@@ -200,7 +273,17 @@ class _Compiler:
             f"  float height_y = {function}(surface_beside(surface, along_y), first) - height;",
             f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, height_x, height_y, {value}); }}",
         ]
-        scope.known[index] = {"normal": value}
+
+
+def _function(result: str, name: str, lines: list[str], value: str) -> str:
+    body = "".join(f"    {line}\n" for line in lines)
+    return f"{result} {name}(Surface surface, uint first) {{\n{body}    return {value};\n}}\n"
+
+
+def _finite(value: float) -> float:
+    """A number as a float of single precision; 0 where it is not finite."""
+    value = float(value)
+    return float(np.clip(value, -_LARGEST, _LARGEST)) if np.isfinite(value) else 0.0
 
 
 def _choice(node: ShaderNode, name: str, values: tuple) -> int:

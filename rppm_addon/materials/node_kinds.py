@@ -44,6 +44,9 @@ class NodeKind:
     """What the node needs besides: "table", where its table starts in material_data; "image", the number of its
     image; "attribute", the number of its mesh attribute."""
     surface: bool = False
+    function_option: str = ""
+    """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not passed:
+    drivers take long to fold a choice among many at every call."""
 
     @property
     def is_shader(self) -> bool:

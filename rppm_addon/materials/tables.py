@@ -6,12 +6,13 @@ import numpy as np
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
+from ..gl.sources import CompileError
 from ..scene.images import Image
 from ..scene.materials import Material
 from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
 from . import albedo_tables
-from .compiler import CompiledGraph, Resource, compile_graph
+from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
 from .emitted import Emits, emits
 from .evaluation import GraphEvaluator
 from .records import IMAGE_ENTRY, MATERIAL
@@ -25,6 +26,12 @@ def default_material() -> Material:
 
 
 _SRGB, _BYTES, _HALVES = 0, 1, 2
+_DARK = "it gives nothing"
+
+
+def first_line(error: Exception) -> str:
+    """What a driver says first about a program, for messages of one line."""
+    return next((line for line in str(error).splitlines() if "error" in line.lower()), str(error).strip()[:200])
 
 
 def _texels(image: Image) -> tuple[np.ndarray, int]:
@@ -54,7 +61,10 @@ class MaterialTables:
         self.programs: list[str] = []
         self.attribute_names: list[str] = []
         self.emits: list[Emits] = []
-        self._others: dict[int, tuple[str, int]] = {}
+        self.users: dict[str, list[str]] = {}
+        """By text, the names of the materials that it belongs to."""
+        self._others: dict[int, tuple[str, int, str]] = {}
+        self._scene: Scene | None = None
 
     @property
     def buffers(self) -> dict:
@@ -68,12 +78,18 @@ class MaterialTables:
     def build(self, scene: Scene) -> None:
         """Compile the graphs of a scene and upload their constants, and the images that they use.
 
-        Raises GraphError when a graph is not well formed.
+        A graph that is not well formed is replaced by a grey surface, or gives no light, with a warning in
+        scene.warnings.
         """
+        self._scene = scene
         self.default_material = len(scene.materials)
         materials = [*scene.materials, default_material()]
-        compiled = [compile_graph(material.graph) for material in materials]
-        self.emits = [emits(material.graph) for material in materials]
+        compiled, self.emits, self.users = [], [], {}
+        for material in materials:
+            graph, emission = self._compile(material.graph, f'Material "{material.name}"', "it is grey")
+            compiled.append(graph)
+            self.emits.append(emission)
+            self.users.setdefault(graph.text, []).append(material.name)
         self.programs = list(dict.fromkeys(graph.text for graph in compiled))
         number = {text: index for index, text in enumerate(self.programs)}
         layout = _Layout(scene.images)
@@ -82,12 +98,14 @@ class MaterialTables:
             record["program"] = number[graph.text]
             record["first_constant"] = layout.add(material.graph, graph)
         interiors = [material.interior for material in materials]
-        others = [scene.world.graph, *(light.graph for light in scene.lights), *interiors]
+        others = [("The world", scene.world.graph)]
+        others += [(f'Light "{light.name}"', light.graph) for light in scene.lights]
+        others += [(f'The volume of material "{material.name}"', material.interior) for material in materials]
         self._others = {}
-        for graph in others:
+        for owner, graph in others:
             if graph is not None:
-                compiled_graph = compile_graph(graph)
-                self._others[id(graph)] = compiled_graph.text, layout.add(graph, compiled_graph)
+                compiled_graph, _ = self._compile(graph, owner, _DARK)
+                self._others[id(graph)] = compiled_graph.text, layout.add(graph, compiled_graph), owner
         self.attribute_names = list(layout.attributes)
         self._buffers["MaterialData"].upload(layout.data())
         self._buffers["Images"].upload(layout.image_entries())
@@ -96,6 +114,13 @@ class MaterialTables:
             if interior is not None:
                 record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
         self._buffers["Materials"].upload(records)
+
+    def _compile(self, graph: NodeGraph, owner: str, remedy: str) -> tuple[CompiledGraph, Emits]:
+        try:
+            return compile_graph(graph), emits(graph)
+        except GraphError as error:
+            self._scene.warn(f"{owner}: {error}; {remedy}")
+            return CompiledGraph(NEUTRAL_TEXT), Emits.NOTHING
 
     def evaluate(
         self,
@@ -110,8 +135,12 @@ class MaterialTables:
         Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
         ray_length: what Light Path tells, metres.
         """
-        text, first = self._others[id(graph)]
-        return self._evaluator.run(text, first, self.buffers, width, height, from_camera, ray_length)
+        text, first, owner = self._others[id(graph)]
+        try:
+            return self._evaluator.run(text, first, self.buffers, width, height, from_camera, ray_length)
+        except CompileError as error:
+            self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")
+            return np.zeros((height, width, 3), np.float32)
 
     def release(self) -> None:
         self._evaluator.release()

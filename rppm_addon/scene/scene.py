@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene: everything a render needs."""
 
+import logging
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,6 +12,8 @@ from .lights import Light, World
 from .materials import Material
 from .meshes import Instance, Mesh
 from .settings import RenderSettings
+
+log = logging.getLogger(__name__)
 
 
 @dataclass
@@ -30,7 +33,13 @@ class Scene:
     cubemap_centre: np.ndarray | None = None
     """(3,) metres where the deep cubemap's centre goes; None is automatic."""
     warnings: list[str] = field(default_factory=list)
-    """What was exported only in part, a line each, naming object or material and node."""
+    """What is rendered only in part, a line each, naming object or material and node."""
+
+    def warn(self, text: str) -> None:
+        """Record and log a warning once."""
+        if text not in self.warnings:
+            self.warnings.append(text)
+            log.warning(text)
 
     @property
     def triangle_count(self) -> int:

@@ -15,6 +15,7 @@ layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; }
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
+#include "materials/usable.glsl"
 #include "common/photon.glsl"
 #include "resolve/ranges.glsl"
 
@@ -99,5 +100,6 @@ void main() {
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
     builder.closure.shading_normal = pack_unit_vector(shading);
+    make_usable(builder.closure);
     closures[index] = builder.closure;
 }

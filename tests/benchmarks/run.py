@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT, ROOT / "tests/gl", ROOT / "tests/benchmarks"):  # the checkout, installed or not
+for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks"):  # the checkout, installed or not
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 

@@ -78,10 +78,37 @@ def export(scene) -> Scene:
     return export_scene(bpy.context.evaluated_depsgraph_get())
 
 
-def export_lobes(scene, material):
-    """The lobes of a material on a quad, and the warnings of the export."""
+def export_graph(scene, material):
+    """The node graph of a material on a quad, and the warnings of the export."""
     quad = add_mesh(scene)
     quad.data.materials.append(material)
     exported = export(scene)
     (instance,) = exported.instances
-    return exported.materials[instance.materials[0]].lobes, exported.warnings
+    return exported.materials[instance.materials[0]].graph, exported.warnings
+
+
+def shaders(graph):
+    """(node, weight) of the shaders that a graph adds up; factors of its mixes must be constants."""
+    found = []
+
+    def add(shader, weight):
+        if shader is None or weight == 0.0:
+            return
+        node = graph.nodes[shader.node]
+        first, second = node.inputs.get("shader"), node.inputs.get("shader_001")
+        if node.kind == "mix_shader":
+            add(first, weight * (1.0 - node.inputs["fac"]))
+            add(second, weight * node.inputs["fac"])
+        elif node.kind == "add_shader":
+            add(first, weight)
+            add(second, weight)
+        else:
+            found.append((node, weight))
+
+    add(graph.surface, 1.0)
+    return found
+
+
+def source(graph, node, name):
+    """The node that feeds an input."""
+    return graph.nodes[node.inputs[name].node]

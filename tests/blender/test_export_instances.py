@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from blender_scenes import add_mesh, add_object, export, new_material
+from blender_scenes import add_mesh, add_object, export, new_material, shaders
 from mathutils import Matrix
 
 
@@ -105,8 +105,8 @@ def test_no_material_is_grey_diffuse(scene):
     empty_slot.data.materials.append(None)
     exported = export(scene)
     (material,) = exported.materials
-    (lobe,) = material.lobes
-    assert lobe.kind.name == "DIFFUSE" and lobe.color == (0.8, 0.8, 0.8)
+    ((shader, weight),) = shaders(material.graph)
+    assert shader.kind == "bsdf_diffuse" and shader.inputs["color"] == (0.8, 0.8, 0.8) and weight == 1.0
     assert [instance.materials for instance in exported.instances] == [[0], [0]]
 
 

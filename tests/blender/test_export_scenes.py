@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from blender_scenes import export
 
+from rppm_addon.materials.compiler import Resource, compile_graph
+
 SCENES = Path(__file__).resolve().parents[3] / "shared" / "scenes"
 
 # Triangles as counted in Blender's evaluated meshes, materials that are in use, lights, images.
@@ -59,9 +61,10 @@ def test_export_of_a_real_file(registered, name):
         assert instance.materials and max(instance.materials) < len(exported.materials)
         assert np.isfinite(np.linalg.inv(instance.matrix)).all()
     for material in exported.materials:
-        for lobe in material.lobes:
-            assert 0.0 < lobe.weight <= 1.0 and -1 <= lobe.color_image < len(exported.images)
-            assert np.isfinite(lobe.color).all() and min(lobe.color) >= 0.0
+        compiled = compile_graph(material.graph)
+        numbers = [constant for constant in compiled.constants if not isinstance(constant, Resource)]
+        assert np.isfinite(numbers).all()
+        assert all(-1 <= node.image < len(exported.images) for node in material.graph.nodes)
     for warning in exported.warnings:
         assert warning.split(" ")[0] in {"Material", "Object", "World", "Light", "Camera"}, warning
 
@@ -72,5 +75,5 @@ def test_glass_of_the_caustic_scenes_is_glass(registered):
         pytest.skip(f"the sample scenes are not here ({SCENES})")
     bpy.ops.wm.open_mainfile(filepath=str(path))
     exported = export(bpy.context.scene)
-    kinds = {material.name: [lobe.kind.name for lobe in material.lobes] for material in exported.materials}
-    assert kinds["glass_accurate"] == ["GLASS"]
+    (glass,) = (material for material in exported.materials if material.name == "glass_accurate")
+    assert {"bsdf_refraction", "bsdf_glossy", "fresnel"} <= {node.kind for node in glass.graph.nodes}

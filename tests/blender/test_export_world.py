@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The surroundings: a colour or an image, seen in the direction that Cycles sees it in."""
 
-import math
-
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_node, export, link, set_world
+from emission import HEIGHT, look_up, world_map
 from mathutils import Euler, Vector
 from test_export_images import new_image
 from test_export_lights import cycles_radiance
@@ -14,18 +13,17 @@ from test_export_lights import cycles_radiance
 
 def test_no_world_is_black(scene):
     scene.world = None
-    world = export(scene).world
-    assert world.image == -1 and not world.radiance.any()
+    assert not world_map(export(scene)).any()
 
 
 def test_background(scene):
     set_world(scene, (0.5, 1.0, 0.25), 3.0)
-    np.testing.assert_allclose(export(scene).world.radiance, (1.5, 3.0, 0.75))
+    np.testing.assert_allclose(world_map(export(scene))[0, 0], (1.5, 3.0, 0.75))
 
 
 def test_world_without_output(scene):
     set_world(scene).node_tree.nodes.clear()
-    assert not export(scene).world.radiance.any()
+    assert not world_map(export(scene)).any()
 
 
 @pytest.mark.skipif(bpy.app.version >= (5, 0), reason="from 5.0 on a world always has nodes")
@@ -45,16 +43,6 @@ def environment(scene, pixels, strength=1.0):
     return tree, texture
 
 
-def look_up(exported, direction):
-    """The colour that the exported image shows in a world direction, without interpolation."""
-    x, y, z = exported.world.rotation @ direction
-    u = 0.5 - math.atan2(y, x) / (2.0 * math.pi)
-    v = 0.5 + math.atan2(z, math.hypot(x, y)) / math.pi
-    pixels = exported.images[exported.world.image].pixels
-    height, width = pixels.shape[:2]
-    return exported.world.radiance * pixels[min(int(v * height), height - 1), int(u * width) % width, :3]
-
-
 @pytest.mark.parametrize("vector_type", [None, "POINT", "TEXTURE", "VECTOR"])
 def test_environment_looks_as_in_cycles(scene, tmp_path, vector_type):
     pixels = np.random.default_rng(7).random((4, 8, 4))
@@ -68,34 +56,35 @@ def test_environment_looks_as_in_cycles(scene, tmp_path, vector_type):
     texture.interpolation = "Closest"
     exported = export(scene)
     assert exported.warnings == []
+    radiance = world_map(exported)
     for angles in ((0.4, 0.2, 0.1), (1.9, -0.3, 2.0), (2.6, 0.1, -1.2)):
         scene.camera.rotation_euler = angles
         direction = Euler(angles).to_matrix() @ Vector((0.0, 0.0, -1.0))
         expected = cycles_radiance(scene, tmp_path)
-        np.testing.assert_allclose(look_up(exported, np.array(direction)), expected, rtol=1e-3, atol=1e-4)
+        np.testing.assert_allclose(look_up(radiance, direction), expected, rtol=1e-3, atol=1e-4)
 
 
-def test_environment_fallbacks(scene):
+def test_nodes_between_the_image_and_the_background(scene):
     tree, texture = environment(scene, np.full((2, 4, 4), 0.5), 2.0)
-    gamma = add_node(tree, "ShaderNodeGamma", Gamma=1.0)
+    gamma = add_node(tree, "ShaderNodeGamma", Gamma=2.0)
     link(tree, texture.outputs["Color"], gamma.inputs["Color"])
     link(tree, gamma.outputs[0], tree.nodes["Background"].inputs["Color"])
     exported = export(scene)
-    assert exported.world.image == -1
-    np.testing.assert_allclose(exported.world.radiance, [1.0] * 3)
-    assert any('"Sky" (TEX_ENVIRONMENT)' in text for text in exported.warnings)
+    assert exported.warnings == []
+    np.testing.assert_allclose(world_map(exported)[0, 0], [0.5] * 3, rtol=1e-3)
 
 
 def test_missing_environment(scene):
     tree, texture = environment(scene, np.full((2, 4, 4), 0.5))
     texture.image = None
     exported = export(scene)
-    assert exported.world.image == -1 and any('World "World": node "Sky"' in text for text in exported.warnings)
+    assert any('World "World": node "Sky"' in text for text in exported.warnings)
+    np.testing.assert_allclose(world_map(exported)[0, 0], (1.0, 0.0, 1.0))
 
 
-def test_sky_texture_is_replaced_and_reported(scene):
+def test_sky_texture(scene):
     world = set_world(scene)
-    sky = add_node(world.node_tree, "ShaderNodeTexSky", "Nishita")
+    sky = add_node(world.node_tree, "ShaderNodeTexSky", "Sky")
     link(world.node_tree, sky.outputs[0], world.node_tree.nodes["Background"].inputs["Color"])
-    exported = export(scene)
-    assert exported.world.radiance.all() and any('"Nishita" (TEX_SKY)' in text for text in exported.warnings)
+    radiance = world_map(export(scene))
+    assert np.isfinite(radiance).all() and (radiance[HEIGHT // 2 + 8 :] > 0.0).all()

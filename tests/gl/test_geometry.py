@@ -53,7 +53,7 @@ def test_instances_are_gathered_as_numpy_does(geometry):
     triangles, attributes = read(geometry)
     assert geometry.triangle_count == scene.triangle_count
     first = 0
-    for instance in instances:
+    for number, instance in enumerate(instances):
         mesh = scene.meshes[instance.mesh]
         linear = instance.matrix[:3, :3]
         order = [0, 2, 1] if np.linalg.det(linear) < 0 else [0, 1, 2]
@@ -72,7 +72,7 @@ def test_instances_are_gathered_as_numpy_does(geometry):
         assert ((face * outside).sum(-1) > 0).all()
         slots = np.minimum(mesh.triangle_slots, len(instance.materials) - 1)
         np.testing.assert_array_equal(attributes["material"][part], np.array(instance.materials)[slots])
-        assert (attributes["object_index"][part] == instance.object_index).all()
+        assert (attributes["instance"][part] == number).all()
         if mesh.corner_uv is not None:
             uv = np.stack([attributes[f"uv{k}"][part] for k in range(3)], 1)
             np.testing.assert_array_equal(uv, mesh.corner_uv[corners])

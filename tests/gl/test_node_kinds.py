@@ -13,13 +13,16 @@ SOURCES = sorted({KINDS[name].source for name in VALUES})
 
 
 def graph_of(names: list[str]) -> NodeGraph:
-    """Every kind once, each fed by the one before through all of its inputs, and all of them shown."""
+    """Every kind once, and every function of it, each fed by the one before through all of its inputs, and all of them shown."""
     graph = NodeGraph()
     value = graph.add("new_geometry", "position")
     for name in names:
         kind = KINDS[name]
         output = next(iter(kind.outputs))
-        value = graph.add(name, output, table=np.zeros((257, 4)), **dict.fromkeys(kind.inputs, value))
+        for choice in kind.options.get(kind.function_option, (None,)):
+            options = {} if choice is None else {kind.function_option: choice}
+            inputs = dict.fromkeys(kind.inputs, value)
+            value = graph.add(name, output, table=np.zeros((257, 4)), options=options, **inputs)
     graph.surface = graph.add("emission", "emission", color=value)
     return graph
 

@@ -153,7 +153,11 @@ def cycles_values(
 
 def call_shader(name: str, kind: NodeKind, options: dict) -> str:
     """A compute shader that calls a node's function for each invocation; see our_values."""
-    places = [values.index(options.get(option, values[0])) for option, values in kind.options.items()]
+    choices = {option: options.get(option, values[0]) for option, values in kind.options.items()}
+    function = f"node_{name}"
+    if kind.function_option:
+        function += f"_{choices.pop(kind.function_option).lower()}"
+    places = [kind.options[option].index(choice) for option, choice in choices.items()]
     constants = [given for given in kind.inputs if given not in ("vector", "w")]
     fetched = {"vector": "coordinates[3u * i], coordinates[3u * i + 1u], coordinates[3u * i + 2u]"}
     fetched["w"] = "coordinates[3u * count + i]"
@@ -185,7 +189,7 @@ def call_shader(name: str, kind: NodeKind, options: dict) -> str:
             "uint count = uint(coordinates.length()) / 4u;",
             "if (i >= count) return;",
             *declared,
-            f"node_{name}({', '.join(arguments)});",
+            f"{function}({', '.join(arguments)});",
             *stored,
             "}",
             "",

@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lobes import Lobe, LobeKind
+from lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.emission import _spread_share, share_out, spot_share, spread_constants
 from rppm_addon.integrator.environment import distribution_of
-from rppm_addon.materials.emitted import emitted_radiance
-from rppm_addon.scene import Material
+from rppm_addon.materials.emitted import Emits, emits
 
 
 @settings(deadline=None, derandomize=True)
@@ -48,15 +47,25 @@ def test_spread_keeps_the_flux_of_an_area_light(degrees):
     assert spread_constants(math.pi) == (0.0, 1.0)
 
 
-def test_emission_adds_up_lobes():
-    lobes = [
-        Lobe(LobeKind.EMISSION, weight=0.5, color=(2, 4, 6)),
-        Lobe(LobeKind.PRINCIPLED, weight=0.5, alpha=0.5, emission_color=(4, 0, 0), emission_strength=1.0),
-        Lobe(LobeKind.DIFFUSE, color=(9, 9, 9)),
-    ]
-    np.testing.assert_allclose(emitted_radiance(Material("m", lobes), []), [2, 2, 3])
-    image = Lobe(LobeKind.EMISSION, color=(2, 2, 2), color_image=0)
-    np.testing.assert_allclose(emitted_radiance(Material("m", [image]), [np.array([0.5, 1, 0])]), [1, 2, 0])
+def principled(**inputs):
+    return Lobe(LobeKind.PRINCIPLED, emission_color=(4, 0, 0), **inputs)
+
+
+@pytest.mark.parametrize(
+    ("lobes", "expected"),
+    [
+        ([], Emits.NOTHING),
+        ([Lobe(LobeKind.DIFFUSE, color=(9, 9, 9))], Emits.NOTHING),
+        ([Lobe(LobeKind.EMISSION, color=(0, 0, 0))], Emits.NOTHING),
+        ([Lobe(LobeKind.EMISSION, color=(0, 2, 0), strength=0.0)], Emits.NOTHING),
+        ([Lobe(LobeKind.DIFFUSE), Lobe(LobeKind.EMISSION, color=(0, 2, 0))], Emits.EVENLY),
+        ([Lobe(LobeKind.EMISSION, weight=0.5, color=(2, 2, 2), color_image=0)], Emits.VARYING),
+        ([principled(emission_strength=0.0)], Emits.NOTHING),
+        ([principled(emission_strength=1.0, coat_weight=0.5)], Emits.VARYING),
+    ],
+)
+def test_what_emits(lobes, expected):
+    assert emits(material("m", *lobes).graph) is expected
 
 
 def test_environment_distribution_is_the_image_by_solid_angle():

@@ -5,10 +5,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from lobes import image_world, material, Lobe, LobeKind
+from lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
+from rppm_addon.materials.compiler import compile_graph
 from rppm_addon.scene import (
+    AttributeDomain,
     Aperture,
     Camera,
     DirectLight,
@@ -16,7 +18,11 @@ from rppm_addon.scene import (
     Instance,
     Light,
     LightKind,
+    Material,
     Mesh,
+    MeshAttribute,
+    NodeGraph,
+    Particle,
     Panorama,
     PanoramaKind,
     RenderSettings,
@@ -26,6 +32,18 @@ from rppm_addon.scene import (
     save_scene,
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
+
+
+def graph_of_everything() -> NodeGraph:
+    """Links, numbers, colours, options of both kinds, a table, an image and an attribute."""
+    graph = NodeGraph()
+    place = graph.add("uvmap", "uv", attribute="UVMap")
+    image = graph.add("tex_image", "color", name="Picture", image=0, vector=place, options={"interpolation": "Cubic"})
+    table = np.linspace(0, 1, 257 * 4, dtype=np.float32).reshape(257, 4)
+    ramp = graph.add("val_to_rgb", "color", table=table, options={"constant": True}, fac=image)
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=ramp)
+    graph.normal = graph.add("bump", "normal", height=0.5, normal=(0.0, 0.0, 1.0))
+    return graph
 
 
 def full_scene() -> Scene:
@@ -38,14 +56,19 @@ def full_scene() -> Scene:
         np.array([[0, 1, 2], [0, 2, 3]], np.int32),
         np.array([0, 1], np.int32),
         rng.random((4, 2), np.float32),
+        attributes={"heat": MeshAttribute(AttributeDomain.CORNER, rng.random((4, 3), np.float32))},
     )
     bare = dataclasses.replace(mesh, name="bare", corner_uv=None)
     return Scene(
         camera=Camera(np.eye(4), (-1, 1, -0.5, 0.5), 64, 32, True, 0.2, 50.0, (1, 2, 30, 31)),
         meshes=[mesh, bare],
-        instances=[Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3), Instance(1, np.eye(4))],
+        instances=[
+            Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3),
+            Instance(1, np.eye(4), particle=Particle(index=2.0, velocity=(1.0, 2.0, 3.0)), attributes={"a": (1.0, 2.0)}),
+        ],
         materials=[
-            material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0]))
+            material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0])),
+            Material("b", graph_of_everything()),
         ],
         lights=[Light("sun", LightKind.SUN, np.eye(4), np.array([1, 2, 3.0]), sun_angle=0.1)],
         world=image_world(0),
@@ -64,6 +87,10 @@ def assert_same(first, second):
     elif isinstance(first, np.ndarray):
         assert first.dtype == second.dtype
         np.testing.assert_array_equal(first, second)
+    elif isinstance(first, dict):
+        assert first.keys() == second.keys()
+        for name in first:
+            assert_same(first[name], second[name])
     elif isinstance(first, list | tuple):
         assert len(first) == len(second)
         for a, b in zip(first, second, strict=True):
@@ -91,6 +118,13 @@ def test_other_resolutions_of_a_panorama():
     wide = camera_at_resolution(camera, 200, 100)
     assert wide.window == (0, 1, 0, 1) and wide.panorama.sensor == (36.0, 18.0)
     assert camera_at_resolution(wide, 50, 100).panorama.sensor == (18.0, 36.0)
+
+
+def test_a_stored_graph_compiles_to_the_same(tmp_path):
+    scene = full_scene()
+    save_scene(scene, tmp_path / "scene.npz")
+    for before, after in zip(scene.materials, load_scene(tmp_path / "scene.npz").materials, strict=True):
+        assert compile_graph(before.graph) == compile_graph(after.graph)
 
 
 def test_other_files_are_refused_in_one_line(tmp_path):

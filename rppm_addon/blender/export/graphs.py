@@ -49,6 +49,18 @@ def kind_name(node: bpy.types.Node) -> str:
                    for i, c in enumerate(name))  # fmt: skip
 
 
+_DEEPEST = 40
+"""Nodes that are followed one from another before the rest is put off: Python's stack holds some hundred of them."""
+
+
+class _TooDeep(Exception):
+    """An output that has to be known before anything else is."""
+
+    def __init__(self, source: Source) -> None:
+        super().__init__(source.node.name)
+        self.source = source
+
+
 class GraphExporter:
     """Builds the graph of one material, world or light.
 
@@ -67,6 +79,7 @@ class GraphExporter:
         self._report = report
         self._known: dict[tuple, object] = {}
         self._open: set[tuple] = set()
+        self._waiting: set[tuple] = set()
 
     def warn(self, node: bpy.types.Node, text: str) -> None:
         """Tell the user what is done about a node."""
@@ -74,14 +87,14 @@ class GraphExporter:
 
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
         """The shader that feeds an input; a colour in place of it glows, as in Cycles."""
-        try:
-            source = find_source(socket, path)
-            if not isinstance(source, Source):
-                return None
-            value = self._output(source)
-        except RecursionError:
-            self._report.warn(f"{self.owner}: its nodes are nested too deeply and are left out; simplify them")
+        source = find_source(socket, path)
+        if not isinstance(source, Source):
+            if source.broken is not None:
+                self.warn(source.broken, "is a group whose node tree is missing; nothing is there instead")
             return None
+        value = self._output(source)
+        if value is None and _is_undefined(source.node):
+            return self.graph.add("bsdf_diffuse", "bsdf", name=source.node.name, color=0.8)
         if isinstance(value, Link) and KINDS[self.graph.nodes[value.node].kind].outputs[value.output] is SHADER:
             return value
         return None if value is None else self.graph.add("emission", "emission", name=source.node.name, color=value)
@@ -105,23 +118,46 @@ class GraphExporter:
 
     def _output(self, source: Source) -> object:
         """The value of an output, None when nothing is known."""
+        if self._open:
+            return self._found(source)
+        pending = [source]
+        try:
+            while True:
+                try:
+                    value = self._found(pending[-1])
+                except _TooDeep as deeper:
+                    self._waiting.add(_output_key(pending[-1]))
+                    pending.append(deeper.source)
+                    continue
+                pending.pop()
+                if not pending:
+                    return value
+                self._waiting.discard(_output_key(pending[-1]))
+        finally:
+            self._waiting.clear()
+
+    def _found(self, source: Source) -> object:
         node = source.node
-        key = (node.as_pointer(), *(group.as_pointer() for group in source.path))
-        output_key = (*key, source.output.identifier)
+        output_key = _output_key(source)
         if output_key in self._known:
             return self._known[output_key]
-        if output_key in self._open:
+        if output_key in self._open or output_key in self._waiting:
             self.warn(node, "is linked to itself through other nodes; the link is left out")
             return None
+        if len(self._open) >= _DEEPEST:
+            raise _TooDeep(source)
         self._open.add(output_key)
         try:
-            value = self._make(node, source.output, source.path, key)
+            value = self._make(node, source.output, source.path)
+        except _UNREADABLE as error:
+            self.warn(node, f"cannot be read ({error}); the value of the socket it feeds is used")
+            value = None
         finally:
             self._open.discard(output_key)
         self._known[output_key] = value
         return value
 
-    def _make(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path, key: tuple) -> object:
+    def _make(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
         handler = HANDLERS.get(node.type)
         if handler is not None:
             return handler(self, node, output, path)
@@ -130,21 +166,25 @@ class GraphExporter:
             return self._stand_in(node, output, path)
         name = snake_case(output.identifier)
         if name not in KINDS[kind].outputs:
+            name = _OLDER.get(name, name)
+        if name not in KINDS[kind].outputs:
             self.warn(node, f'has an output "{output.name}" that is not rendered; 0 is used')
             return 0.0
-        # One node serves all of its outputs.
-        known = self._known.get(key)
-        if not isinstance(known, int):
-            known = self.add(kind, node, path).node
-            self._known[key] = known
-        return Link(known, name)
+        return self.add(kind, node, path, name)
 
     def add(self, kind: str, node: bpy.types.Node, path: Path, output: str = "", **members: object) -> Link:
-        """Append a node of a kind with the inputs and options that the Blender node has by the kind's names."""
+        """A node of a kind with the inputs and options that the Blender node has by the kind's names; one serves all
+        of the outputs."""
+        key = (kind, *node_key(node, path))
+        if key not in self._known:
+            self._known[key] = self._append(kind, node, path, **members).node
+        return Link(self._known[key], output)
+
+    def _append(self, kind: str, node: bpy.types.Node, path: Path, **members: object) -> Link:
         declared = KINDS[kind]
         inputs = self._inputs(declared, node, path) | members.pop("inputs", {})
         options = self._options(declared, node) | members.pop("options", {})
-        return self.graph.add(kind, output, name=node.name, options=options, **members, **inputs)
+        return self.graph.add(kind, name=node.name, options=options, **members, **inputs)
 
     def _inputs(self, kind: NodeKind, node: bpy.types.Node, path: Path) -> dict[str, object]:
         sockets = {snake_case(socket.identifier): socket for socket in node.inputs}
@@ -220,7 +260,25 @@ class GraphExporter:
         return None
 
 
+def _is_undefined(node: bpy.types.Node) -> bool:
+    """Whether this Blender does not know the type of a node, which another version or an add-on made."""
+    return not node.bl_idname.startswith("ShaderNode")
+
+
+def node_key(node: bpy.types.Node, path: Path) -> tuple[int, ...]:
+    """What tells a node in its groups from all others."""
+    return (node.as_pointer(), *(group.as_pointer() for group in path))
+
+
+def _output_key(source: Source) -> tuple:
+    return (*node_key(source.node, source.path), source.output.identifier)
+
+
+_UNREADABLE = (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError)
+"""What reading a node raises that is broken or of another version of Blender."""
+
 _IRREGULAR = {"CameraData": "camera", "RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve", "BsdfAnisotropic": "bsdf_glossy"}
+
 
 def _own_properties(node: bpy.types.Node) -> set[str]:
     """Numbers that a node has and nodes in general have not, such as a brick texture's offset."""
@@ -243,5 +301,5 @@ def _stored(socket: bpy.types.NodeSocket) -> object:
     if isinstance(stored, str) or stored is None:
         return 0.0
     if hasattr(stored, "__len__"):
-        return tuple(float(v) if np.isfinite(v) else 0.0 for v in stored[:3])
+        return (*(float(v) if np.isfinite(v) else 0.0 for v in stored[:3]), 0.0, 0.0)[:3]
     return float(stored) if np.isfinite(stored) else 0.0

@@ -38,7 +38,12 @@ def node_tree(owner: bpy.types.Material | bpy.types.World) -> bpy.types.NodeTree
 def find_source(socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
     """What feeds an input socket of a node that lies in the groups of ``path``."""
     start = socket
+    passed: set[tuple[int, Path]] = set()
     while True:
+        place = (socket.as_pointer(), path)
+        if place in passed:
+            return Unlinked(start)  # links in a circle, without a node that could give a value
+        passed.add(place)
         link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
         if link is None:
             # A reroute and a muted node have no value that the user sees: the reader's own counts.

@@ -27,12 +27,14 @@ KINDS = {
         {"value": (FLOAT, 0.5), "value_001": (FLOAT, 0.5), "value_002": (FLOAT, 0.5)},
         {"value": FLOAT},
         {"operation": MATH_OPERATIONS, "use_clamp": BOOLEAN},
+        function_option="operation",
     ),
     "vector_math": NodeKind(
         "vector_math.glsl",
         {"vector": (VECTOR, ZERO), "vector_001": (VECTOR, ZERO), "vector_002": (VECTOR, ZERO), "scale": (FLOAT, 1.0)},
         {"vector": VECTOR, "value": FLOAT},
         {"operation": VECTOR_OPERATIONS},
+        function_option="operation",
     ),
     "mix_float": NodeKind(
         "mix.glsl",

@@ -12,7 +12,7 @@ vec4 ramp_entry(uint table, uint i) {
 
 void node_val_to_rgb(int constant, uint table, float factor, out vec3 color, out float alpha) {
     float place = clamp(factor, 0.0, 1.0) * float(RAMP_ENTRIES - 1u);
-    uint i = uint(place);
+    uint i = min(uint(place), RAMP_ENTRIES - 1u);  // a factor that is no number leads anywhere
     vec4 value = ramp_entry(table, i);
     if (constant == 0) value = mix(value, ramp_entry(table, min(i + 1u, RAMP_ENTRIES - 1u)), place - float(i));
     color = value.rgb;

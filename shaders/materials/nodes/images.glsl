@@ -70,7 +70,7 @@ void node_tex_image_tiles(int interpolation, int extension, int divide, uint tab
     int tile = int(corner.x) + 10 * int(corner.y);
     color = vec3(1.0, 0.0, 1.0);
     alpha = 1.0;
-    if (any(lessThan(corner, vec2(0.0))) || corner.x > 9.0 || tile >= int(tiles)) return;
+    if (any(lessThan(corner, vec2(0.0))) || corner.x > 9.0 || tile < 0 || tile >= int(tiles)) return;
     float image = material_data[table + uint(tile)];
     if (image < 0.0) return;
     vec4 found = sample_image(uint(image), vector.xy - corner, interpolation, EXTENSION_EXTEND, divide);

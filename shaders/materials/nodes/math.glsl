@@ -13,53 +13,51 @@ float smooth_minimum(float a, float b, float distance) {
     return min(a, b) - h * h * h * distance * (1.0 / 6.0);
 }
 
-float math(int operation, float a, float b, float c) {
-    switch (operation) {
-    case 0: return a + b;                        // ADD
-    case 1: return a - b;                        // SUBTRACT
-    case 2: return a * b;                        // MULTIPLY
-    case 3: return safe_divide(a, b);            // DIVIDE
-    case 4: return a * b + c;                    // MULTIPLY_ADD
-    case 5: return safe_power(a, b);             // POWER
-    case 6: return safe_logarithm(a, b);         // LOGARITHM
-    case 7: return sqrt(max(a, 0.0));            // SQRT
-    case 8: return a > 0.0 ? inversesqrt(a) : 0.0; // INVERSE_SQRT
-    case 9: return abs(a);                       // ABSOLUTE
-    case 10: return exp(a);                      // EXPONENT
-    case 11: return min(a, b);                   // MINIMUM
-    case 12: return max(a, b);                   // MAXIMUM
-    case 13: return a < b ? 1.0 : 0.0;           // LESS_THAN
-    case 14: return a > b ? 1.0 : 0.0;           // GREATER_THAN
-    case 15: return sign(a);                     // SIGN
-    case 16: return abs(a - b) <= max(c, 1.1920929e-7) ? 1.0 : 0.0; // COMPARE
-    case 17: return smooth_minimum(a, b, c);     // SMOOTH_MIN
-    case 18: return -smooth_minimum(-a, -b, c);  // SMOOTH_MAX
-    case 19: return floor(a + 0.5);              // ROUND
-    case 20: return floor(a);                    // FLOOR
-    case 21: return ceil(a);                     // CEIL
-    case 22: return trunc(a);                    // TRUNC
-    case 23: return a - floor(a);                // FRACT
-    case 24: return safe_modulo(a, b);           // MODULO
-    case 25: return safe_floored_modulo(a, b);   // FLOORED_MODULO
-    case 26: return wrap(a, b, c);               // WRAP
-    case 27: return floor(safe_divide(a, b)) * b; // SNAP
-    case 28: return pingpong(a, b);              // PINGPONG
-    case 29: return sin(a);                      // SINE
-    case 30: return cos(a);                      // COSINE
-    case 31: return tan(a);                      // TANGENT
-    case 32: return arc_sine(clamp(a, -1.0, 1.0)); // ARCSINE
-    case 33: return arc_cosine(clamp(a, -1.0, 1.0)); // ARCCOSINE
-    case 34: return arc_tangent(a);              // ARCTANGENT
-    case 35: return arc_tangent2(a, b);          // ARCTAN2
-    case 36: return sinh(a);                     // SINH
-    case 37: return cosh(a);                     // COSH
-    case 38: return tanh(a);                     // TANH
-    case 39: return radians(a);                  // RADIANS
-    default: return degrees(a);                  // DEGREES
+// A function for each operation.
+#define MATH(function, expression) \
+    void function(int use_clamp, float a, float b, float c, out float result) { \
+        result = expression; \
+        if (use_clamp != 0) result = clamp(result, 0.0, 1.0); \
     }
-}
-
-void node_math(int operation, int use_clamp, float value, float value_001, float value_002, out float result) {
-    result = math(operation, value, value_001, value_002);
-    if (use_clamp != 0) result = clamp(result, 0.0, 1.0);
-}
+MATH(node_math_add, a + b)
+MATH(node_math_subtract, a - b)
+MATH(node_math_multiply, a * b)
+MATH(node_math_divide, safe_divide(a, b))
+MATH(node_math_multiply_add, a * b + c)
+MATH(node_math_power, safe_power(a, b))
+MATH(node_math_logarithm, safe_logarithm(a, b))
+MATH(node_math_sqrt, sqrt(max(a, 0.0)))
+MATH(node_math_inverse_sqrt, a > 0.0 ? inversesqrt(a) : 0.0)
+MATH(node_math_absolute, abs(a))
+MATH(node_math_exponent, exp(a))
+MATH(node_math_minimum, min(a, b))
+MATH(node_math_maximum, max(a, b))
+MATH(node_math_less_than, a < b ? 1.0 : 0.0)
+MATH(node_math_greater_than, a > b ? 1.0 : 0.0)
+MATH(node_math_sign, sign(a))
+MATH(node_math_compare, abs(a - b) <= max(c, 1.1920929e-7) ? 1.0 : 0.0)
+MATH(node_math_smooth_min, smooth_minimum(a, b, c))
+MATH(node_math_smooth_max, -smooth_minimum(-a, -b, c))
+MATH(node_math_round, floor(a + 0.5))
+MATH(node_math_floor, floor(a))
+MATH(node_math_ceil, ceil(a))
+MATH(node_math_trunc, trunc(a))
+MATH(node_math_fract, a - floor(a))
+MATH(node_math_modulo, safe_modulo(a, b))
+MATH(node_math_floored_modulo, safe_floored_modulo(a, b))
+MATH(node_math_wrap, wrap(a, b, c))
+MATH(node_math_snap, floor(safe_divide(a, b)) * b)
+MATH(node_math_pingpong, pingpong(a, b))
+MATH(node_math_sine, sin(a))
+MATH(node_math_cosine, cos(a))
+MATH(node_math_tangent, tan(a))
+MATH(node_math_arcsine, arc_sine(clamp(a, -1.0, 1.0)))
+MATH(node_math_arccosine, arc_cosine(clamp(a, -1.0, 1.0)))
+MATH(node_math_arctangent, arc_tangent(a))
+MATH(node_math_arctan2, arc_tangent2(a, b))
+MATH(node_math_sinh, sinh(a))
+MATH(node_math_cosh, cosh(a))
+MATH(node_math_tanh, tanh(a))
+MATH(node_math_radians, radians(a))
+MATH(node_math_degrees, degrees(a))
+#undef MATH
