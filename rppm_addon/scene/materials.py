@@ -17,6 +17,9 @@ class LobeKind(enum.IntEnum):
     TRANSPARENT = 4
     EMISSION = 5
     PRINCIPLED = 6
+    TRANSLUCENT = 7
+    SHEEN = 8
+    HOLDOUT = 9
 
 
 @dataclass
