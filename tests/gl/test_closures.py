@@ -6,6 +6,8 @@ import dataclasses
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind
+from lobes import material as lobe_material
 
 from rppm_addon.scene import (
     Camera,
@@ -13,8 +15,6 @@ from rppm_addon.scene import (
     Instance,
     Light,
     LightKind,
-    Lobe,
-    LobeKind,
     Material,
     RenderSettings,
     Scene,
@@ -25,7 +25,7 @@ COLOR = (0.8, 0.5, 0.3)
 
 
 def material(kind: LobeKind, **parameters) -> Material:
-    return Material(kind.name, [Lobe(kind, **parameters)])
+    return lobe_material(kind.name, Lobe(kind, **parameters))
 
 
 def square(name: str, half: float, z: float):
@@ -92,9 +92,9 @@ def divided_furnace(mode: DirectLight, seed: int, final_gather: bool) -> Scene:
     """A cube that emits radiance 1 and has albedo 0.6, and a sheet across it that shares its albedo between reflecting
     and letting through, which the camera looks at."""
     glow = Lobe(LobeKind.EMISSION)
-    walls = Material("walls", [Lobe(LobeKind.DIFFUSE, color=(0.6,) * 3), glow])
-    sheet = Material(
-        "sheet", [Lobe(LobeKind.DIFFUSE, color=(0.2,) * 3), Lobe(LobeKind.TRANSLUCENT, color=(0.4,) * 3), glow]
+    walls = lobe_material("walls", Lobe(LobeKind.DIFFUSE, color=(0.6,) * 3), glow)
+    sheet = lobe_material(
+        "sheet", Lobe(LobeKind.DIFFUSE, color=(0.2,) * 3), Lobe(LobeKind.TRANSLUCENT, color=(0.4,) * 3), glow
     )
     corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -127,7 +127,7 @@ def test_holdouts_cut_the_picture(renderer, film_transparent):
     """Alpha falls by the holdout's weight; what is left of the surface shines on."""
     scene = under_a_sun(material(LobeKind.DIFFUSE, color=COLOR), (0, 0, 1), DirectLight.RAYS, iterations=2)
     whole = renderer.render(scene).frame.combined.astype(np.float64)
-    held = Material("held", [Lobe(LobeKind.HOLDOUT, weight=0.75), Lobe(LobeKind.DIFFUSE, weight=0.25, color=COLOR)])
+    held = lobe_material("held", Lobe(LobeKind.HOLDOUT, weight=0.75), Lobe(LobeKind.DIFFUSE, weight=0.25, color=COLOR))
     settings = dataclasses.replace(scene.settings, film_transparent=film_transparent)
     cut = renderer.render(dataclasses.replace(scene, materials=[held], settings=settings)).frame.combined
     np.testing.assert_allclose(whole[..., 3], 1.0)
