@@ -92,6 +92,7 @@ class Importons:
         limits: tuple[float, float],
         radius_by_ray: float,
         vertices: moderngl.Buffer,
+        lit_catchers: moderngl.Buffer,
     ) -> None:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
         settings = stages.settings
@@ -108,6 +109,7 @@ class Importons:
                 "Camera": camera,
                 "Materials": stages.materials.buffers["Materials"],
                 "GatheringVertices": vertices,
+                "LitCatchers": lit_catchers,
             },
             {
                 **stages.emission.parameters(settings.seed, iteration, count),

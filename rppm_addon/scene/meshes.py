@@ -102,5 +102,7 @@ class Instance:
     visibility: RayVisibility = RayVisibility.ALL
     holdout: bool = False
     """Whether the camera sees a hole in place of it."""
+    shadow_catcher: bool = False
+    """Whether the camera sees nothing of it but the shadows on it."""
     attributes: dict[str, tuple[float, ...]] = field(default_factory=dict)
     """Values of attributes that the object or its instancer has as a whole, in place of those of the mesh."""

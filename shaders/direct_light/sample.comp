@@ -20,16 +20,6 @@ layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 layout(std430, binding = 9) writeonly buffer LightTriangles { uint light_triangles[]; };
 layout(std430, binding = 8) writeonly buffer Contributions { vec4 contributions[]; };
 
-uint choose_light(float u) {
-    uint low = 0u, high = parameters.light_count - 1u;
-    while (low < high) {
-        uint middle = (low + high) / 2u;
-        if (lights[middle].selection_end > u) high = middle;
-        else low = middle + 1u;
-    }
-    return low;
-}
-
 // Diffuse and rough lobes are lit by these rays alone. Specular lobes are also followed to lights with
 // extent: the power heuristic shares those out between both ways, lobe by lobe.
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.

@@ -57,6 +57,17 @@ uint light_of(uint photon) {
     return low;
 }
 
+// By its selection probability.
+uint choose_light(float u) {
+    uint low = 0u, high = parameters.light_count - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (lights[middle].selection_end > u) high = middle;
+        else low = middle + 1u;
+    }
+    return low;
+}
+
 uint search_emissive_triangle(float u) {
     uint low = 0u, high = uint(parameters.emissive_triangle_count) - 1u;
     while (low < high) {

@@ -92,7 +92,12 @@ void main() {
         builder.closure.transparent = transparent;
         add_holdout(builder, 1.0 - mean(transparent));
     }
-    if (unseen || shadowless) builder.closure.transparent = vec3(1.0);
+    bool catches = camera && instance.shadow_catcher != 0u && (surface.ray & RAY_CAMERA) != 0u && !unseen;
+    if (catches) {
+        builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
+        builder.closure.flags |= CLOSURE_CATCHES_SHADOWS;
+    }
+    if (unseen || shadowless || catches) builder.closure.transparent = vec3(1.0);
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
     builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (shadowless ? CLOSURE_SHADOWLESS : 0u);

@@ -82,6 +82,7 @@ class ObjectExporter:
             "particle": particle_of(instance, self._frame),
             "visibility": visibility_of(source),
             "holdout": source.is_holdout,
+            "shadow_catcher": source.is_shadow_catcher,
         }
         instancer = instance.parent if instance.is_instance else None
         materials = self._material_slots(source)

@@ -3,7 +3,7 @@
 #include "common/bsdf/microfacet.glsl"
 
 const int CLOSURE_LOBES = 3;
-const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u;
+const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u;
 
 Closure empty_closure() {
     vec3 none = vec3(0.0);
