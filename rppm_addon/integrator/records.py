@@ -105,10 +105,11 @@ PHOTON_DIFFUSED = 8
 PHOTON_INDIRECT = 16
 PHOTON_DIRECT = 32
 PHOTON_NOT_DIFFUSE = 64
-PHOTON_NOT_SPECULAR = 128
+PHOTON_NOT_GLOSSY = 128
+PHOTON_NOT_TRANSMITTED = 256
 """Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before; INDIRECT: by what stores
 photons there; DIRECT: nothing has, but for objects that cast no shadow; NOT_DIFFUSE,
-NOT_SPECULAR: while it is direct, from a light that does not light such surfaces."""
+NOT_GLOSSY, NOT_TRANSMITTED: while it is direct, from a light that such events do not see."""
 
 CAMERA_PATH = Record(
     "CameraPath",
