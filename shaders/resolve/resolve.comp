@@ -108,7 +108,7 @@ void main() {
     builder.closure.material = material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
-    builder.closure.shading_normal = pack_unit_vector(shading);
+    builder.closure.shading_normal = pack_unit_vector(builder.shading);
     make_usable(builder.closure);
     closures[index] = builder.closure;
 }
