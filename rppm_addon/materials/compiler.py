@@ -155,7 +155,7 @@ class _Compiler:
         if isinstance(value, Link):
             self._check_order(index, value)
             return self._converted(scope, value, kind)
-        if isinstance(value, str):
+        if isinstance(value, str) and value in _IMPLICIT:
             return _IMPLICIT[value]
         place = self._place((index, name), self._constants_of(self._graph.nodes[index], name, value, kind))
         return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
