@@ -97,7 +97,7 @@ def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable)
     output = data.node_tree.get_output_node("CYCLES") or data.node_tree.get_output_node("ALL")
     exporter = GraphExporter(f'Light "{name}"', report, images)
     if output is not None:
-        exporter.graph.surface = exporter.shader(output.inputs["Surface"])
+        exporter.graph.surface = exporter.surface(output)
     if emits(exporter.graph) is Emits.VARYING:
         report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; one value is used')
     return exporter.graph
