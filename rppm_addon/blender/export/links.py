@@ -76,7 +76,8 @@ def is_lost(node: bpy.types.Node) -> bool:
     """Whether a node is a group whose node tree is not there, as when the file that it was linked from is gone."""
     if node.type not in {"GROUP", "CUSTOM GROUP"}:
         return False
-    return node.node_tree is None or node.node_tree.is_missing
+    # Evaluated copies do not say so themselves.
+    return node.node_tree is None or node.node_tree.original.is_missing
 
 
 def _group_output(group: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:
