@@ -227,13 +227,8 @@ class _Compiler:
             if weight is None:
                 raise GraphError(f'node "{node.name}" is a shader and gives no value')
             arguments += ["builder", weight]
-        function = f"node_{node.kind}"
-        for name, values in kind.options.items():
-            choice = _choice(node, name, values)
-            if name == kind.function_option:
-                function += f"_{values[choice].lower()}"
-            else:
-                arguments.append(str(choice))
+        function, literals = _function_of(node, kind)
+        arguments += literals
         for what in kind.resources:
             place = self._place((index, f"<{what}>"), [Resource(what, index)])
             arguments.append(f"constant_index(first + {place}u)")
@@ -262,7 +257,7 @@ class _Compiler:
             self._functions.append(_function("float", function, inner.lines, height))
             self._heights[index, scope.depth] = function
         others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
-        invert = _choice(self._graph.nodes[index], "invert", kind.options["invert"])
+        _, (invert,) = _function_of(self._graph.nodes[index], kind)
         scope.lines += [
             f"vec3 {value};",
             "{ vec3 along_x, along_y; bump_offsets(surface, along_x, along_y);",
@@ -284,11 +279,11 @@ def _finite(value: float) -> float:
     return float(np.clip(value, -_LARGEST, _LARGEST)) if np.isfinite(value) else 0.0
 
 
-def _choice(node: ShaderNode, name: str, values: tuple) -> int:
-    value = node.options.get(name, values[0])
-    if value not in values:
-        raise GraphError(f'node "{node.name}" ({node.kind}) has the unknown {name} {value}')
-    return values.index(value)
+def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:
+    try:
+        return kind.call(node.kind, node.options)
+    except ValueError as error:
+        raise GraphError(f'node "{node.name}" ({node.kind}) {error}') from error
 
 
 def compile_graph(graph: NodeGraph) -> CompiledGraph:
