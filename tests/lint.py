@@ -146,7 +146,9 @@ def check_shaders(files: list[Path]) -> tuple[list[str], int]:
             lines = _LINT.findall(file.read_text(encoding="utf-8")) or [""]
             texts = node_texts() if GENERATED in file.read_text(encoding="utf-8") else [""]
             variants += [
-                (file, dict(item.partition("=")[::2] for item in line.split()), text) for line in lines for text in texts
+                (file, dict(item.partition("=")[::2] for item in line.split()), text)
+                for line in lines
+                for text in texts
             ]
     with ThreadPoolExecutor(2) as pool:
         results = list(pool.map(lambda variant: check_shader(*variant), variants))

@@ -234,7 +234,9 @@ class _Compiler:
             arguments.append(f"constant_index(first + {place}u)")
         for name, (socket, default) in kind.inputs.items():
             arguments.append(self._input(scope, index, name, socket, default))
-        values = {name: f"n{self._number(index)}_{name}" for name, socket in kind.outputs.items() if socket is not SHADER}
+        values = {
+            name: f"n{self._number(index)}_{name}" for name, socket in kind.outputs.items() if socket is not SHADER
+        }
         for name, value in values.items():
             scope.lines.append(f"{kind.outputs[name].glsl} {value};")
         scope.lines.append(f"{function}({', '.join([*arguments, *values.values()])});")
@@ -260,11 +262,15 @@ class _Compiler:
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
         scope.lines += [
             f"vec3 {value};",
-            "{ vec3 along_x, along_y; bump_offsets(surface, along_x, along_y);",
-            f"  float height = {function}(surface, first);",
-            f"  float height_x = {function}(surface_beside(surface, along_x), first) - height;",
-            f"  float height_y = {function}(surface_beside(surface, along_y), first) - height;",
-            f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, height_x, height_y, {value}); }}",
+            "{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, along_x, along_y);",
+            # A loop, so that drivers need not compile the height three times.
+            "  for (int k = 0; k < 3; ++k) {",
+            "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",
+            f"    float height = {function}(surface_beside(surface, way), first);",
+            "    if (k == 0) heights.x = height; else if (k == 1) heights.y = height; else heights.z = height;",
+            "  }",
+            f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, heights.y - heights.x,",
+            f"            heights.z - heights.x, {value}); }}",
         ]
 
 

@@ -45,8 +45,8 @@ class NodeKind:
     image; "attribute", the number of its mesh attribute."""
     surface: bool = False
     function_option: str = ""
-    """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not passed:
-    drivers take long to fold a choice among many at every call."""
+    """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
+    passed: drivers take long to fold a choice among many at every call."""
 
     def call(self, name: str, options: dict[str, object]) -> tuple[str, list[str]]:
         """The GLSL function of a node of this kind, which has a name, and its literals for options.

@@ -21,7 +21,10 @@ def shown(*graphs: NodeGraph) -> Scene:
     first = len(scene.materials) - len(graphs)
     for k, instance in enumerate(scene.instances[:5]):
         instance.materials = [first + k % len(graphs)]
-    scene.images = [Image("a", np.full((2, 2, 4), 128, np.uint8), "SRGB"), Image("b", np.full((4, 4, 4), 0.25, np.float32))]
+    scene.images = [
+        Image("a", np.full((2, 2, 4), 128, np.uint8), "SRGB"),
+        Image("b", np.full((4, 4, 4), 0.25, np.float32)),
+    ]
     for mesh in scene.meshes:
         for name in ("heat", "cold"):
             mesh.attributes[name] = MeshAttribute(
@@ -151,3 +154,26 @@ def test_bad_graphs_of_worlds_and_lights_give_nothing(mapper):
     assert len(scene.warnings) == 3
     assert any("The world" in text for text in scene.warnings)
     assert any('Light "refused"' in text for text in scene.warnings)
+
+
+def test_bump_turns_the_normal_by_the_slope_of_its_height(mapper):
+    """A height of 0.3 x: the normal of a floor is that of a plane of this slope."""
+    slope = 0.3
+    graph = NodeGraph()
+    x = graph.add("separate_xyz", "x", vector=graph.add("new_geometry", "position"))
+    height = graph.add("math", "value", options={"operation": "MULTIPLY"}, value=x, value_001=slope)
+    normal = graph.add("bump", "normal", height=height)
+    shown_normal = graph.add("vector_math", "vector", options={"operation": "MULTIPLY_ADD"}, vector=normal,
+                             vector_001=0.5, vector_002=0.5)  # fmt: skip
+    graph.surface = graph.add("emission", "emission", color=shown_normal)
+    scene = shown(graph)
+    scene.settings.filter_width = 0.0
+    floor = scene.instances[0]
+    scene.instances, floor.materials = [floor], [len(scene.materials) - 1]
+    mapper.build(scene)
+    mapper.iterate()
+    normals, depth = mapper.film.read_surface()
+    seen = (normals[..., 2] > 0.99) & (depth < 1e9)
+    found = 2.0 * mapper.film.read_radiance()[seen][:, :3] - 1.0
+    assert seen.sum() > 10
+    np.testing.assert_allclose(found, np.tile([-slope, 0.0, 1.0] / np.hypot(1.0, slope), (seen.sum(), 1)), atol=2e-3)
