@@ -56,7 +56,7 @@ void node_tex_image(Surface surface, int projection, int interpolation, int exte
         }
     } else {
         vec2 at = projection == PROJECTION_SPHERE ? sphere_to_uv(vector - 0.5)
-                : projection == PROJECTION_TUBE ? tube_to_uv(vector - 0.5) : vector.xy;
+                : projection == PROJECTION_TUBE ? tube_to_uv(2.0 * vector - 1.0) : vector.xy;
         found = sample_image(image, at, interpolation, extension, divide);
     }
     color = found.rgb;
@@ -73,7 +73,7 @@ void node_tex_image_tiles(int interpolation, int extension, int divide, uint tab
     if (any(lessThan(corner, vec2(0.0))) || corner.x > 9.0 || tile < 0 || tile >= int(tiles)) return;
     float image = material_data[table + uint(tile)];
     if (image < 0.0) return;
-    vec4 found = sample_image(uint(image), vector.xy - corner, interpolation, EXTENSION_EXTEND, divide);
+    vec4 found = sample_image(uint(image), vector.xy - corner, interpolation, extension, divide);
     color = found.rgb;
     alpha = found.a;
 }
