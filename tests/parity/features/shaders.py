@@ -6,6 +6,8 @@ import bpy
 from .image_textures import image, texture
 from .rows import lit
 
+LONG = {"camera_path_length": 12, "photon_path_length": 12}
+"""Settings where light runs through glass."""
 NOISE = {"Scale": 3.0, "Detail": 1.0}
 
 
@@ -28,8 +30,10 @@ lit("Glossy", "ASHIKHMIN_SHIRLEY, roughness 0.3",
 lit("Glossy", "anisotropy 0.7, rotated", shader(
     "BsdfAnisotropic", COLOR | {"Roughness": 0.4, "Anisotropy": 0.7, "Rotation": 0.1}))  # fmt: skip
 for _roughness in (0.0, 0.2):
-    lit("Glass", f"roughness {_roughness}", shader("BsdfGlass", {"Color": (0.9, 0.95, 1.0), "Roughness": _roughness}))
-    lit("Refraction", f"roughness {_roughness}", shader("BsdfRefraction", {"Roughness": _roughness, "IOR": 1.3}))
+    lit("Glass", f"roughness {_roughness}", shader("BsdfGlass", {"Color": (0.9, 0.95, 1.0), "Roughness": _roughness}),
+        settings=LONG, effort=2)  # fmt: skip
+    lit("Refraction", f"roughness {_roughness}", shader("BsdfRefraction", {"Roughness": _roughness, "IOR": 1.3}),
+        settings=LONG, effort=2)  # fmt: skip
 lit("Transparent", "tinted", shader("BsdfTransparent", {"Color": (0.8, 0.6, 0.4)}))
 lit("Translucent", "plain", shader("BsdfTranslucent", COLOR))
 lit("Sheen", "MICROFIBER", shader("BsdfSheen", COLOR | {"Roughness": 0.4}))
@@ -66,7 +70,8 @@ PRINCIPLED = {
     "subsurface": {"Subsurface Weight": 1.0, "Subsurface Scale": 0.02},
 }  # fmt: skip
 for _name, _inputs in PRINCIPLED.items():
-    lit("Principled", _name, shader("BsdfPrincipled", BASE | _inputs))
+    lit("Principled", _name, shader("BsdfPrincipled", BASE | _inputs),
+        **(dict(settings=LONG, effort=2) if "transmission" in _name else {}))  # fmt: skip
 lit("Principled", "GGX, metallic, rough",
     shader("BsdfPrincipled", BASE | {"Metallic": 1.0, "Roughness": 0.8}, distribution="GGX"))  # fmt: skip
 
@@ -164,7 +169,7 @@ for _output in LIGHT_PATH:
         "Color": net.out("Mix", 2, {"Factor_Float": net.out("LightPath", output), "A_Color": (0.2, 0.3, 0.8),
                                     "B_Color": (0.8, 0.3, 0.1)}, data_type="RGBA")}))(_output))  # fmt: skip
 lit("Light Path", "glass without shadows", mixed(
-    shader("BsdfGlass", {"Roughness": 0.0}), CLEAR, lambda net: net.out("LightPath", "Is Shadow Ray")))  # fmt: skip
+    shader("BsdfGlass", {"Roughness": 0.0}), CLEAR, lambda net: net.out("LightPath", "Is Shadow Ray")), settings=LONG, effort=2)  # fmt: skip
 lit("Light Path", "glow for the camera only", lambda net: net.emission(
     (1.0, 0.6, 0.2), net.out("Math", 0, {0: net.out("LightPath", "Is Camera Ray"), 1: 2.0}, operation="MULTIPLY")))  # fmt: skip
 lit("Ambient Occlusion", "as a colour", lambda net: net.out("BsdfDiffuse", 0, {"Color": net.out("AmbientOcclusion")}))
