@@ -23,29 +23,36 @@ lit("Diffuse", "roughness 0.8", shader("BsdfDiffuse", COLOR | {"Roughness": 0.8}
 for _roughness in (0.0, 0.25, 0.6):
     for _distribution in ("GGX", "MULTI_GGX") if _roughness else ("GGX",):
         lit("Glossy", f"{_distribution}, roughness {_roughness}",
-            shader("BsdfAnisotropic", COLOR | {"Roughness": _roughness}, distribution=_distribution))  # fmt: skip
-lit("Glossy", "BECKMANN, roughness 0.3", shader("BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="BECKMANN"))
+            shader("BsdfAnisotropic", COLOR | {"Roughness": _roughness}, distribution=_distribution),
+            effort=1 if _roughness else 3)  # fmt: skip
+lit("Glossy", "BECKMANN, roughness 0.3", shader(
+    "BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="BECKMANN"), mean=0.03, block=0.2,
+    reason="GGX stands in")  # fmt: skip
 lit("Glossy", "ASHIKHMIN_SHIRLEY, roughness 0.3",
-    shader("BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="ASHIKHMIN_SHIRLEY"))  # fmt: skip
+    shader("BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="ASHIKHMIN_SHIRLEY"), mean=0.04, block=0.15,
+    reason="GGX stands in")  # fmt: skip
 lit("Glossy", "anisotropy 0.7, rotated", shader(
-    "BsdfAnisotropic", COLOR | {"Roughness": 0.4, "Anisotropy": 0.7, "Rotation": 0.1}))  # fmt: skip
+    "BsdfAnisotropic", COLOR | {"Roughness": 0.4, "Anisotropy": 0.7, "Rotation": 0.1}), effort=2)  # fmt: skip
 for _roughness in (0.0, 0.2):
     lit("Glass", f"roughness {_roughness}", shader("BsdfGlass", {"Color": (0.9, 0.95, 1.0), "Roughness": _roughness}),
         settings=LONG, effort=2)  # fmt: skip
     lit("Refraction", f"roughness {_roughness}", shader("BsdfRefraction", {"Roughness": _roughness, "IOR": 1.3}),
         settings=LONG, effort=2)  # fmt: skip
-lit("Transparent", "tinted", shader("BsdfTransparent", {"Color": (0.8, 0.6, 0.4)}))
+lit("Transparent", "tinted", shader("BsdfTransparent", {"Color": (0.8, 0.6, 0.4)}), effort=3)
 lit("Translucent", "plain", shader("BsdfTranslucent", COLOR))
 lit("Sheen", "MICROFIBER", shader("BsdfSheen", COLOR | {"Roughness": 0.4}))
 lit("Sheen", "ASHIKHMIN", shader("BsdfSheen", COLOR | {"Roughness": 0.4}, distribution="ASHIKHMIN"))
-lit("Emission", "plain", shader("Emission", COLOR | {"Strength": 2.0}))
+lit("Emission", "plain", shader("Emission", COLOR | {"Strength": 2.0}), effort=3)
 lit("Holdout", "plain", shader("Holdout"))
 lit("Metallic", "plain", shader("BsdfMetallic", {"Roughness": 0.3}))
-lit("Toon", "plain", shader("BsdfToon", COLOR))
+lit("Toon", "plain", shader("BsdfToon", COLOR), mean=0.05, block=1.8, reason="a diffuse surface stands in")
 lit("Subsurface Scattering", "small radius", shader("SubsurfaceScattering", {"Scale": 0.02}))
-lit("Ray Portal", "plain", shader("BsdfRayPortal"))
-lit("Principled Hair", "plain", shader("BsdfHairPrincipled"))
-lit("Hair", "plain", shader("BsdfHair"))
+lit("Ray Portal", "plain", shader("BsdfRayPortal"), mean=0.8, block=8.0, warns=True, effort=2,
+    reason="a diffuse surface stands in")  # fmt: skip
+lit("Principled Hair", "plain", shader("BsdfHairPrincipled"), mean=0.15, block=1.2, warns=True, effort=2,
+    reason="a diffuse surface stands in")  # fmt: skip
+lit("Hair", "plain", shader("BsdfHair"), mean=0.15, block=1.2, warns=True, effort=2,
+    reason="a diffuse surface stands in")  # fmt: skip
 
 # --- Principled -----------------------------------------------------------------------------------------
 
@@ -172,5 +179,7 @@ lit("Light Path", "glass without shadows", mixed(
     shader("BsdfGlass", {"Roughness": 0.0}), CLEAR, lambda net: net.out("LightPath", "Is Shadow Ray")), settings=LONG, effort=2)  # fmt: skip
 lit("Light Path", "glow for the camera only", lambda net: net.emission(
     (1.0, 0.6, 0.2), net.out("Math", 0, {0: net.out("LightPath", "Is Camera Ray"), 1: 2.0}, operation="MULTIPLY")))  # fmt: skip
-lit("Ambient Occlusion", "as a colour", lambda net: net.out("BsdfDiffuse", 0, {"Color": net.out("AmbientOcclusion")}))
-lit("Bevel", "on a smooth ball", lambda net: net.out("BsdfDiffuse", 0, COLOR | {"Normal": net.out("Bevel")}))
+lit("Ambient Occlusion", "as a colour", lambda net: net.out("BsdfDiffuse", 0, {"Color": net.out("AmbientOcclusion")}),
+    warns=True, mean=0.3, block=1.0, reason="counts as if nothing were near")  # fmt: skip
+lit("Bevel", "on a smooth ball", lambda net: net.out("BsdfDiffuse", 0, COLOR | {"Normal": net.out("Bevel")}),
+    warns=True)  # fmt: skip
