@@ -186,12 +186,12 @@ LIGHT = Record(
     first_cell="uint",
     cells="uvec4",
     falloff="float",
-    unused0="float",
+    smoothing="float",
     unused1="float",
     unused2="float",
 )
 """A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
-unit axes, ``falloff`` the power of the distance that the light is multiplied by (Light Falloff nodes),
+unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
 ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
 ``first_cell`` those of integrator/guide.py."""
 

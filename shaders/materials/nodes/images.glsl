@@ -57,7 +57,7 @@ void node_tex_image(Surface surface, int projection, int interpolation, int exte
                : axis == 1 ? vec2(n.y > 0.0 ? 1.0 - vector.x : vector.x, vector.z)
                            : vec2(n.z > 0.0 ? 1.0 - vector.y : vector.y, vector.x);
         else if (projection == PROJECTION_SPHERE) at = sphere_to_uv(vector - 0.5);
-        else if (projection == PROJECTION_TUBE) at = tube_to_uv(vector - 0.5);
+        else if (projection == PROJECTION_TUBE) at = tube_to_uv(2.0 * vector - 1.0);
         found += weights[axis] * sample_image(image, at, interpolation, extension, divide);
     }
     color = found.rgb;
@@ -74,7 +74,7 @@ void node_tex_image_tiles(int interpolation, int extension, int divide, uint tab
     if (any(lessThan(corner, vec2(0.0))) || corner.x > 9.0 || tile < 0 || tile >= int(tiles)) return;
     float image = material_data[table + uint(tile)];
     if (image < 0.0) return;
-    vec4 found = sample_image(uint(image), vector.xy - corner, interpolation, EXTENSION_EXTEND, divide);
+    vec4 found = sample_image(uint(image), vector.xy - corner, interpolation, extension, divide);
     color = found.rgb;
     alpha = found.a;
 }
