@@ -62,9 +62,10 @@ class GraphEvaluator:
         for first_row in range(0, height, rows):
             count = width * min(rows, height - first_row)
             parameters = {
-                "world_to_camera": np.linalg.inv(camera.matrix), "window": camera.window, "count": count, "width": width,
-                "height": height, "first_row": first_row, "first_constant": first_constant,
-                "from_camera": from_camera, "attribute_count": 0, "orthographic": camera.orthographic, "pixel_size": 0.0,
+                "world_to_camera": np.linalg.inv(camera.matrix), "window": camera.window, "count": count,
+                "width": width, "height": height, "first_row": first_row, "first_constant": first_constant,
+                "from_camera": from_camera,
+                "attribute_count": 0, "orthographic": camera.orthographic, "pixel_size": 0.0,
                 "ray_length": ray_length,
             }  # fmt: skip
             program.run(count, bound, parameters)

@@ -137,7 +137,9 @@ class MaterialTables:
         """
         text, first, owner = self._others[id(graph)]
         try:
-            return self._evaluator.run(text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera)
+            return self._evaluator.run(
+                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera
+            )
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")
             return np.zeros((height, width, 3), np.float32)

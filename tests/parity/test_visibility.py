@@ -3,7 +3,6 @@
 
 import math
 
-import bpy
 import pytest
 
 from .comparison import CONVERGED, compare

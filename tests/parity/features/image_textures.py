@@ -13,7 +13,7 @@ import OpenEXR
 from PIL import Image
 
 from .coordinates import second_uv
-from .rows import lit, value
+from .rows import value
 
 GROUP = "Image Texture"
 

@@ -3,8 +3,6 @@
 
 import math
 
-import bpy
-
 from ..scenes import light, place
 from . import stage
 from .image_textures import texture

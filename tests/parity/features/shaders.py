@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes under light: each with its options, Principled socket by socket, mixes, and values that drive them."""
 
-import bpy
 
 from .image_textures import image, texture
 from .rows import lit
