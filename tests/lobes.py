@@ -5,6 +5,7 @@ import enum
 
 import numpy as np
 
+from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene import Link, Material, NodeGraph, World
 
 
@@ -16,6 +17,9 @@ class LobeKind(enum.Enum):
     GLASS = "bsdf_glass"
     REFRACTION = "bsdf_refraction"
     TRANSPARENT = "bsdf_transparent"
+    TRANSLUCENT = "bsdf_translucent"
+    SHEEN = "bsdf_sheen"
+    HOLDOUT = "holdout"
     EMISSION = "emission"
     PRINCIPLED = "bsdf_principled"
 
@@ -69,13 +73,13 @@ def _shader(graph: NodeGraph, lobe: Lobe) -> Link:
         )
     inputs["base_color" if lobe.kind is LobeKind.PRINCIPLED else "color"] = color
     options = {}
-    if lobe.kind in {LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.PRINCIPLED}:
+    if lobe.kind not in {LobeKind.TRANSPARENT, LobeKind.TRANSLUCENT, LobeKind.EMISSION, LobeKind.HOLDOUT}:
         inputs["roughness"] = lobe.roughness
     if lobe.kind in {LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.PRINCIPLED}:
         inputs["ior"] = lobe.ior
     if lobe.kind in {LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.PRINCIPLED}:
         options["distribution"] = "MULTI_GGX" if lobe.multiscatter else "GGX"
-    output = "emission" if lobe.kind is LobeKind.EMISSION else "bsdf"
+    output = next(iter(KINDS[lobe.kind.value].outputs))
     return graph.add(lobe.kind.value, output, options=options, **inputs)
 
 

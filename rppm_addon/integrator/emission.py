@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light sources on the GPU, their shares of the photons, and the photons that leave them."""
 
+import logging
 import math
 
 import moderngl
@@ -13,6 +14,7 @@ from ..gl.records import Record
 from ..materials.tables import MaterialTables
 from ..scene.errors import SceneError
 from ..scene.lights import Light, LightKind
+from ..scene.meshes import RayVisibility
 from ..scene.scene import Scene
 from .emitters import Emitters
 from .environment import Environment
@@ -22,7 +24,9 @@ from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
 from .targets import caustic_targets
 
-_VISIBLE, _SOFT = 1, 2
+log = logging.getLogger(__name__)
+
+_SOFT = 32
 
 LIGHT_PARAMETERS = {
     "scene_centre": "vec3",
@@ -42,7 +46,7 @@ LIGHT_PARAMETERS = {
 ``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light."""
 
 Record("EmitParameters", **LIGHT_PARAMETERS, target_count="uint")
-Record("SoftFalloffParameters", **LIGHT_PARAMETERS)
+Record("FalloffParameters", **LIGHT_PARAMETERS)
 
 
 def spot_share(cosine_cone: float, blend: float) -> float:
@@ -95,7 +99,7 @@ class Emission:
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         self._program = library.compute("emission/emit.comp")
-        self._soft_program = library.compute("emission/soft_falloff.comp")
+        self._falloff_program = library.compute("emission/falloff.comp")
         self._lights = GrowingBuffer(context, "lights")
         self.emitters = Emitters(context, library)
         self._targets = GrowingBuffer(context, "photon targets")
@@ -106,7 +110,7 @@ class Emission:
         self._weights = np.zeros(0)
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
-        self.has_soft_lights = False
+        self.has_falloff = False
         self.photon_flux = 0.0
 
     @property
@@ -136,7 +140,7 @@ class Emission:
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        Raises SceneError when nothing in the scene emits light.
+        Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
         entries: list[np.ndarray] = []
@@ -152,22 +156,22 @@ class Emission:
         for light in scene.lights:
             entry, power = _light_entry(light, radius)
             if light.graph is not None:
-                emitted = np.maximum(materials.evaluate(light.graph)[0, 0], 0.0)
+                emitted, entry["falloff"] = _nodes_of(light, materials)
                 entry["strength"] *= emitted
                 power = power * emitted
             add(entry, power, light.photon_share)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"] = MESH
+        entry["kind"], entry["flags"] = MESH, int(RayVisibility.ALL)
         add(entry, self.emitters.power)
         self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"] = WORLD
+        entry["kind"], entry["flags"] = WORLD, int(RayVisibility.ALL)
         add(entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
         if not entries:
-            raise SceneError(
-                "nothing in the scene emits light; add a light, give a material an emission, or give the world a colour"
-            )
+            # As in an animation whose lights go out: the picture is black, as Cycles' is.
+            log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
+            entries, powers, weights = [entry], [1.0], [1.0]
         if sum(weights) <= 0:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
@@ -178,7 +182,7 @@ class Emission:
         table["selection_probability"] = selection
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
-        self.has_soft_lights = bool((table["flags"] & _SOFT).any())
+        self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any())
         self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
         self._share_photons(self._weights)
         self._guide.build(table, scene.settings.photons)
@@ -234,7 +238,7 @@ class Emission:
             {**self.parameters(seed, iteration, count), "target_count": self._target_count},
         )
 
-    def soften(
+    def fall_off(
         self,
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
@@ -243,8 +247,8 @@ class Emission:
         seed: int,
         iteration: int,
     ) -> None:
-        """End the photons that a soft light does not send to where they hit first."""
-        self._soft_program.run(
+        """Where photons hit first: end those that a soft light does not send there, and let the distance count."""
+        self._falloff_program.run(
             count,
             {**self.buffers, "Rays": rays, "Hits": hits, "PhotonPaths": photon_paths},
             self.parameters(seed, iteration, count),
@@ -263,6 +267,14 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / size if size > 0 else np.array([0.0, 0.0, 1.0])
 
 
+def _nodes_of(light: Light, materials: MaterialTables) -> tuple[np.ndarray, float]:
+    """What a light's nodes multiply its strength by at 1 m, (3,), and by which power of the distance beyond."""
+    near, far = (np.maximum(materials.evaluate(light.graph, ray_length=d)[0, 0], 0.0) for d in (1.0, 2.0))
+    if light.kind is LightKind.SUN or not near.any() or not far.any():
+        return near, 0.0
+    return near, math.log2(float(far.sum()) / float(near.sum()))
+
+
 def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarray]:
     """A light's record and its power, (3,) W, within the scene."""
     entry = LIGHT.zeros(1)[0]
@@ -273,7 +285,7 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     entry["strength"] = strength = np.maximum(light.strength, 0.0)
     entry["radius"] = max(light.radius, 0.0)
     soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
-    entry["flags"] = (_VISIBLE if light.visible_to_camera else 0) | (_SOFT if soft else 0)
+    entry["flags"] = int(light.visibility) | (_SOFT if soft else 0)
     if light.kind is LightKind.POINT:
         entry["kind"] = POINT
         return entry, 4 * math.pi * strength

@@ -10,7 +10,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
-from ..scene.meshes import Instance, Mesh
+from ..scene.meshes import Instance, Mesh, RayVisibility
 from ..scene.scene import Scene
 from .records import TRIANGLE_ATTRIBUTES
 
@@ -30,7 +30,7 @@ INSTANCE_ENTRY = Record(
     mesh_uv="uint",
     first_slot="uint",
     slot_count="uint",
-    unused="uint",
+    shadowless="uint",
 )
 Record("GatherParameters", fallback_point="vec3", triangle_count="uint", instance_count="uint")
 
@@ -60,7 +60,7 @@ class Placement:
 class Geometry:
     """World-space triangles of a scene in GPU buffers.
 
-    ``triangles`` holds three vec4 a triangle (see shaders/emission/lights.glsl for the fourth components),
+    ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/geometry/gather.comp),
     ``attributes`` a TriangleAttributes each;
     ``placements`` lists the instances that have triangles; ``bounds_low`` and
     ``bounds_high`` (3,) enclose them, metres.
@@ -144,6 +144,7 @@ class Geometry:
             materials = [m if 0 <= m < len(scene.materials) else default_material for m in instance.materials]
             entry["first_slot"], entry["slot_count"] = len(slots), max(1, len(materials))
             slots.extend(materials or [default_material])
+            entry["shadowless"] = not instance.visibility & RayVisibility.SHADOW
             first += meshes[mesh].triangle_count
             corners = np.array(np.meshgrid(*zip(*bounds[mesh], strict=True))).reshape(3, -1)
             world = instance.matrix[:3, :3] @ corners + instance.matrix[:3, 3:]

@@ -70,7 +70,13 @@ class Importons:
     def resolve(self, stages: Stages, count: int, iteration: int, segment: int) -> None:
         """Hits to closures."""
         stages.resolve.run(
-            self.rays.buffer, self.hits.buffer, self.closures.buffer, count, iteration, segment, self.paths.buffer
+            self.rays.buffer,
+            self.hits.buffer,
+            self.closures.buffer,
+            count,
+            iteration,
+            segment,
+            camera_paths=self.paths.buffer,
         )
 
     def scatter(
@@ -86,6 +92,7 @@ class Importons:
         limits: tuple[float, float],
         radius_by_ray: float,
         vertices: moderngl.Buffer,
+        lit_catchers: moderngl.Buffer,
     ) -> None:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
         settings = stages.settings
@@ -102,6 +109,7 @@ class Importons:
                 "Camera": camera,
                 "Materials": stages.materials.buffers["Materials"],
                 "GatheringVertices": vertices,
+                "LitCatchers": lit_catchers,
             },
             {
                 **stages.emission.parameters(settings.seed, iteration, count),

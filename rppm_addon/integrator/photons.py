@@ -59,7 +59,13 @@ class Photons:
                     stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
             with timers.stage("photon resolve"):
                 stages.resolve.run(
-                    self._rays.buffer, self._hits.buffer, self._closures.buffer, self.photon_count, iteration, segment
+                    self._rays.buffer,
+                    self._hits.buffer,
+                    self._closures.buffer,
+                    self.photon_count,
+                    iteration,
+                    segment,
+                    photon_paths=self._paths.buffer,
                 )
             with timers.stage("photon scattering"):
                 self._scatter.run(
@@ -92,8 +98,8 @@ class Photons:
             )
         with stages.timers.stage("photon tracing"):
             stages.deep_cubemap.trace(rays, hits, self.photon_count)
-            if stages.emission.has_soft_lights:
-                stages.emission.soften(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
+            if stages.emission.has_falloff:
+                stages.emission.fall_off(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
 
     def read_emitted(self, stages: Stages, iteration: int) -> np.ndarray:
         """(photon_count, 3) flux in W with which an iteration's photons leave their lights."""

@@ -40,6 +40,7 @@ from .photons import Photons, flux_balance
 from .placement import cubemap_centres, radius_about
 from .primary_rays import PrimaryRays
 from .resolve import Resolve
+from .shadow_catcher import ShadowCatcher
 from .splatting import Splatting, radiance_quantum
 from .stages import Stages
 
@@ -91,6 +92,7 @@ class ProgressivePhotonMapper:
         self._splatting = Splatting(self.context, self._library, width, rows)
         self._direct_light = DirectLight(self.context, self._library, width * rows)
         self._final_gather = FinalGather(self.context, self._library, width * rows)
+        self._shadow_catcher = ShadowCatcher(self.context, self._library, width * rows, scene)
         self.film = Film(self.context, self._library, width, height)
         self._views = [
             self._photons,
@@ -99,6 +101,7 @@ class ProgressivePhotonMapper:
             self._splatting,
             self._direct_light,
             self._final_gather,
+            self._shadow_catcher,
             self.film,
         ]
         self._stages = Stages(
@@ -143,6 +146,7 @@ class ProgressivePhotonMapper:
             self._direct_camera_hits(first_row, rows)
             for segment in range(self.scene.settings.camera_path_length):
                 self._trace_importons(segment)
+                self._catch_shadows(segment)
                 self._add_direct_light(segment)
                 self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits)
                 # Photons are projected onto the camera's view only where it is a raster.
@@ -188,6 +192,7 @@ class ProgressivePhotonMapper:
             "camera paths": {"visibility buffer": self._gbuffer.memory_bytes} | self._importons.memory_bytes,
             "direct light": self._direct_light.memory_bytes,
             "final gather": self._final_gather.memory_bytes,
+            "shadow catcher": self._shadow_catcher.memory_bytes,
             "splatting": self._splatting.memory_bytes,
             "passes": self.film.memory_bytes,
         }
@@ -249,11 +254,11 @@ class ProgressivePhotonMapper:
             with self.timers.stage("learning"):
                 self._learn()
         self._photons.run(self._stages, self.iteration)
-        # With next-event rays the photons' first hits would count direct light twice.
-        first = self._photons.photon_count if self.scene.settings.direct_light is DirectLightMode.RAYS else 0
+        # With next-event rays direct photons would count direct light twice.
+        indirect_only = self.scene.settings.direct_light is DirectLightMode.RAYS
         with self.timers.stage("photon list"):
             self._splatting.collect(
-                self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, first
+                self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, indirect_only
             )
         if self.iteration == 1:
             spread = wide_radius(
@@ -323,6 +328,7 @@ class ProgressivePhotonMapper:
                 limits,
                 radius_by_ray(limits[1], self._wide_radius) * shrink,
                 self._final_gather.vertices.buffer,
+                self._shadow_catcher.lit.buffer,
             )
 
     def _add_direct_light(self, segment: int) -> None:
@@ -338,6 +344,13 @@ class ProgressivePhotonMapper:
                 segment,
                 self._final_gather.radiances.buffer,
             )
+
+    def _catch_shadows(self, segment: int) -> None:
+        if self._shadow_catcher.present:
+            with self.timers.stage("shadow catcher"):
+                self._shadow_catcher.run(
+                    self._stages, self._importons, self._count, self._first_pixel, self.iteration, segment
+                )
 
     def _direct_splatting(self) -> None:
         with self.timers.stage("direct splatting"):

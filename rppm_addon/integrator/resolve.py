@@ -13,7 +13,7 @@ from ..materials.compiler import NEUTRAL_TEXT
 from ..materials.tables import MaterialTables, first_line
 from ..scene.scene import Scene
 from .geometry import Geometry
-from .records import CAMERA_PATH
+from .records import CAMERA_PATH, PHOTON_PATH
 from .surface_attributes import SurfaceAttributes
 
 Record(
@@ -25,14 +25,18 @@ Record(
     iteration="uint",
     segment="uint",
     program="uint",
-    path_stride="uint",
-    path_flags="uint",
+    path_kind="uint",
+    camera_stride="uint",
+    camera_flags="uint",
+    photon_stride="uint",
+    photon_flags="uint",
     attribute_count="uint",
     orthographic="uint",
     pixel_size="float",
 )
 
 _NO_PROGRAM = 0xFFFFFFFF
+_NO_PATHS, _CAMERA, _PHOTONS = range(3)
 _RANGE_SIZE = 8
 _STAGE = "resolve/resolve.comp"
 
@@ -78,7 +82,10 @@ class Resolve:
             "pixel_size": (camera.window[1] - camera.window[0]) / camera.width,
             "seed": scene.settings.seed,
             "attribute_count": self._surface_attributes.count,
-            "path_flags": CAMERA_PATH.offset("flags") // 4,
+            "camera_stride": CAMERA_PATH.size // 4,
+            "camera_flags": CAMERA_PATH.offset("flags") // 4,
+            "photon_stride": PHOTON_PATH.size // 4,
+            "photon_flags": PHOTON_PATH.offset("flags") // 4,
         }
 
     def _program(self, text: str, scene: Scene, materials: MaterialTables) -> ComputeProgram:
@@ -99,10 +106,11 @@ class Resolve:
         iteration: int,
         segment: int,
         camera_paths: moderngl.Buffer | None = None,
+        photon_paths: moderngl.Buffer | None = None,
     ) -> None:
         """Fill ``count`` closures; inactive rays and misses give closures without a triangle.
 
-        camera_paths: tell the nodes that ask what kind of rays these are; without them they are photons'.
+        The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen.
         """
         self._order.require(4 * (_RANGE_SIZE * len(self._programs) + count))
         buffers = {
@@ -111,7 +119,7 @@ class Resolve:
             "Hits": hits,
             "Closures": closures,
             "HitOrder": self._order.buffer,
-            "PathFlags": rays if camera_paths is None else camera_paths,
+            "PathFlags": camera_paths or photon_paths or rays,
         }
         parameters = {
             **self._parameters,
@@ -119,7 +127,7 @@ class Resolve:
             "iteration": iteration,
             "segment": segment,
             "program": _NO_PROGRAM,
-            "path_stride": 0 if camera_paths is None else CAMERA_PATH.size // 4,
+            "path_kind": _CAMERA if camera_paths else _PHOTONS if photon_paths else _NO_PATHS,
         }
 
         def of(program: ComputeProgram) -> dict[str, moderngl.Buffer]:

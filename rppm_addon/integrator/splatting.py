@@ -16,7 +16,7 @@ _JOB_HEADER, _JOB = 16, 16
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
-Record("StoredParameters", count="uint", first_slot="uint")
+Record("StoredParameters", count="uint", indirect_only="uint")
 Record("SplatParameters", count="uint", radius="float", wide_radius="float", gathers="uint")
 Record(
     "QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint", counting="uint"
@@ -81,15 +81,14 @@ class Splatting:
         buffers = (self._stored, self._jobs, self._heads, self._core, self.gathered, self._diffused_photons)
         return {buffer.name: buffer.size for buffer in buffers}
 
-    def collect(self, photons: moderngl.Buffer, slots: int, first_slot: int) -> None:
-        """List the photons to splat: those stored in slots from ``first_slot`` to ``slots``."""
-        count = slots - first_slot
+    def collect(self, photons: moderngl.Buffer, slots: int, indirect_only: bool) -> None:
+        """List the photons to splat, of so many slots: those stored, or those of them that are no direct light."""
         self._stored.require(_STORED_HEADER + 4 * slots)
         self._stored.buffer.write(bytes(_STORED_HEADER))
         self._stored_program.run(
-            count,
+            slots,
             {"Photons": photons, "StoredPhotons": self._stored.buffer},
-            {"count": count, "first_slot": first_slot},
+            {"count": slots, "indirect_only": indirect_only},
         )
         self.stored_count, self.diffused_count = map(int, self._stored.read(np.uint32, 2))
         self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, self.stored_count))

@@ -25,11 +25,11 @@ SHADING_INSTANCE = Record(
     particle_age="float",
     particle_lifetime="float",
     particle_size="float",
-    unused="float",
+    visibility="uint",
     texture_location="vec3",
-    unused4="float",
+    holdout="uint",
     texture_scale="vec3",
-    unused5="float",
+    shadow_catcher="uint",
     particle_location="vec3",
     unused1="float",
     particle_velocity="vec3",
@@ -97,6 +97,8 @@ def _fill(record: np.ndarray, instance: Instance, mesh: Mesh, first_triangle: in
     record["location"] = instance.matrix[:3, 3]
     record["color"], record["random"] = instance.color, instance.random
     record["object_index"], record["first_triangle"] = instance.object_index, first_triangle
+    record["visibility"], record["holdout"] = int(instance.visibility), instance.holdout
+    record["shadow_catcher"] = instance.shadow_catcher
     particle = instance.particle
     if particle is not None:
         for name in ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity"):

@@ -81,11 +81,12 @@ class _Compiler:
     def compile(self) -> CompiledGraph:
         scope = _Scope()
         if self._graph.normal is not None:
+            self._sources[KINDS[BUMP].source] = None
             # Apart: what nodes ask of the surface may be another with the new normal.
             normal = _Scope()
             value = self._converted(normal, self._graph.normal, SocketType.VECTOR)
             self._functions.append(_function("vec3", "material_normal", normal.lines, value))
-            scope.lines.append("surface.normal = material_normal(surface, first);")
+            scope.lines.append("surface.normal = visible_normal(surface, material_normal(surface, first));")
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
         text = "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
@@ -259,10 +260,11 @@ class _Compiler:
             self._functions.append(_function("float", function, inner.lines, height))
             self._heights[index, scope.depth] = function
         others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
+        width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
         scope.lines += [
             f"vec3 {value};",
-            "{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, along_x, along_y);",
+            f"{{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, {width}, along_x, along_y);",
             # A loop, so that drivers need not compile the height three times.
             "  for (int k = 0; k < 3; ++k) {",
             "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",

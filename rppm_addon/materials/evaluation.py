@@ -22,6 +22,7 @@ Record(
     attribute_count="uint",
     orthographic="uint",
     pixel_size="float",
+    ray_length="float",
 )
 
 _CHUNK = 1 << 18
@@ -44,6 +45,7 @@ class GraphEvaluator:
         width: int,
         height: int,
         from_camera: bool,
+        ray_length: float,
     ) -> np.ndarray:
         """(height, width, 3) float32 emission in the directions of an equirectangular map, row 0 at the bottom.
 
@@ -61,6 +63,7 @@ class GraphEvaluator:
                 "world_to_camera": np.eye(4), "window": (-1.0, 1.0, -1.0, 1.0), "count": count, "width": width,
                 "height": height, "first_row": first_row, "first_constant": first_constant,
                 "from_camera": from_camera, "attribute_count": 0, "orthographic": False, "pixel_size": 0.0,
+                "ray_length": ray_length,
             }  # fmt: skip
             program.run(count, bound, parameters)
             parts.append(self._emissions.read(np.dtype("<f4"), 4 * count).reshape(-1, width, 4)[..., :3])

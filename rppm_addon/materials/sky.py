@@ -1,27 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's Sky Texture as numbers: radiance by direction, and the sun.
 
-Values are those of Cycles, measured in renders (tests/parity/test_sky_values.py), but for HOSEK_WILKIE: its nine
-coefficients come from tables of a fit to path-traced skies (Hosek and Wilkie 2012), which are not part of RPPM. The
-sky of Preetham stands in; ``stands_in`` tells, and the exporter has to warn.
+Values are those of Cycles, found and checked in renders (tests/parity/test_sky_values.py).
 """
 
 import numpy as np
 
 from ..scene.sky import SKY_TYPES, Sky
-from . import sky_multiple_scattering, sky_preetham, sky_single_scattering
+from . import sky_hosek_wilkie, sky_multiple_scattering, sky_preetham, sky_single_scattering
 from .sky_sun import SunDisc, sun_disc
 from .sky_table import look_up
 
-__all__ = ["HOSEK_WILKIE_SHARE", "SunDisc", "sky_picture", "sky_radiance", "stands_in", "sun_disc"]
+__all__ = ["SunDisc", "sky_picture", "sky_radiance", "sun_disc"]
 
-HOSEK_WILKIE_SHARE = 0.23
-"""What share of Preetham's sky stands in for that of Hosek and Wilkie, of which Cycles makes a darker one."""
-
-
-def stands_in(sky: Sky) -> bool:
-    """Whether sky_radiance gives another model than the one asked for."""
-    return sky.sky_type == "HOSEK_WILKIE"
+_TABLES = {
+    "SINGLE_SCATTERING": sky_single_scattering.sky_table,
+    "MULTIPLE_SCATTERING": sky_multiple_scattering.sky_table,
+}
+_FORMULAS = {"PREETHAM": sky_preetham.radiance, "HOSEK_WILKIE": sky_hosek_wilkie.radiance}
 
 
 def sky_radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
@@ -32,12 +28,9 @@ def sky_radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
     """
     if sky.sky_type not in SKY_TYPES:
         raise ValueError(f"unknown type of sky {sky.sky_type!r}; known are {', '.join(SKY_TYPES)}")
-    directions = np.asarray(directions)
-    if not sky.scatters:
-        radiance = sky_preetham.radiance(sky, directions)
-        return radiance * np.float32(HOSEK_WILKIE_SHARE) if stands_in(sky) else radiance
-    model = sky_single_scattering if sky.sky_type == "SINGLE_SCATTERING" else sky_multiple_scattering
-    return look_up(model.sky_table(sky), directions, sky.sun_angles()[1])
+    if sky.scatters:
+        return look_up(_TABLES[sky.sky_type](sky), directions, sky.sun_angles()[1])
+    return _FORMULAS[sky.sky_type](sky, directions)
 
 
 def sky_picture(sky: Sky, height: int = 256) -> np.ndarray:

@@ -122,14 +122,22 @@ class MaterialTables:
             self._scene.warn(f"{owner}: {error}; {remedy}")
             return CompiledGraph(NEUTRAL_TEXT), Emits.NOTHING
 
-    def evaluate(self, graph: NodeGraph, width: int = 1, height: int = 1, from_camera: bool = False) -> np.ndarray:
+    def evaluate(
+        self,
+        graph: NodeGraph,
+        width: int = 1,
+        height: int = 1,
+        from_camera: bool = False,
+        ray_length: float = 0.0,
+    ) -> np.ndarray:
         """(height, width, 3) float32 emission of a graph of the scene that belongs to no surface.
 
-        Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it.
+        Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
+        ray_length: what Light Path tells, metres.
         """
         text, first, owner = self._others[id(graph)]
         try:
-            return self._evaluator.run(text, first, self.buffers, width, height, from_camera)
+            return self._evaluator.run(text, first, self.buffers, width, height, from_camera, ray_length)
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")
             return np.zeros((height, width, 3), np.float32)

@@ -5,7 +5,7 @@ from .camera import Aperture, Camera, Panorama, PanoramaKind
 from .images import Image
 from .lights import Light, LightKind, World
 from .materials import Material
-from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle
+from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
 from .node_graphs import Link, NodeGraph, ShaderNode
 from .scene import Scene
 from .settings import DirectLight, RenderSettings
@@ -28,6 +28,7 @@ __all__ = [
     "Panorama",
     "PanoramaKind",
     "Particle",
+    "RayVisibility",
     "RenderSettings",
     "Scene",
     "ShaderNode",

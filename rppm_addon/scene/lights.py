@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .meshes import RayVisibility
 from .node_graphs import NodeGraph
 
 
@@ -44,8 +45,8 @@ class Light:
     """AREA: full width along local X and height along local Y before the matrix's scale."""
     spread: float = np.pi
     """AREA: full angle of emission, radians (Cycles' spread); pi is diffuse."""
-    visible_to_camera: bool = True
-    """Whether the camera sees the light itself; mirrors and glass show it in any case, as in Cycles."""
+    visibility: RayVisibility = RayVisibility.ALL
+    """What sees the light itself or is lit by it: the camera, diffuse surfaces, reflections, transmissions."""
     graph: NodeGraph | None = None
     """Its emission multiplies ``strength``; None is 1."""
     photon_share: float = 1.0

@@ -55,6 +55,17 @@ class Mesh:
         return len(self.triangle_corners)
 
 
+class RayVisibility(enum.IntFlag):
+    """Rays that see an object; the numbers are those of the GLSL side."""
+
+    CAMERA = 1
+    DIFFUSE = 2
+    GLOSSY = 4
+    TRANSMISSION = 8
+    SHADOW = 16
+    ALL = 31
+
+
 @dataclass
 class Particle:
     """What the Particle Info node tells of the particle that an instance stands for."""
@@ -88,5 +99,10 @@ class Instance:
     random: float = 0.0
     """0 to 1, one number for each instance."""
     particle: Particle | None = None
+    visibility: RayVisibility = RayVisibility.ALL
+    holdout: bool = False
+    """Whether the camera sees a hole in place of it."""
+    shadow_catcher: bool = False
+    """Whether the camera sees nothing of it but the shadows on it."""
     attributes: dict[str, tuple[float, ...]] = field(default_factory=dict)
     """Values of attributes that the object or its instancer has as a whole, in place of those of the mesh."""

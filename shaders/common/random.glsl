@@ -9,6 +9,7 @@ const uint STAGE_DIRECT_LIGHT = 4u;
 const uint STAGE_RESOLVE = 5u;
 const uint STAGE_SPLATTING = 6u;
 const uint STAGE_GATHERING = 7u;
+const uint STAGE_SHADOW_CATCHER = 8u;
 const uint STAGE_CAMERA = 8u;
 
 uvec4 pcg4d(uvec4 v) {

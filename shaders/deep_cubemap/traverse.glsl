@@ -40,6 +40,7 @@ uvec3 walk_counts = uvec3(0u); // steps, triangle tests, entries
 
 void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
+    if (walk.any_hit && triangle_vertices[3u * triangle].w > 0.0) return;  // casts no shadow
 #ifdef DEEP_CUBEMAP_COUNT
     ++walk_counts.y;
 #endif

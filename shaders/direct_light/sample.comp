@@ -20,22 +20,13 @@ layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 layout(std430, binding = 9) writeonly buffer LightTriangles { uint light_triangles[]; };
 layout(std430, binding = 8) writeonly buffer Contributions { vec4 contributions[]; };
 
-uint choose_light(float u) {
-    uint low = 0u, high = parameters.light_count - 1u;
-    while (low < high) {
-        uint middle = (low + high) / 2u;
-        if (lights[middle].selection_end > u) high = middle;
-        else low = middle + 1u;
-    }
-    return low;
-}
-
 // Diffuse and rough lobes are lit by these rays alone. Specular lobes are also followed to lights with
 // extent: the power heuristic shares those out between both ways, lobe by lobe.
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side.
-vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, vec3 wo, vec3 wi, bool front, float light_density) {
-    vec3 value = diffuse_scattered(closure, wo, wi, front);
+vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, vec3 wo, vec3 wi, bool front, uint visibility, float light_density) {
+    vec3 value = (visibility & RAY_DIFFUSE) != 0u ? diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
+    if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     vec4 shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, false);
     float total = sum(shares);
     if (parameters.final_gather != 0u && !gathered)
@@ -70,7 +61,7 @@ void main() {
     vec3 throughput = camera_paths[index].throughput * segment_transmittance(camera_paths[index].flags, closure);
     bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
     vec3 scattered = evaluate_closure(closure, throughput, gathered, -ray.direction, sampled.direction,
-                                      side > 0.0, sampled.density * light.selection_probability);
+                                      side > 0.0, light.flags, sampled.density * light.selection_probability);
     vec3 radiance = throughput * scattered * sampled.weight / light.selection_probability;
     if (!(largest(radiance) > 0.0)) return;
     contributions[index] = vec4(radiance, gathered ? 1.0 : 0.0);

@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 #include <EmitParameters>
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
+#include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
 #include "emission/photons.glsl"
 layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
@@ -62,7 +63,10 @@ void main() {
     Emission emission = emit_photon(light, choice);
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
-    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, 0u);
+    uint path_flags = PHOTON_DIRECT | ((light.flags & RAY_DIFFUSE) == 0u ? PHOTON_NOT_DIFFUSE : 0u)
+        | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
+        | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u);
+    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags);
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);
 }

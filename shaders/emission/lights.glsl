@@ -6,6 +6,7 @@
 #include <EmissiveTriangle>
 #include "emission/environment.glsl"
 #include "common/spherical_triangle.glsl"
+#include "common/ray_kinds.glsl"
 layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
@@ -14,7 +15,8 @@ layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]
 // The numbers of rppm_addon/integrator/records.py and emission.py.
 const uint LIGHT_POINT = 0u, LIGHT_SPOT = 1u, LIGHT_SUN = 2u, LIGHT_RECTANGLE = 3u, LIGHT_ELLIPSE = 4u,
            LIGHT_MESH = 5u, LIGHT_WORLD = 6u;
-const uint LIGHT_VISIBLE = 1u, LIGHT_SOFT = 2u;
+// Flags: bits of scene.RayVisibility, and
+const uint LIGHT_SOFT = 32u;
 
 
 // Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.
@@ -35,6 +37,11 @@ float spread_attenuation(Light light, float cosine) {
     return max(0.0, (light.spread_tangent - tangent) * light.spread_scale);
 }
 
+// Light Falloff nodes: what a light gives may grow with a power of the distance.
+float distance_factor(Light light, float distance) {
+    return light.falloff == 0.0 ? 1.0 : pow(max(distance, 1e-6), light.falloff);
+}
+
 vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
 }
@@ -46,6 +53,17 @@ uint light_of(uint photon) {
         uint middle = (low + high + 1u) / 2u;
         if (lights[middle].first_photon <= photon) low = middle;
         else high = middle - 1u;
+    }
+    return low;
+}
+
+// By its selection probability.
+uint choose_light(float u) {
+    uint low = 0u, high = parameters.light_count - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (lights[middle].selection_end > u) high = middle;
+        else low = middle + 1u;
     }
     return low;
 }
@@ -171,7 +189,7 @@ vec3 sample_area_light(Light light, vec3 point, vec2 u, out float density) {
     return to_light;
 }
 
-LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
+LightSample sample_light_at_one_metre(Light light, vec3 point, float u_choice, vec2 u) {
     LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
     if (light.kind == LIGHT_WORLD) {
         result.direction = sample_world(u, result.density);
@@ -232,6 +250,12 @@ LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
     return result;
 }
 
+LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
+    LightSample result = sample_light_at_one_metre(light, point, u_choice, u);
+    result.weight *= distance_factor(light, result.distance);
+    return result;
+}
+
 // --- lights that a specular path meets ----------------------------------------------------------
 
 // Share of a light met by scattering, with a density, when next-event rays find it with another.
@@ -278,7 +302,7 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
             density = sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
         }
         if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
-        return radiant_strength(light, -direction) / (PI * radius2);
+        return radiant_strength(light, -direction) * (distance_factor(light, distance) / (PI * radius2));
     }
     if (light.kind != LIGHT_RECTANGLE && light.kind != LIGHT_ELLIPSE) return vec3(0.0);
     float cosine = -dot(direction, light.normal);
@@ -288,15 +312,15 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
     vec2 at = area_light_coordinates(light, origin + distance * direction - light.position);
     if (light.kind == LIGHT_ELLIPSE ? dot(at, at) > 1.0 : max(abs(at.x), abs(at.y)) > 1.0) return vec3(0.0);
     density = area_light_density(light, origin, distance * direction);
-    return light.strength * spread_attenuation(light, cosine);
+    return light.strength * (spread_attenuation(light, cosine) * distance_factor(light, distance));
 }
 
 // Radiance of the light objects that a ray passes; they hide nothing.
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, bool from_camera, float scatter_density) {
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_density) {
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < parameters.light_count; ++index) {
         Light light = lights[index];
-        if (from_camera && (light.flags & LIGHT_VISIBLE) == 0u) continue;
+        if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) continue;
         float density;
         vec3 passed = passed_light(light, origin, direction, maximum_distance, density);
         radiance += passed * scattered_share(scatter_density, density * light.selection_probability);

@@ -73,9 +73,10 @@ void main() {
         normals[k] = size > 0.0 && size < 1e30 ? pack_unit_vector(normal / size) : pack_unit_vector(face / max(length(face), 1e-30));
         uvs[k] = instance.mesh_uv == NO_UV ? vec2(0.0) : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
     }
-    // A triangle without finite corners becomes a point, which no ray meets.
+    // A triangle without finite corners becomes a point, which no ray meets. Fourth components: 1 where the triangle
+    // casts no shadow; its chance among the emitters, and whether its emission varies (emission/mark.comp).
     for (uint k = 0u; k < 3u; ++k)
-        triangle_vertices[3u * triangle + k] = vec4(finite ? points[k] : parameters.fallback_point, 0.0);
+        triangle_vertices[3u * triangle + k] = vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? float(instance.shadowless) : 0.0);
     uint slot = min(triangle_slots[local], instance.slot_count - 1u);
     attributes[triangle] = TriangleAttributes(normals[0], normals[1], normals[2], slot_materials[instance.first_slot + slot],
                                               uvs[0], uvs[1], uvs[2], number, 0u);

@@ -21,6 +21,7 @@ layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer CameraPaths { CameraPath camera_paths[]; };
 layout(std430, binding = 3) writeonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 12) readonly buffer LitCatchers { uint lit_catchers[]; };
 layout(std430, binding = 11) writeonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
 layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
@@ -72,7 +73,7 @@ void main() {
     if (gathered && !hit) return;
     vec4 seen = vec4(0.0);
 
-    vec3 lights_passed = gathered ? vec3(0.0) : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, straight, path.scatter_density);
+    vec3 lights_passed = gathered ? vec3(0.0) : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, camera_ray_kind(path.flags), path.scatter_density);
     seen.rgb += path.throughput * lights_passed;
     if (!hit) {
         bool background = largest(lights_passed) <= 0.0;
@@ -86,6 +87,7 @@ void main() {
         return;
     }
     path.throughput *= segment_transmittance(path.flags, closure);
+    if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     if (largest(closure.emission) > 0.0 && !gathered) {
         float share = 1.0;

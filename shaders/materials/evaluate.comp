@@ -26,7 +26,7 @@ void main() {
     if (index >= parameters.count) return;
     vec3 direction = direction_of(index);
     Surface surface = Surface(direction, -direction, -direction, -direction, vec2(0.0), vec3(0.0), NO_TRIANGLE, 0u, false,
-                              parameters.from_camera != 0u ? RAY_CAMERA : RAY_DIFFUSE, 0.0, 0u);
+                              parameters.from_camera != 0u ? RAY_CAMERA : RAY_DIFFUSE, parameters.ray_length, 0u);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, surface.normal, false, 0.0);
     evaluate_material(surface, parameters.first_constant, builder);
     emissions[index] = vec4(builder.closure.emission, 0.0);

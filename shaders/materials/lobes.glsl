@@ -3,6 +3,16 @@
 
 #include "materials/builder.glsl"
 #include "materials/albedo_tables.glsl"
+#include "materials/thin_film.glsl"
+
+// Films thinner than this, nm, are none.
+const float THINNEST_FILM = 0.1;
+
+struct Film { float thickness; float ior; };
+
+// Microfacets under a film follow the curve of the bare base, with the reflectance at normal incidence that gives what
+// the film reflects at the angle of the viewer to the normal; rise: of the curve, there.
+vec3 at_normal_incidence(vec3 reflectance, float rise) { return clamp((reflectance - rise) / max(1.0 - rise, 1e-3), 0.0, 1.0); }
 
 // Where a node's microfacets lie: normal packed and unpacked, anisotropy packed, roughness of the mean alpha.
 struct Microfacets { vec3 normal; uint packed_normal; uint anisotropy; float alpha; float cosine; };
@@ -53,9 +63,16 @@ void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3
     add_lobe(builder, microfacet_lobe(at, LOBE_MIRROR, weight * color * factor, vec3(1.0), vec3(1.0), 1.0));
 }
 
-// f0: at normal incidence; edge: the tint at 82 degrees.
-void add_metal(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 f0, vec3 edge, bool multiscatter) {
+// f0: at normal incidence; edge: the tint at 82 degrees. Under a film the base is taken for a dielectric that reflects
+// as much.
+void add_metal(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 f0, vec3 edge, Film film, bool multiscatter) {
     vec3 factor = vec3(1.0);
+    if (film.thickness > THINNEST_FILM) {
+        vec3 root = sqrt(clamp(f0, 0.0, 0.99)), index = (1.0 + root) / (1.0 - root), amplitude = (index - film.ior) / (index + film.ior);
+        vec3 reflectance = thin_film_reflectance(at.cosine, film.thickness, 1.0, film.ior, 1.0, amplitude * amplitude);
+        f0 = at_normal_incidence(reflectance, schlick_interpolation(at.cosine));
+        edge = vec3(1.0);
+    }
     if (multiscatter) {
         // Cosine-weighted mean of the Fresnel curve: 1/21 of Schlick's rise, 1/126 of the bend.
         const float far = 6.0 / 7.0, far5 = far * far * far * far * far;
@@ -96,4 +113,12 @@ float add_sheen(inout ClosureBuilder builder, vec3 weight, float roughness, vec3
 void add_velvet(inout ClosureBuilder builder, vec3 weight, float sigma, vec3 normal) {
     add_lobe(builder, MicrofacetLobe(weight, LOBE_VELVET, vec3(max(sigma, 0.01), 0.0, 0.0), 1.0, vec3(1.0), 1.0,
                                      pack_unit_vector(given_normal(builder, normal)), ISOTROPIC));
+}
+
+void add_glass_with_film(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, Film film, float ior) {
+    vec3 reflectance = builder.backfacing ? thin_film_reflectance(at.cosine, film.thickness, ior, film.ior, 1.0, vec3(-1.0))
+                                          : thin_film_reflectance(at.cosine, film.thickness, 1.0, film.ior, ior, vec3(-1.0));
+    float relative = builder.backfacing ? 1.0 / ior : ior;
+    vec3 f0 = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, relative));
+    add_lobe(builder, microfacet_lobe(at, LOBE_COATED_GLASS, reflected, passed, f0, relative));
 }

@@ -16,14 +16,14 @@ struct Principled {
     vec3 coat_tint, coat_normal;
     float sheen, sheen_roughness;
     vec3 sheen_tint, emission;
-    float film_thickness, film_ior;
+    Film film;
     bool multiscatter;
 };
 
 // What only few have.
 Principled plain_principled(ClosureBuilder builder) {
     return Principled(vec3(0.8), 0.0, 0.5, 1.5, 1.0, builder.shading, 0.0, 0.5, vec3(1.0), 0.0, 0.0, vec3(0.0), 0.0,
-                      0.0, 0.03, 1.5, vec3(1.0), builder.shading, 0.0, 0.5, vec3(1.0), vec3(0.0), 0.0, 1.33, true);
+                      0.0, 0.03, 1.5, vec3(1.0), builder.shading, 0.0, 0.5, vec3(1.0), vec3(0.0), Film(0.0, 1.33), true);
 }
 
 float index_from_reflectance(float f0) {
@@ -61,13 +61,15 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
 
     Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic), p.tangent, p.anisotropic_rotation);
     if (p.metallic > 0.0) {
-        add_metal(builder, at, weight * p.metallic, min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.multiscatter);
+        add_metal(builder, at, weight * p.metallic, min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.film, p.multiscatter);
         weight *= 1.0 - p.metallic;
     }
     if (p.transmission > 0.0) {
         vec3 share = weight * p.transmission, passed = sqrt(max(p.base_color, vec3(0.0)));
         Microfacets even = Microfacets(at.normal, at.packed_normal, ISOTROPIC, p.roughness * p.roughness, at.cosine);
-        add_glass(builder, even, share, share * passed, p.specular_tint, min(passed, 1.0), p.ior, p.multiscatter);
+        if (p.film.thickness > THINNEST_FILM)
+            add_glass_with_film(builder, even, share, share * passed, p.film, p.ior);
+        else add_glass(builder, even, share, share * passed, p.specular_tint, min(passed, 1.0), p.ior, p.multiscatter);
         weight *= 1.0 - p.transmission;
     }
     if (largest(weight) <= 0.0) return;
@@ -75,7 +77,12 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     float f0 = normal_reflectance(p.ior) * 2.0 * p.specular_level;
     float ior = index_from_reflectance(f0);
     if (p.ior < 1.0) ior = 1.0 / ior;
-    if (f0 > 0.0) {
+    if (p.film.thickness > THINNEST_FILM) {
+        vec3 reflectance = thin_film_reflectance(at.cosine, p.film.thickness, 1.0, p.film.ior, ior, vec3(-1.0));
+        vec3 beside = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, ior));
+        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight, beside, vec3(1.0), ior));
+        weight = beneath(weight, reflectance);
+    } else if (f0 > 0.0) {
         vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
         float white = white_albedo(p.roughness, at.cosine);
         vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white);

@@ -4,13 +4,11 @@
 #include <ShadingInstance>
 #include <TriangleAttributes>
 #include "common/geometry.glsl"
+#include "common/ray_kinds.glsl"
 layout(std430, binding = 3) readonly buffer Triangles { vec4 triangle_vertices[]; };
 layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
 layout(std430, binding = 10) readonly buffer ShadingInstances { ShadingInstance shading_instances[]; };
 layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
-
-// The rays that Cycles tells apart. Photons count as rays that a diffuse surface sends out.
-const uint RAY_CAMERA = 1u, RAY_DIFFUSE = 2u, RAY_GLOSSY = 4u, RAY_TRANSMISSION = 8u, RAY_SINGULAR = 16u;
 
 struct Surface {
     vec3 position;      // world space, metres; of a world: the direction
@@ -121,11 +119,16 @@ vec3 within_texture_space(Surface surface) {
     return (point_to_object(surface, surface.position) - at.texture_location) * at.texture_scale + 0.5;
 }
 
+// A tangent in object space, turned as Cycles turns it, and laid across the shading normal.
+vec3 surface_tangent(Surface surface, vec3 in_object) {
+    vec3 across = normal_to_world(surface, in_object);
+    across -= dot(across, surface.normal) * surface.normal;
+    float size = length(across);
+    return size > 1e-20 ? across / size : vec3(0.0);
+}
+
 // Around the object's Z axis, where no tangent is given.
 vec3 default_tangent(Surface surface) {
     vec3 at = within_texture_space(surface) - 0.5;
-    vec3 around = normal_to_world(surface, vec3(-at.y, at.x, 0.0));
-    vec3 across = around - dot(around, surface.normal) * surface.normal;
-    float size = length(across);
-    return size > 1e-20 ? across / size : vec3(0.0);
+    return surface_tangent(surface, vec3(-at.y, at.x, 0.0));
 }

@@ -16,7 +16,7 @@ layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; }
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
 #include "materials/usable.glsl"
-#include "common/camera_path.glsl"
+#include "common/photon.glsl"
 #include "resolve/ranges.glsl"
 
 layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
@@ -29,13 +29,12 @@ const uint NO_PROGRAM = 0xffffffffu;
 
 #include "materials/generated.glsl"
 
-// What the camera path's last event tells; photons see materials as diffuse rays do.
-uint ray_kind(uint index) {
-    if (parameters.path_stride == 0u) return RAY_DIFFUSE;
-    uint flags = path_words[parameters.path_stride * index + parameters.path_flags];
-    if ((flags & PATH_STRAIGHT) != 0u) return RAY_CAMERA;
-    if ((flags & PATH_DIFFUSE) != 0u) return RAY_DIFFUSE;
-    return ((flags & PATH_TRANSMITTED) != 0u ? RAY_TRANSMISSION : RAY_GLOSSY) | ((flags & PATH_SINGULAR) != 0u ? RAY_SINGULAR : 0u);
+// The kinds of rppm_addon/integrator/resolve.py.
+const uint PATH_OF_CAMERA = 1u, PATH_OF_PHOTON = 2u;
+
+uint path_flags(uint index) {
+    if (parameters.path_kind == PATH_OF_CAMERA) return path_words[parameters.camera_stride * index + parameters.camera_flags];
+    return parameters.path_kind == PATH_OF_PHOTON ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
 }
 
 void main() {
@@ -73,21 +72,43 @@ void main() {
     surface.triangle = hit.triangle;
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;
-    surface.ray = ray_kind(index);
+    uint flags = path_flags(index);
+    surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags) : RAY_DIFFUSE;
     surface.ray_length = hit.distance;
-    surface.ray_depth = parameters.segment + (parameters.path_stride == 0u ? 1u : 0u);
+    surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
 
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment, index);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, next_random(random));
     uint material = attributes[hit.triangle].material;
+    ShadingInstance instance = shading_instances[surface.instance];
+    bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;
+    // Light reaches what casts no shadow, and what lies behind it too.
+    bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & VISIBLE_TO_SHADOW_RAYS) == 0u;
+    bool unseen = camera && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
+    // What diffuse surfaces do not see is lit, but gives no light, and light from other surfaces goes on through it.
+    bool keeps_light = photon && (instance.visibility & RAY_DIFFUSE) == 0u;
+    bool passes = unseen || shadowless || (keeps_light && (flags & PHOTON_DIRECT) == 0u);
+    if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
+    if (camera && instance.holdout != 0u && (surface.ray & RAY_CAMERA) != 0u) {
+        vec3 transparent = clamp(builder.closure.transparent, 0.0, 1.0);
+        builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
+        builder.closure.transparent = transparent;
+        add_holdout(builder, 1.0 - mean(transparent));
+    }
+    bool catches = camera && instance.shadow_catcher != 0u && (surface.ray & RAY_CAMERA) != 0u && !unseen;
+    if (catches) {
+        builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
+        builder.closure.flags |= CLOSURE_CATCHES_SHADOWS;
+    }
+    if (passes || catches) builder.closure.transparent = vec3(1.0);
+    if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
-    builder.closure.flags = surface.backfacing ? CLOSURE_BACKFACING : 0u;
+    builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (shadowless ? CLOSURE_SHADOWLESS : 0u);
     builder.closure.material = material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
     builder.closure.shading_normal = pack_unit_vector(shading);
-    evaluate_material(surface, materials[material].first_constant, builder);
     make_usable(builder.closure);
     closures[index] = builder.closure;
 }

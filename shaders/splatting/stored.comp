@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of photons to splat: those stored, from a first segment on.
+// The list of photons to splat: those stored, without direct ones where next-event rays stand for them.
 
 layout(local_size_x = 64) in;
 
@@ -14,9 +14,8 @@ layout(std430, binding = 1) buffer StoredPhotons { uint stored_count; uint diffu
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    uint slot = parameters.first_slot + index;
-    uint flags = photons[slot].flags;
-    if ((flags & PHOTON_STORED) == 0u) return;
-    stored_photons[atomicAdd(stored_count, 1u)] = slot;
+    uint flags = photons[index].flags;
+    if ((flags & PHOTON_STORED) == 0u || (parameters.indirect_only != 0u && (flags & PHOTON_DIRECT) != 0u)) return;
+    stored_photons[atomicAdd(stored_count, 1u)] = index;
     if ((flags & PHOTON_DIFFUSED) != 0u) atomicAdd(diffused_count, 1u);
 }

@@ -12,7 +12,18 @@ import pytest
 import scenes
 from lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene, World
+from rppm_addon.scene import (
+    Camera,
+    DirectLight,
+    Instance,
+    Light,
+    LightKind,
+    Mesh,
+    RayVisibility,
+    RenderSettings,
+    Scene,
+    World,
+)
 
 STEADY = 0.999999  # alpha of a radius that hardly shrinks
 
@@ -55,7 +66,13 @@ def sun(*towards: float) -> Light:
 
 
 def point_lamp(*place: float, color: tuple = (1, 1, 1)) -> Light:
-    return Light("lamp", LightKind.POINT, scenes.placed(*place), np.array(color, float), visible_to_camera=False)
+    return Light(
+        "lamp",
+        LightKind.POINT,
+        scenes.placed(*place),
+        np.array(color, float),
+        visibility=RayVisibility.ALL ^ RayVisibility.CAMERA,
+    )
 
 
 def scene_of(camera: Camera, meshes: list[Mesh], lights: list[Light], settings: RenderSettings) -> Scene:

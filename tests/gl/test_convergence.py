@@ -22,7 +22,7 @@ from rppm_addon.integrator import progressive
 from rppm_addon.integrator.bandwidth import shrinkage
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import PHOTON_DIFFUSED, PHOTON_STORED
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RayVisibility, RenderSettings, Scene
 
 CHECKPOINTS = (1, 2, 4, 8, 16, 32, 64)
 SLOPE = slice(CHECKPOINTS.index(4), None)
@@ -59,7 +59,7 @@ def settings(photons: int, radius: float, alpha: float, segments: int) -> Render
 def lamp(lamp_radius: float, photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scene:
     """A lamp 1 m above a floor: E = pi (1 + x^2)^-1.5, whatever the lamp's radius."""
     light = Light("lamp", LightKind.POINT, scenes.placed(0, 0, 1), np.full(3, np.pi), radius=lamp_radius)
-    light.visible_to_camera = False
+    light.visibility ^= RayVisibility.CAMERA
     return Scene(
         camera_down(3, 0.8, size), [floor(4)], [Instance(0, np.eye(4), [0])], [scenes.diffuse(1, 1, 1)], [light],
         settings=settings(photons, radius, alpha, 1),
@@ -123,7 +123,14 @@ def bounce(photons: int, alpha: float = 0.7) -> Scene:
     """
     ceiling = scenes.rectangle("ceiling", (-1, -1, CEILING), (-1, 1, CEILING), (1, 1, CEILING), (1, -1, CEILING))
     up = scenes.looking((0, 0, SPOT), (0, 0, 1))
-    light = Light("spot", LightKind.SPOT, up, np.ones(3), spot_angle=np.pi / 2, visible_to_camera=False)
+    light = Light(
+        "spot",
+        LightKind.SPOT,
+        up,
+        np.ones(3),
+        spot_angle=np.pi / 2,
+        visibility=RayVisibility.ALL ^ RayVisibility.CAMERA,
+    )
     options = settings(photons, 0.01, alpha, 2)
     options.radius_scale = 1000.0
     return Scene(

@@ -2,6 +2,7 @@
 """Cycles' Sky Texture as numbers: renders of nothing but the world, a value per pixel centre."""
 
 import math
+from collections.abc import Iterable, Iterator
 
 import bpy
 import numpy as np
@@ -25,17 +26,22 @@ _SCATTERING = (
 _ANALYTIC = ("sun_direction", "turbidity", "ground_albedo")
 
 
-def _world(sky: Sky) -> None:
+def _world(sky: Sky) -> bpy.types.Node:
     scene = new_scene(world=1.0)
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
     scene.world.cycles.sampling_method = "NONE"
     tree = scene.world.node_tree
     node = tree.nodes.new("ShaderNodeTexSky")
+    _set(node, sky)
+    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    tree.links.new(node.outputs[0], background.inputs["Color"])
+    return node
+
+
+def _set(node: bpy.types.Node, sky: Sky) -> None:
     node.sky_type = sky.sky_type
     for name in _SCATTERING if sky.scatters else _ANALYTIC:
         setattr(node, name, getattr(sky, name))
-    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
-    tree.links.new(node.outputs[0], background.inputs["Color"])
 
 
 def _camera(elevation: float, azimuth: float) -> bpy.types.Camera:
@@ -65,15 +71,31 @@ def _directions() -> np.ndarray:
     return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
 
-def panorama(sky: Sky) -> tuple[np.ndarray, np.ndarray]:
-    """Radiance and unit directions, (2 HEIGHT^2, 3) float64 each, evenly spaced in azimuth and elevation."""
-    _world(sky)
+def _look_around() -> None:
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y = 2 * HEIGHT, HEIGHT
     data = _camera(0.0, 0.0)
     data.type = "PANO"
     (data if hasattr(data, "panorama_type") else data.cycles).panorama_type = "EQUIRECTANGULAR"
+
+
+def panorama(sky: Sky) -> tuple[np.ndarray, np.ndarray]:
+    """Radiance and unit directions, (2 HEIGHT^2, 3) float64 each, evenly spaced in azimuth and elevation."""
+    _world(sky)
+    _look_around()
     return _seen(), _directions()
+
+
+def panoramas(skies: Iterable[Sky]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """As panorama, for many skies."""
+    _world(Sky())
+    _look_around()
+    directions = _directions()
+    node = _world(Sky())
+    _look_around()
+    for sky in skies:
+        _set(node, sky)
+        yield _seen(), directions
 
 
 def close_up(sky: Sky, angle: float, size: int = 48) -> tuple[np.ndarray, np.ndarray]:

@@ -206,3 +206,29 @@ def test_layers_with_a_normal(context, tmp_path, view):
     """The coat keeps the surface's normal, the sheen is between both."""
     inputs = {"base_color": COLOR, "coat_weight": 0.5, "coat_roughness": 0.4, "sheen_weight": 0.7}
     assert_alike(context, tmp_path, "bsdf_principled", view, {"distribution": "MULTI_GGX"}, inputs, TABLES, TILTED)
+
+
+FILMS = {
+    "dielectric": ("bsdf_principled", {"base_color": 0.0, "roughness": 0.15, "thin_film_ior": 1.8}),
+    "of_the_base_itself": ("bsdf_principled", {"base_color": 0.0, "roughness": 0.4, "thin_film_ior": 1.5}),
+    "glass": ("bsdf_glass", {"color": 1.0, "roughness": 0.2, "thin_film_ior": 1.8}),
+}
+
+
+@pytest.mark.parametrize("thickness", [200.0, 400.0])
+@pytest.mark.parametrize("name", FILMS)
+def test_thin_films(context, tmp_path, name, thickness):
+    """The mean of each channel: one angle stands for all microfacets, and Gaussians for the eye's sensitivities.
+
+    On black glass a bare surface would be grey; the film's colours part by more than the tolerance.
+    """
+    kind, inputs = FILMS[name]
+    inputs = inputs | {"thin_film_thickness": thickness}
+    points, cycles = closures.by_cycles(kind, BL_IDNAMES[kind], ABOVE, {"distribution": "GGX"}, inputs)
+    with context.moderngl:
+        ours = closures.by_closure(context, tmp_path, kind, ABOVE, points, {"distribution": "GGX"}, inputs, choices=1)
+    seen = np.isfinite(points).all(axis=1)
+    ratio, hue = ours[seen].mean(axis=0) / cycles[seen].mean(axis=0), cycles[seen].mean(axis=0) / cycles[seen].mean()
+    print(f"film {name} {thickness}: ratio {np.round(ratio, 4)}, Cycles' hue {np.round(hue, 3)}")
+    assert np.abs(ratio - 1.0).max() < 0.08
+    assert name == "of_the_base_itself" or np.ptp(hue) > 0.5

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.materials.colorimetry import black_body
-from rppm_addon.materials.sky import sky_picture, sky_radiance, stands_in, sun_disc
+from rppm_addon.materials.sky import sky_picture, sky_radiance, sun_disc
 from rppm_addon.materials.sky_single_scattering import SUN_SOLID_ANGLE, SUN_TEMPERATURE
 from rppm_addon.scene.sky import Sky
 
@@ -32,7 +32,8 @@ def test_no_air_no_sky(sky_type):
 def test_a_black_body_gives_the_solar_constant():
     """All wavelengths together give sigma T^4 / pi, and the sun's disc about 1361 W/m^2 of it."""
     wavelength = np.geomspace(5e-8, 1e-3, 20001)
-    radiance = np.trapz(black_body(wavelength, SUN_TEMPERATURE), wavelength)
+    between = 0.5 * (black_body(wavelength[1:], SUN_TEMPERATURE) + black_body(wavelength[:-1], SUN_TEMPERATURE))
+    radiance = (between * np.diff(wavelength)).sum()
     assert radiance == pytest.approx(5.670374e-8 * SUN_TEMPERATURE**4 / math.pi, rel=1e-4)
     assert radiance * SUN_SOLID_ANGLE == pytest.approx(1361.0, rel=0.01)
 
@@ -71,10 +72,6 @@ def test_sun_disc_is_where_it_is_wanted():
     assert np.allclose(disc.direction, [math.sin(1) * math.cos(0.5), math.cos(1) * math.cos(0.5), math.sin(0.5)])
     assert disc.radiance(disc.direction[None]).min() > 1e5
     assert not disc.radiance(-disc.direction[None]).any()
-
-
-def test_a_stand_in_says_so():
-    assert stands_in(Sky("HOSEK_WILKIE")) and not stands_in(Sky("PREETHAM"))
 
 
 def test_unknown_types_are_refused():

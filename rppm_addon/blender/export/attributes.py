@@ -5,11 +5,14 @@ import bpy
 import numpy as np
 
 from ...scene import AttributeDomain, Mesh, MeshAttribute
+from .tangents import corner_tangents, sphere_uv
 
 GENERATED = ".generated"
 """Name under which Blender's generated coordinates are exported."""
 ISLAND = ".random_per_island"
 """Name under which a random number for each connected part is exported."""
+TANGENT = ".tangent:"
+"""Before the name of a UV map, the name under which its tangents are exported; alone, those of the map in use."""
 ACTIVE_COLOR = ".active_color"
 """Stands for the colour attribute that is rendered when none is named."""
 NO_ATTRIBUTE = ".none"
@@ -53,6 +56,8 @@ def export_attribute(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAtt
         return MeshAttribute(AttributeDomain.POINT, _generated(mesh))
     if name == ISLAND:
         return MeshAttribute(AttributeDomain.POINT, _random_per_island(mesh))
+    if name.startswith(TANGENT):
+        return _tangents(exported, mesh, name.removeprefix(TANGENT))
     attribute = _rendered_color(mesh) if name == ACTIVE_COLOR else mesh.attributes.get(name)
     if attribute is None or attribute.data_type not in _FIELDS:
         return None
@@ -71,6 +76,8 @@ def export_attribute(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAtt
         return MeshAttribute(AttributeDomain.POINT, values)
     if attribute.domain == "CORNER":
         return MeshAttribute(AttributeDomain.CORNER, values)
+    if attribute.domain == "EDGE":
+        return MeshAttribute(AttributeDomain.POINT, _mean_of_edges(mesh, values))
     if attribute.domain == "FACE":
         corner_faces = np.repeat(np.arange(len(mesh.polygons)), _lengths(mesh))
         return MeshAttribute(AttributeDomain.TRIANGLE, values[corner_faces[exported.triangle_corners[:, 0]]])
@@ -98,11 +105,44 @@ def _generated(mesh: bpy.types.Mesh) -> np.ndarray:
     return ((places.reshape(-1, 3) - location) * half + 0.5).astype(np.float32)
 
 
-def _random_per_island(mesh: bpy.types.Mesh) -> np.ndarray:
-    """(vertices, 1) a number from 0 to 1 for each connected part. The parts are Cycles', the numbers are not."""
+def _mean_of_edges(mesh: bpy.types.Mesh, values: np.ndarray) -> np.ndarray:
+    """(vertices, components) means over the edges that meet at each vertex, as Cycles has them."""
+    edges = _edges(mesh)
+    sums = np.zeros((len(mesh.vertices), values.shape[1]), np.float32)
+    for end in range(2):
+        np.add.at(sums, edges[:, end], values)
+    counts = np.bincount(edges.ravel(), minlength=len(mesh.vertices))
+    return sums / np.maximum(counts, 1).astype(np.float32)[:, None]
+
+
+def _tangents(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
+    """Tangents of a UV map, by default of that in use; of a mesh without one, of longitude and latitude."""
+    if name:
+        layer = mesh.uv_layers.get(name)
+        if layer is None:
+            return None
+        uv = np.empty(2 * len(mesh.loops), np.float32)
+        layer.uv.foreach_get("vector", uv)
+        uv = np.nan_to_num(uv.reshape(-1, 2), copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+    elif exported.corner_uv is not None:
+        uv = exported.corner_uv
+    else:
+        places = np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.vertices.foreach_get("undeformed_co", places)
+        uv = sphere_uv(places.reshape(-1, 3))[exported.corner_vertices]
+    return MeshAttribute(AttributeDomain.CORNER, corner_tangents(exported, uv))
+
+
+def _edges(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(edges, 2) vertices."""
     edges = np.empty(2 * len(mesh.edges), np.int32)
     mesh.edges.foreach_get("vertices", edges)
-    edges = edges.reshape(-1, 2)
+    return edges.reshape(-1, 2)
+
+
+def _random_per_island(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(vertices, 1) a number from 0 to 1 for each connected part. The parts are Cycles', the numbers are not."""
+    edges = _edges(mesh)
     label = np.arange(len(mesh.vertices))
     while len(edges):
         lowest = np.minimum(label[edges[:, 0]], label[edges[:, 1]])

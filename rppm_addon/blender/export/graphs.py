@@ -218,6 +218,8 @@ class GraphExporter:
         options: dict[str, object] = {}
         for name, values in kind.options.items():
             value = getattr(node, name, values[0])
+            if value == "":  # a choice of a newer version of Blender, which shows it as none
+                value = values[0]
             if value not in values:
                 self.warn(node, f"has the {name.replace('_', ' ')} {value}, which is not rendered; {values[0]} is used")
                 value = values[0]
@@ -284,7 +286,7 @@ def _output_key(source: Source) -> tuple:
 _UNREADABLE = (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError)
 """What reading a node raises that is broken or of another version of Blender."""
 
-_IRREGULAR = {"RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve", "BsdfAnisotropic": "bsdf_glossy"}
+_IRREGULAR = {"CameraData": "camera", "RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve", "BsdfAnisotropic": "bsdf_glossy"}
 
 
 def _own_properties(node: bpy.types.Node) -> set[str]:

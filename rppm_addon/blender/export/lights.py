@@ -6,11 +6,13 @@ import math
 import bpy
 import numpy as np
 
-from ...materials.emitted import Emits, emits
+from ...materials.emitted import Emits, emits, reachable
+from ...materials.nodes import KINDS
 from ...scene import Light, LightKind, NodeGraph
 from .graphs import GraphExporter
 from .images import ImageTable
 from .report import Report
+from .visibility import visibility_of
 
 
 def export_light(
@@ -30,7 +32,7 @@ def export_light(
         kind=LightKind[data.type],
         matrix=matrix,
         strength=power,
-        visible_to_camera=light_object.visible_camera,
+        visibility=visibility_of(light_object),
         graph=graph,
         photon_share=data.rppm.photon_share if hasattr(data, "rppm") else 1.0,
     )
@@ -98,6 +100,7 @@ def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable)
     exporter = GraphExporter(f'Light "{name}"', report, images)
     if output is not None:
         exporter.graph.surface = exporter.surface(output)
-    if emits(exporter.graph) is Emits.VARYING:
+    kinds = {exporter.graph.nodes[index].kind for index in reachable(exporter.graph, exporter.graph.surface)}
+    if any(KINDS[kind].surface for kind in kinds - {"light_path"}):
         report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; one value is used')
     return exporter.graph

@@ -4,10 +4,10 @@
 import bpy
 import numpy as np
 
-from ...materials.sky import sky_picture, stands_in
+from ...materials.sky import sky_picture
 from ...scene import Image, Link
 from ...scene.sky import Sky
-from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, attribute_of
+from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, TANGENT, attribute_of
 from .graphs import STAND_INS, GraphExporter, handles, snake_case
 from .images import is_associated
 from .links import Path
@@ -70,13 +70,13 @@ def _view_layer_attribute(exporter: GraphExporter, node, output):
 
 @handles("TANGENT")
 def _tangent(exporter: GraphExporter, node, output, path: Path):
-    attribute = GENERATED if node.direction_type == "RADIAL" else (node.uv_map or NO_ATTRIBUTE)
+    attribute = GENERATED if node.direction_type == "RADIAL" else TANGENT + node.uv_map
     return exporter.add("tangent", node, path, "tangent", attribute=attribute)
 
 
 @handles("NORMAL_MAP")
 def _normal_map(exporter: GraphExporter, node, output, path: Path):
-    return exporter.add("normal_map", node, path, "normal", attribute=node.uv_map or NO_ATTRIBUTE)
+    return exporter.add("normal_map", node, path, "normal", attribute=TANGENT + node.uv_map)
 
 
 @handles("BEVEL", "AMBIENT_OCCLUSION")
@@ -122,8 +122,6 @@ def _other_geometry(exporter: GraphExporter, node, output, path: Path):
 @handles("TEX_SKY")
 def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
     sky = sky_of(node)
-    if stands_in(sky):
-        exporter.warn(node, "is a Hosek-Wilkie sky, whose data RPPM does not have; a Preetham sky stands in")
     image = exporter.images.add(Image(node.name, sky_picture(sky)))
     vector = exporter.coordinates_of(node, path)
     link = exporter.graph.add("tex_environment", "color", name=node.name, image=image, vector=vector)

@@ -13,11 +13,11 @@ from .matrices import usable_matrices
 from .meshes import export_mesh
 from .particles import particle_of
 from .report import Report
+from .visibility import visibility_of
 
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
 UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
-RAY_VISIBILITY = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
 
 
 class ObjectExporter:
@@ -64,7 +64,7 @@ class ObjectExporter:
             return
         if source.type not in CONVERTED_TYPES and source.type != "MESH":
             return
-        if not self._is_seen(source):
+        if not visibility_of(source):
             return
         if source.type != "MESH":
             self._unconverted.append((source.original, matrix, self._shading(instance, source)))
@@ -78,8 +78,11 @@ class ObjectExporter:
         """What shading nodes may ask about an instance: members of scene.Instance."""
         members: dict[str, object] = {
             "color": tuple(source.color),
-            "random": (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF,
+            "random": _random(instance, source),
             "particle": particle_of(instance, self._frame),
+            "visibility": visibility_of(source),
+            "holdout": source.is_holdout,
+            "shadow_catcher": source.is_shadow_catcher,
         }
         instancer = instance.parent if instance.is_instance else None
         materials = self._material_slots(source)
@@ -118,15 +121,6 @@ class ObjectExporter:
                 continue
             source = original.evaluated_get(depsgraph)
             self._place(source, None, matrix, shading)
-
-    def _is_seen(self, source: bpy.types.Object) -> bool:
-        flags = [getattr(source, name) for name in RAY_VISIBILITY]
-        if all(flags):
-            return True
-        if not any(flags):
-            return False
-        self._report.warn(f'Object "{source.name}": its ray visibility is not rendered yet; all rays see it')
-        return True
 
     def _mesh_index(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str]) -> int | None:
         """Index of a mesh, exported now if it is new, with the named attributes; None when it has no triangles.
@@ -186,3 +180,29 @@ class ObjectExporter:
                 f'Object "{name}": {count} placements have no extent (scale 0) or are not finite and were left out; '
                 "give them a scale"
             )
+
+
+def _random(instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object) -> float:
+    """From 0 to 1: Blender's number of an instance; of an object, which has none there, Cycles' hash of its name."""
+    if instance.is_instance:
+        return (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF
+    number = 0
+    for byte in source.name.encode():
+        number = (37 * number + byte) & 0xFFFFFFFF
+    return _hashed(number) / 0xFFFFFFFF
+
+
+_MIXED = ((2, 1, 14), (0, 2, 11), (1, 0, 25), (2, 1, 16), (0, 2, 4), (1, 0, 14), (2, 1, 24))
+"""Which of three numbers is mixed with which, turned by how many bits."""
+
+
+def _hashed(number: int) -> int:
+    """The last mix of Bob Jenkins' lookup3 of a number and 0."""
+    a = b = c = (0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF
+    a = (a + number) & 0xFFFFFFFF
+    for first, second, third in _MIXED:
+        values = [a, b, c]
+        rotated = ((values[second] << third) | (values[second] >> (32 - third))) & 0xFFFFFFFF
+        values[first] = ((values[first] ^ values[second]) - rotated) & 0xFFFFFFFF
+        a, b, c = values
+    return c

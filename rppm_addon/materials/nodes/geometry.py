@@ -76,7 +76,8 @@ KINDS = {
     "bump": NodeKind(
         "normals.glsl",
         inputs={
-            "strength": (FLOAT, 1.0), "distance": (FLOAT, 1.0), "height": (FLOAT, 1.0), "normal": (VECTOR, "normal"),
+            "strength": (FLOAT, 1.0), "distance": (FLOAT, 1.0), "filter_width": (FLOAT, 0.1), "height": (FLOAT, 1.0),
+            "normal": (VECTOR, "normal"),
         },
         outputs={"normal": VECTOR},
         options={"invert": BOOLEAN},

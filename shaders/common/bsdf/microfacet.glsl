@@ -13,7 +13,7 @@ const uint LOBE_METAL = 2u;        // Schlick's Fresnel from f0 to white, tint i
 const uint LOBE_DIELECTRIC = 3u;   // reflection of a dielectric, f0 tinted
 const uint LOBE_GLASS = 4u;        // reflects and refracts, tint is of the reflectance at normal incidence
 const uint LOBE_REFRACTION = 5u;   // refracts only, without Fresnel's loss
-const uint LOBE_COATED_GLASS = 6u; // glass whose reflectance is the tint
+const uint LOBE_COATED_GLASS = 6u; // glass whose reflectance at normal incidence is the tint
 const uint LOBE_SHEEN = 7u;        // f0.xy are the coefficients of sheen_density
 const uint LOBE_VELVET = 8u;       // f0.x is sigma
 
@@ -41,7 +41,7 @@ vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); 
 // Share of what glass-like lobes reflect, grey: by it they choose between reflection and refraction.
 float reflected_share(MicrofacetLobe lobe, float cosine) {
     if (lobe.kind == LOBE_GLASS) return fresnel_dielectric(cosine, lobe.ior);
-    if (lobe.kind == LOBE_COATED_GLASS) return cosine * cosine > 1.0 - lobe.ior * lobe.ior ? clamp(largest(lobe.tint), 0.0, 0.99) : 1.0;
+    if (lobe.kind == LOBE_COATED_GLASS) return mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, dielectric_interpolation(cosine, lobe.ior));
     return lobe.kind == LOBE_REFRACTION ? 0.0 : 1.0;
 }
 
@@ -51,7 +51,7 @@ vec3 lobe_reflectance(MicrofacetLobe lobe, float cosine) {
     if (lobe.kind == LOBE_METAL) return f82_reflectance(lobe.f0, lobe.tint, cosine);
     if (lobe.kind == LOBE_DIELECTRIC) return mix(lobe.f0, vec3(1.0), dielectric_interpolation(cosine, lobe.ior));
     if (lobe.kind == LOBE_GLASS) return tinted_dielectric(cosine, lobe.ior, lobe.tint);
-    if (lobe.kind == LOBE_COATED_GLASS) return reflected_share(lobe, cosine) >= 1.0 ? vec3(1.0) : lobe.tint;
+    if (lobe.kind == LOBE_COATED_GLASS) return mix(lobe.tint, vec3(1.0), dielectric_interpolation(cosine, lobe.ior));
     if (lobe_is_sheen(lobe.kind)) return vec3(1.0);
     return vec3(0.0);
 }

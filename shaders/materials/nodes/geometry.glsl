@@ -3,23 +3,11 @@
 
 vec3 to_camera(vec3 p) { return (parameters.world_to_camera * vec4(p, 1.0)).xyz; }
 
-// How u and v of the UV map grow along the surface: d position / du, 0 where the map is degenerate.
-vec3 uv_tangent(vec2 uv0, vec2 uv1, vec2 uv2, uint triangle) {
-    vec3 v0, v1, v2;
-    triangle_points(triangle, v0, v1, v2);
-    vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
-    float determinant = d1.x * d2.y - d1.y * d2.x;
-    return ((v1 - v0) * d2.y - (v2 - v0) * d1.y) * sign(determinant);
-}
-
-// Of a UV map, or without it of the one in use.
-void corner_uvs(Surface surface, uint layer, out vec2 uv[3]) {
-    uvec2 place = attribute_place(surface, layer);
-    uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
-    TriangleAttributes own = attributes[surface.triangle];
-    uv[0] = place.y > 0u ? attribute_corner(place, local, 0u).xy : own.uv0;
-    uv[1] = place.y > 0u ? attribute_corner(place, local, 1u).xy : own.uv1;
-    uv[2] = place.y > 0u ? attribute_corner(place, local, 2u).xy : own.uv2;
+// The two directions across a surface in which Cycles takes differences.
+void differential_frame(vec3 n, out vec3 x, out vec3 y) {
+    x = n.x != n.y || n.x != n.z ? n.zxy - n.yzx : vec3(n.z - n.y, n.x + n.z, -n.y - n.x);
+    x = normalize(x);
+    y = cross(n, x);
 }
 
 void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object,
@@ -70,19 +58,10 @@ void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out 
 }
 
 void node_tangent(Surface surface, int direction_type, int axis, uint layer, out vec3 tangent) {
-    vec3 across;
-    if (direction_type == 0) {
-        vec3 at = attribute_value(surface, layer).xyz - 0.5;
-        across = axis == 0 ? vec3(0.0, -at.z, at.y) : (axis == 1 ? vec3(-at.z, 0.0, at.x) : vec3(-at.y, at.x, 0.0));
-        across = normal_to_world(surface, across);
-    } else {
-        vec2 uv[3];
-        corner_uvs(surface, layer, uv);
-        across = uv_tangent(uv[0], uv[1], uv[2], surface.triangle);
-    }
-    across -= dot(across, surface.normal) * surface.normal;
-    float size = length(across);
-    tangent = size > 1e-20 ? across / size : vec3(0.0);
+    vec3 found = attribute_value(surface, layer).xyz, at = found - 0.5;
+    if (direction_type == 0)
+        found = axis == 0 ? vec3(0.0, -at.z, at.y) : (axis == 1 ? vec3(-at.z, 0.0, at.x) : vec3(-at.y, at.x, 0.0));
+    tangent = surface_tangent(surface, found);
 }
 
 void node_object_info(Surface surface, float material_index, out vec3 location, out vec3 color, out float alpha,
@@ -142,6 +121,13 @@ void node_wireframe(Surface surface, int pixel_size, float size, out float fac) 
     triangle_points(surface.triangle, v0, v1, v2);
     float area2 = length(cross(v1 - v0, v2 - v0));
     vec3 heights = surface.barycentrics * area2 / max(vec3(length(v2 - v1), length(v2 - v0), length(v1 - v0)), vec3(1e-20));
-    float width = pixel_size != 0 ? size * parameters.pixel_size * surface.ray_length : size;
+    float width = size;
+    if (pixel_size != 0) {
+        // What a pixel covers across the viewing ray, the mean of two directions on the surface.
+        vec3 x, y;
+        differential_frame(surface.geometric, x, y);
+        vec2 along = vec2(dot(x, surface.viewer), dot(y, surface.viewer));
+        width *= parameters.pixel_size * surface.ray_length * dot(sqrt(max(1.0 - along * along, 0.0)), vec2(0.5));
+    }
     fac = min(heights.x, min(heights.y, heights.z)) < 0.5 * width ? 1.0 : 0.0;
 }

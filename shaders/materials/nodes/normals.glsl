@@ -8,24 +8,29 @@ vec3 visible_normal(Surface surface, vec3 n) {
     return seen < 1e-3 ? normalize(n + (1e-3 - seen) * surface.viewer) : n;
 }
 
+// The front's normal in object space, interpolated between unit normals of the corners, or the triangle's where that
+// is flat.
+vec3 object_normal(Surface surface) {
+    vec3 n = vec3(0.0);
+    for (int corner = 0; corner < 3; ++corner) {
+        vec3 b = vec3(corner == 0, corner == 1, corner == 2);
+        n += surface.barycentrics[corner] * normalize(normal_to_object(surface, triangle_normal(surface.triangle, b)));
+    }
+    return n;
+}
+
 void node_normal_map(Surface surface, int space, uint layer, float strength, vec3 color, out vec3 normal) {
     vec3 mapped = 2.0 * color - 1.0;
     vec3 n;
     if (space == 0) {
-        vec2 uv[3];
-        corner_uvs(surface, layer, uv);
-        vec2 uv0 = uv[0], uv1 = uv[1], uv2 = uv[2];
-        vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
-        float handedness = sign(d1.x * d2.y - d1.y * d2.x);
-        vec3 front = surface.backfacing ? -surface.normal : surface.normal;
-        vec3 tangent = uv_tangent(uv0, uv1, uv2, surface.triangle);
-        tangent -= dot(tangent, front) * front;
-        float size = length(tangent);
-        if (size < 1e-20) { normal = surface.normal; return; }
-        tangent /= size;
+        uvec2 place = attribute_place(surface, layer);
+        if (place.y < 4u) { normal = surface.normal; return; }
+        // In object space, tangent and normal interpolated without being made unit.
+        vec4 tangent = attribute_value(surface, layer);
+        vec3 front = object_normal(surface);
         mapped.xy *= strength;
         mapped.z = mix(1.0, mapped.z, clamp(strength, 0.0, 1.0));
-        n = mapped.x * tangent + mapped.y * handedness * cross(front, tangent) + mapped.z * front;
+        n = normal_to_world(surface, mapped.x * tangent.xyz + mapped.y * tangent.w * cross(front, tangent.xyz) + mapped.z * front);
     } else {
         // The Blender spaces are those of its former renderer: Y and Z are turned round.
         if (space >= 3) mapped.yz = -mapped.yz;
@@ -37,14 +42,15 @@ void node_normal_map(Surface surface, int space, uint layer, float strength, vec
     }
     float size = length(n);
     n = size > 1e-20 ? n / size : surface.normal;
-    normal = visible_normal(surface, surface.backfacing && size > 1e-20 ? -n : n);
+    normal = surface.backfacing && size > 1e-20 ? -n : n;
 }
 
-// Two ways across the surface, about as long as what a pixel sees of it.
-void bump_offsets(Surface surface, out vec3 along_x, out vec3 along_y) {
-    tangent_frame(surface.geometric, along_x, along_y);
+// Two ways across the surface, so many times as long as what a pixel sees of it.
+void bump_offsets(Surface surface, float filter_width, out vec3 along_x, out vec3 along_y) {
+    differential_frame(surface.geometric, along_x, along_y);
     float extent = max(abs(surface.position.x), max(abs(surface.position.y), abs(surface.position.z)));
-    float width = max(0.1 * parameters.pixel_size * surface.ray_length, 1e-4 * max(surface.ray_length, 0.01 * extent));
+    float width = max(filter_width * parameters.pixel_size * surface.ray_length, 1e-4 * max(surface.ray_length, 0.01 * extent));
+    if (surface.backfacing) width = -width;  // seen from behind, Cycles looks the other way
     along_x *= width;
     along_y *= width;
 }
@@ -55,12 +61,11 @@ void node_bump(Surface surface, int invert, float strength, float distance, vec3
     vec3 across_x = cross(along_y, normal_in), across_y = cross(normal_in, along_x);
     float determinant = dot(along_x, across_x);
     vec3 gradient = height_x * across_x + height_y * across_y;
-    float scale = invert != 0 ? -distance : distance;
+    float scale = (invert != 0) != surface.backfacing ? -distance : distance;
     vec3 bumped = abs(determinant) * normal_in - scale * sign(determinant) * gradient;
     float size = length(bumped);
     bumped = size > 1e-30 ? bumped / size : normal_in;
-    bumped = normalize(mix(normal_in, bumped, max(strength, 0.0)));
-    normal = visible_normal(surface, bumped);
+    normal = normalize(mix(normal_in, bumped, max(strength, 0.0)));
 }
 
 // Rounded edges would take rays of their own: the normal stays what it is.

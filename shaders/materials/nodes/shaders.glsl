@@ -47,7 +47,10 @@ void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distributio
                      float ior, vec3 normal, float thin_film_thickness, float thin_film_ior) {
     vec3 weighted = weight * max(color, 0.0);
     Microfacets at = isotropic_microfacets(builder, normal, unit(roughness));
-    add_glass(builder, at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), valid_ior(ior), distribution == 2);
+    Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
+    if (film.thickness > THINNEST_FILM)
+        add_glass_with_film(builder, at, weighted, weighted, film, valid_ior(ior));
+    else add_glass(builder, at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), valid_ior(ior), distribution == 2);
 }
 
 // GGX stands in for Beckmann's distribution.
@@ -90,7 +93,7 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
         f0 = clamp(conductor_reflectance(1.0, n, k), 0.0, 1.0);
         edge = clamp(conductor_reflectance(cosine, n, k) / mix(f0, vec3(1.0), schlick_interpolation(cosine)), 0.0, 1.0);
     }
-    add_metal(builder, at, vec3(weight), f0, edge, distribution == 2);
+    add_metal(builder, at, vec3(weight), f0, edge, Film(thin_film_thickness, max(thin_film_ior, 1e-3)), distribution == 2);
 }
 
 // A diffuse or a glossy surface stands in.
@@ -125,7 +128,7 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
         max(specular_ior_level, 0.0), max(specular_tint, 0.0), unit(anisotropic), anisotropic_rotation, tangent,
         unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0), coat_normal,
         unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0), max(emission_color * emission_strength, 0.0),
-        max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3), distribution == 1));
+        Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1));
 }
 
 // What absorbs is not seen: its coefficient takes the place of the emission.

@@ -1,0 +1,48 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A shadow ray from a catcher to one of several samples of the lights, chosen by the light that it would give:
+// how often it is free tells the share of the light that arrives (resampling, Talbot et al. 2005).
+
+layout(local_size_x = 64) in;
+
+#include <Ray>
+#include <ShadowCatcherParameters>
+#include "common/invocation.glsl"
+#include "common/random.glsl"
+#include "common/bsdf/closure.glsl"
+layout(std140, binding = 0) uniform Parameters { ShadowCatcherParameters parameters; };
+#include "emission/lights.glsl"
+layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
+layout(std430, binding = 1) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+
+const int CANDIDATES = 64;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    Ray none = Ray(vec3(0.0), NO_TRIANGLE, vec3(0.0, 0.0, 1.0), 0.0);
+    shadow_rays[index] = none;
+    Closure closure = closures[index];
+    if (!(rays[index].maximum_distance > 0.0) || !closure_hit(closure) || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u) return;
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
+    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SHADOW_CATCHER, parameters.segment, parameters.first_pixel + index);
+    float total = 0.0;
+    Ray chosen = none;
+    for (int k = 0; k < CANDIDATES; ++k) {
+        float u = next_random(random), u_part = next_random(random), u_choice = next_random(random);
+        vec2 u_place = next_random2(random);
+        Light light = lights[choose_light((float(k) + u) / float(CANDIDATES))];
+        LightSample sampled = sample_light(light, closure.position, u_part, u_place);
+        bool lights_diffuse = (light.flags & RAY_DIFFUSE) != 0u && sampled.triangle != closure.triangle;
+        float given = largest(sampled.weight) * max(dot(shading, sampled.direction), 0.0) / light.selection_probability;
+        if (!lights_diffuse || !(given > 0.0) || dot(geometric, sampled.direction) <= 0.0) continue;
+        total += given;
+        if (u_choice * total < given) {
+            vec3 origin = offset_from_surface(closure.position, geometric);
+            float reach = sampled.distance < INFINITY_DISTANCE ? sampled.distance * (1.0 - 1e-4) : INFINITY_DISTANCE;
+            chosen = Ray(origin, closure.triangle, sampled.direction, reach);
+        }
+    }
+    shadow_rays[index] = chosen;
+}

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Kinds of shader nodes have Blender's sockets, defaults and options."""
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+import numpy as np  # noqa: E402
+
+from rppm_addon.materials.node_kinds import COLOR, FLOAT, VECTOR  # noqa: E402
+from rppm_addon.materials.nodes.shaders import KINDS  # noqa: E402
+
+BL_IDNAMES = {
+    "emission": "ShaderNodeEmission",
+    "background": "ShaderNodeBackground",
+    "holdout": "ShaderNodeHoldout",
+    "subsurface_scattering": "ShaderNodeSubsurfaceScattering",
+    "bsdf_glossy": "ShaderNodeBsdfAnisotropic",
+}
+SOCKETS = {"RGBA": COLOR, "VALUE": FLOAT, "VECTOR": VECTOR}
+IMPLICIT = {"normal", "tangent"}
+ALIKE = {"bsdf_principled": {"subsurface_method"}, "subsurface_scattering": {"falloff"}}
+"""Properties that select nothing here."""
+
+
+def name_of(socket) -> str:
+    return socket.identifier.lower().replace(" ", "_")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_kinds_are_blenders(kind):
+    bl_idname = BL_IDNAMES.get(kind) or "ShaderNode" + "".join(part.title() for part in kind.split("_"))
+    material = bpy.data.materials.new(kind)
+    if material.node_tree is None:
+        material.use_nodes = True
+    node = material.node_tree.nodes.new(bl_idname)
+    sockets = {name_of(socket): socket for socket in node.inputs if socket.identifier != "Weight"}
+    assert set(KINDS[kind].inputs) == set(sockets)
+    assert [name_of(socket) for socket in node.outputs] == list(KINDS[kind].outputs)
+    for name, (socket_type, default) in KINDS[kind].inputs.items():
+        assert SOCKETS[sockets[name].type] is socket_type, name
+        if isinstance(default, str):
+            assert default in IMPLICIT
+            assert not np.any(sockets[name].default_value), name
+            continue
+        value = np.ravel(sockets[name].default_value)[: 1 if socket_type is FLOAT else 3]
+        np.testing.assert_allclose(value, np.broadcast_to(default, value.shape), atol=1e-3, err_msg=name)
+    own = set(node.bl_rna.properties.keys()) - set(bpy.types.ShaderNode.bl_rna.properties.keys())
+    assert own - set(KINDS[kind].options) <= ALIKE.get(kind, set())
+    for name, values in KINDS[kind].options.items():
+        assert set(values) == {item.identifier for item in node.bl_rna.properties[name].enum_items}, name
+    bpy.data.materials.remove(material)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Translucent, rough diffuse and held out surfaces through all stages, against closed forms."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import scenes
+from lobes import Lobe, LobeKind
+from lobes import material as lobe_material
+
+from rppm_addon.scene import (
+    Camera,
+    DirectLight,
+    Instance,
+    Light,
+    LightKind,
+    Material,
+    RenderSettings,
+    Scene,
+)
+
+MODES = DirectLight.RAYS, DirectLight.PHOTONS
+COLOR = (0.8, 0.5, 0.3)
+
+
+def material(kind: LobeKind, **parameters) -> Material:
+    return lobe_material(kind.name, Lobe(kind, **parameters))
+
+
+def square(name: str, half: float, z: float):
+    return scenes.rectangle(name, (-half, -half, z), (half, -half, z), (half, half, z), (-half, half, z))
+
+
+def under_a_sun(surface: Material, sun_from: tuple[float, float, float], mode: DirectLight, **settings) -> Scene:
+    """A sheet seen from straight above, with a sun of 3 W/m^2 (on a plane that faces it)."""
+    sheet = square("sheet", 2.0, 0.0)
+    sun = Light("sun", LightKind.SUN, scenes.looking(sun_from, (0, 0, 0)), np.full(3, 3.0))
+    camera = Camera(scenes.looking((0, 0, 3), (0, 0, 0)), (-0.1, 0.1, -0.1, 0.1), 16, 16)
+    fixed = {
+        "iterations": 16, "photons": 16384, "direct_light": mode, "photon_path_length": 2, "camera_path_length": 2,
+        "radius_minimum": 0.1, "radius_maximum": 0.1, "filter_width": 0.0,
+    }  # fmt: skip
+    return Scene(
+        camera, [sheet], [Instance(0, np.eye(4), [0])], [surface], [sun], settings=RenderSettings(**fixed | settings)
+    )
+
+
+def mean(renderer, scene: Scene) -> np.ndarray:
+    return renderer.render(scene).frame.combined[..., :3].mean(axis=(0, 1), dtype=np.float64)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("side", [1, -1])
+def test_translucent_sheets_shine_on_the_other_side(renderer, mode, side):
+    """albedo E cos / pi on the side that the light does not come from, nothing on its own."""
+    scene = under_a_sun(material(LobeKind.TRANSLUCENT, color=COLOR), (0.6, 0.0, 0.8 * side), mode)
+    seen = mean(renderer, scene)
+    expected = np.array(COLOR) * 3.0 * 0.8 / np.pi if side < 0 else np.zeros(3)
+    print(f"{mode.name} side {side}: {seen} expected {expected}")
+    np.testing.assert_allclose(seen, expected, rtol=1e-4 if mode is DirectLight.RAYS else 0.02, atol=1e-9)
+
+
+def oren_nayar(color: np.ndarray, sigma: float, nv: float, nl: float, vl: float) -> np.ndarray:
+    """Fujii's improved Oren-Nayar BSDF with Cycles' compensation, 1/sr."""
+    a = 1 / (np.pi + (np.pi / 2 - 2 / 3) * sigma)
+    b = a * sigma
+
+    def albedo(cosine: float) -> float:
+        sine = np.sqrt(1 - cosine**2)
+        rise = sine * (np.arccos(cosine) - 2 / 3 - sine * cosine) + 2 / 3 * sine / cosine * (1 - sine**3)
+        return a * np.pi + b * rise
+
+    t = vl - nl * nv
+    single = a + b * (t / max(nl, nv) if t > 0 else t)
+    average = a * np.pi + (2 * np.pi - 5.6) / 3 * b
+    multiple = color**2 / np.pi * (1 - albedo(nv)) * (1 - albedo(nl)) * average / (1 - average)
+    return color * (single + multiple / (1 - color * (1 - average)))
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("sun_from", [(0.6, 0.0, 0.8), (0.9539392, 0.0, 0.3)])
+def test_rough_diffuse_surfaces(renderer, mode, sun_from):
+    scene = under_a_sun(material(LobeKind.DIFFUSE, color=COLOR, roughness=1.0), sun_from, mode)
+    seen, cosine = mean(renderer, scene), sun_from[2]
+    expected = oren_nayar(np.array(COLOR), 1.0, 1.0, cosine, cosine) * 3.0 * cosine
+    print(f"{mode.name} {sun_from}: {seen} expected {expected}")
+    np.testing.assert_allclose(seen, expected, rtol=3e-3 if mode is DirectLight.RAYS else 0.02)
+
+
+def divided_furnace(mode: DirectLight, seed: int, final_gather: bool) -> Scene:
+    """A cube that emits radiance 1 and has albedo 0.6, and a sheet across it that shares its albedo between reflecting
+    and letting through, which the camera looks at."""
+    glow = Lobe(LobeKind.EMISSION)
+    walls = lobe_material("walls", Lobe(LobeKind.DIFFUSE, color=(0.6,) * 3), glow)
+    sheet = lobe_material(
+        "sheet", Lobe(LobeKind.DIFFUSE, color=(0.2,) * 3), Lobe(LobeKind.TRANSLUCENT, color=(0.4,) * 3), glow
+    )
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    meshes = [
+        scenes.polygons("cube", corners, faces),
+        scenes.rectangle("sheet", (-1, 0.2, -1), (1, 0.2, -1), (1, 0.2, 1), (-1, 0.2, 1)),
+    ]
+    settings = RenderSettings(
+        iterations=6, photons=16384, direct_light=mode, photon_path_length=14, camera_path_length=3, seed=seed,
+        filter_width=0.0, final_gather=final_gather, radius_minimum=0.1, radius_maximum=0.1,
+    )  # fmt: skip
+    camera = Camera(scenes.looking((0, -0.8, 0), (0, 1, 0)), (-0.5, 0.5, -0.5, 0.5), 16, 16)
+    instances = [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])]
+    return Scene(camera, meshes, instances, [walls, sheet], settings=settings)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("final_gather", [True, False])
+def test_a_furnace_with_a_translucent_sheet(renderer, mode, final_gather):
+    """L = Le / (1 - albedo) wherever one looks, as if the sheet were not there."""
+    seen = [mean(renderer, divided_furnace(mode, seed, final_gather))[0] for seed in range(4)]
+    error = np.std(seen, ddof=1) / 2
+    print(f"{mode.name} gather {final_gather}: {np.mean(seen):.4f} +- {error:.4f} expected 2.5")
+    assert error < 0.02
+    assert abs(np.mean(seen) - 2.5) < 4 * error + 0.01
+
+
+@pytest.mark.parametrize("film_transparent", [True, False])
+def test_holdouts_cut_the_picture(renderer, film_transparent):
+    """Alpha falls by the holdout's weight; what is left of the surface shines on."""
+    scene = under_a_sun(material(LobeKind.DIFFUSE, color=COLOR), (0, 0, 1), DirectLight.RAYS, iterations=2)
+    whole = renderer.render(scene).frame.combined.astype(np.float64)
+    held = lobe_material("held", Lobe(LobeKind.HOLDOUT, weight=0.75), Lobe(LobeKind.DIFFUSE, weight=0.25, color=COLOR))
+    settings = dataclasses.replace(scene.settings, film_transparent=film_transparent)
+    cut = renderer.render(dataclasses.replace(scene, materials=[held], settings=settings)).frame.combined
+    np.testing.assert_allclose(whole[..., 3], 1.0)
+    np.testing.assert_allclose(cut[..., 3], 0.25, atol=1e-4)
+    np.testing.assert_allclose(cut[..., :3].mean((0, 1)), 0.25 * whole[..., :3].mean((0, 1)), rtol=1e-4)

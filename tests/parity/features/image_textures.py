@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Image textures: projection, extension, interpolation, colour space, alpha, depth, and their use."""
+
+import atexit
+import shutil
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import bpy
+import numpy as np
+import OpenEXR
+from PIL import Image
+
+from .coordinates import second_uv
+from .rows import lit, value
+
+GROUP = "Image Texture"
+
+
+@cache
+def _folder() -> Path:
+    folder = Path(tempfile.mkdtemp(prefix="rppm_parity_"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def _pixels(width: int, height: int, seed: int) -> np.ndarray:
+    """(H, W, 4) random colours from 0 to 1, alpha from 0.2 to 1."""
+    pixels = np.random.default_rng(seed).random((height, width, 4))
+    pixels[..., 3] = 0.2 + 0.8 * pixels[..., 3]
+    return pixels
+
+
+@cache
+def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
+    """A small picture file: png, opaque (png without alpha), grey (png), deep (png with 16 bits), exr."""
+    path = _folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
+    pixels = _pixels(width, height, 5)
+    if kind == "exr":
+        planes = {c: np.float32(3.0 * pixels[..., k]) for k, c in enumerate("RGB")}
+        header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+        OpenEXR.File(header, planes).write(str(path))
+    elif kind == "deep":
+        grey = np.uint16(65535 * pixels[..., 0])
+        Image.fromarray(grey).save(path)
+    else:
+        shown = np.uint8(np.round(255 * pixels))
+        shown = {"png": shown, "opaque": shown[..., :3], "grey": shown[..., 0]}[kind]
+        Image.fromarray(shown).save(path)
+    return str(path)
+
+
+def image(kind: str = "png", space: str | None = None, alpha: str | None = None) -> bpy.types.Image:
+    """The file as an image of Blender."""
+    loaded = bpy.data.images.load(picture(kind))
+    if space is not None:
+        loaded.colorspace_settings.name = space
+    if alpha is not None:
+        loaded.alpha_mode = alpha
+    return loaded
+
+
+def texture(output="Color", inputs=None, kind="png", space=None, alpha=None, mapping=None, **properties):
+    """Gives an output of an image texture; ``mapping`` = coordinates and scale, by default UV."""
+
+    def give(net):
+        chosen = dict(inputs or {})
+        if mapping is not None:
+            coordinates, location, scale = mapping
+            chosen["Vector"] = net.out(
+                "Mapping", inputs={"Vector": net.out("TexCoord", coordinates), "Location": (location,) * 3,
+                                   "Scale": (scale,) * 3, "Rotation": (0.3, -0.2, 0.5)},
+            )  # fmt: skip
+        return net.out("TexImage", output, chosen, image=image(kind, space, alpha), **properties)
+
+    return give
+
+
+BEYOND = ("UV", -0.7, 3.0)
+value(GROUP, "as it comes", texture())
+for _interpolation in ("Linear", "Closest", "Cubic", "Smart"):
+    value(GROUP, f"interpolation {_interpolation}", texture(interpolation=_interpolation, kind="opaque"))
+for _extension in ("REPEAT", "EXTEND", "CLIP", "MIRROR"):
+    for _interpolation in ("Linear", "Closest"):
+        value(GROUP, f"extension {_extension}, {_interpolation}",
+              texture(extension=_extension, interpolation=_interpolation, mapping=BEYOND))  # fmt: skip
+value(GROUP, "extension CLIP, alpha", texture("Alpha", extension="CLIP", mapping=BEYOND))
+value(GROUP, "extension MIRROR, Cubic", texture(extension="MIRROR", interpolation="Cubic", mapping=BEYOND))
+for _projection in ("BOX", "SPHERE", "TUBE"):
+    for _coordinates in ("Generated", "Object"):
+        value(GROUP, f"projection {_projection}, {_coordinates}",
+              texture(projection=_projection, mapping=(_coordinates, 0.1, 0.8)))  # fmt: skip
+for _blend in (0.2, 1.0):
+    value(GROUP, f"projection BOX, blend {_blend}",
+          texture(projection="BOX", projection_blend=_blend, mapping=("Object", 0.1, 0.8)))  # fmt: skip
+for _space in ("sRGB", "Non-Color", "Linear Rec.709", "Raw"):
+    value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"))
+value(GROUP, "colour space ACEScg", texture(space="ACEScg", kind="opaque"))
+for _space in ("Linear Rec.709", "Non-Color"):
+    value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3)
+value(GROUP, "16 bits, grey", texture(kind="deep"))
+value(GROUP, "8 bits, grey", texture(kind="grey"))
+for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"):
+    value(GROUP, f"alpha {_alpha}, colour", texture(alpha=_alpha))
+    value(GROUP, f"alpha {_alpha}, alpha", texture("Alpha", alpha=_alpha))
+
+
+def _color_over_alpha(alpha):
+    def give(net):
+        node = net.node("TexImage", image=image("png", None, alpha))
+        return net.out("MixRGB", inputs={0: node.outputs["Alpha"], 1: (0.9, 0.1, 0.1), 2: node.outputs["Color"]})
+
+    return give
+
+
+for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED"):
+    value(GROUP, f"alpha {_alpha}, both outputs", _color_over_alpha(_alpha))
+value(GROUP, "in a second UV map",
+      lambda net: texture(inputs={"Vector": net.out("UVMap", uv_map="Second")})(net), prepare=second_uv)  # fmt: skip
+value(GROUP, "without an image", lambda net: net.out("TexImage"), warns=True)
+
+
+def _generated_image(net):
+    made = bpy.data.images.new("Painted", 8, 8)
+    made.pixels.foreach_set(_pixels(8, 8, 9).astype(np.float32).ravel())
+    made.update()
+    return net.out("TexImage", image=made)
+
+
+def _packed_image(net):
+    made = image("opaque")
+    made.pack()
+    return net.out("TexImage", image=made)
+
+
+value(GROUP, "painted in Blender", _generated_image)
+value(GROUP, "packed", _packed_image)
+
+
+def _tiles(net):
+    folder = _folder()
+    for number, seed in ((1001, 1), (1002, 2), (1011, 3)):
+        Image.fromarray(np.uint8(255 * _pixels(8, 8, seed)[..., :3])).save(folder / f"tiled.{number}.png")
+    made = bpy.data.images.load(str(folder / "tiled.1001.png"))
+    made.source = "TILED"
+    made.filepath = str(folder / "tiled.<UDIM>.png")
+    for number in (1002, 1011):
+        if number not in {tile.number for tile in made.tiles}:
+            made.tiles.new(number)
+    made.reload()
+    where = net.out("Mapping", inputs={"Vector": net.out("TexCoord", "UV"), "Scale": (2.0, 2.0, 1.0)})
+    return net.out("TexImage", inputs={"Vector": where}, image=made)
+
+
+value(GROUP, "UDIM tiles", _tiles)
+
+
+def _image_bump(net):
+    height = texture(kind="grey", interpolation="Cubic")(net)
+    return net.out("Bump", inputs={"Height": height, "Distance": 0.1})
+
+
+value("Bump", "image", _image_bump, 0.5, 0.5)
+value("Bump", "image, linear",
+      lambda net: net.out("Bump", inputs={"Height": texture(kind="grey")(net), "Distance": 0.05}), 0.5, 0.5)  # fmt: skip
+value("Normal Map", "image",
+      lambda net: net.out("NormalMap", inputs={"Color": texture(space="Non-Color", kind="opaque")(net)}),
+      0.5, 0.5)  # fmt: skip

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far RPPM and Cycles differ in a row."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from rppm_addon.blender.export import export_scene
+from rppm_addon.session.renderer import Renderer
+
+from ..comparison import _squared_error, block_means
+from ..scenes import render_cycles
+from .flip import flip
+from .rows import Kind, Row
+
+SEEDS, CYCLES_SEEDS = 4, 3
+LIGHT = {
+    "iterations": 8, "photons": 4096, "camera_path_length": 5, "photon_path_length": 5,
+}  # fmt: skip
+VALUES = {
+    "iterations": 1, "photons": 64, "camera_path_length": 1, "photon_path_length": 1, "filter_width": 0.0,
+    "final_gather": False,
+}  # fmt: skip
+SAMPLES = 64
+WRONG = 0.002
+"""Of white: a pixel of values that differs more is wrong."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Differences as shares of Cycles' radiance."""
+
+    mean: float
+    """Of light: of the mean, in the channel where it is largest. Of values: mean absolute difference."""
+    mean_error: float
+    """Standard error of the mean's difference, from seeds."""
+    block: float
+    """Of the mean over 8 x 8 pixels, in the block where it is largest beyond four standard errors."""
+    block_excess: float
+    """What of that is beyond four standard errors."""
+    flip: float
+    """Mean FLIP of the pictures, noise included."""
+    flip_noise: float
+    """Mean FLIP of Cycles' pictures of two seeds, 0 for values."""
+    wrong: float
+    """Of values: the share of pixels that differ visibly."""
+    rppm: np.ndarray
+    cycles: np.ndarray
+    """(H, W, 3) the means over the seeds, row 0 at the bottom."""
+    warnings: tuple[str, ...]
+
+
+def encoded(picture: np.ndarray, white: float) -> np.ndarray:
+    """Linear radiance as sRGB, white at 1."""
+    linear = np.clip(picture / white, 0.0, 1.0)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def white_of(reference: np.ndarray) -> float:
+    """The radiance that is shown as white."""
+    return float(np.percentile(reference, 99)) or 1.0
+
+
+def measure(row: Row, renderer: Renderer) -> Measurement:
+    """Build the row's scene, render it with both engines and compare."""
+    row.build()
+    values = row.kind is Kind.VALUES
+    cycles = bpy.context.scene.cycles
+    if values:
+        cycles.pixel_filter_type, cycles.filter_width = "BOX", 0.01
+    scene = export_scene(bpy.context.evaluated_depsgraph_get())
+    pictures = []
+    for seed in range(1 if values else SEEDS):
+        scene.settings = scene.settings.with_values(**(VALUES if values else LIGHT) | row.settings | {"seed": seed})
+        pictures.append(renderer.render(scene).frame.combined[..., :3].astype(np.float64))
+    reference = render_cycles(1, 1) if values else render_cycles(SAMPLES, CYCLES_SEEDS)
+    return compared(np.array(pictures), reference, values, tuple(scene.warnings))
+
+
+def compared(rppm: np.ndarray, cycles: np.ndarray, values: bool, warnings: tuple[str, ...] = ()) -> Measurement:
+    """Figures of pictures (seeds, H, W, 3)."""
+    ours, reference = rppm.mean(axis=0), cycles.mean(axis=0)
+    level, white = max(reference.mean(), 1e-9), white_of(reference)
+    a, b = block_means(rppm), block_means(cycles)
+    difference = np.abs(a.mean(axis=0) - b.mean(axis=0))
+    squared_error = _squared_error(a) + _squared_error(b)
+    blocks = np.maximum(b.mean(axis=0), 0.1 * level)
+    excess = (difference - 4.0 * np.sqrt(squared_error)) / blocks
+    worst = np.unravel_index(np.argmax(excess), excess.shape)
+    channels = reference.mean(axis=(0, 1))
+    if values:
+        mean = np.abs(ours - reference).mean() / level
+    else:
+        # A channel that is nearly black is judged by the picture.
+        by_channel = np.abs(ours.mean(axis=(0, 1)) - channels) / np.maximum(channels, 0.2 * level)
+        mean = by_channel.max()
+    shown = [encoded(picture, white) for picture in (reference, ours)]
+    noise = 0.0
+    if len(cycles) > 1:
+        noise = float(flip(encoded(cycles[0], white), encoded(cycles[1], white)).mean())
+    return Measurement(
+        mean=float(mean),
+        mean_error=float(np.sqrt(squared_error.sum()) / squared_error.size / level),
+        block=float(difference[worst] / blocks[worst]),
+        block_excess=float(max(excess[worst], 0.0)),
+        flip=float(flip(*shown).mean()),
+        flip_noise=noise,
+        wrong=float((np.abs(ours - reference).max(axis=-1) > WRONG * np.maximum(reference.max(axis=-1), white)).mean()),
+        rppm=ours,
+        cycles=reference,
+        warnings=warnings,
+    )
+
+
+MOST_WRONG = 0.005
+"""Share of the pixels of values that may differ: those where an edge runs through the centre."""
+
+
+def shortcomings(row: Row, found: Measurement) -> list[str]:
+    """What of a row is not as it should be, empty when it is."""
+    wrong = []
+    if row.kind is Kind.VALUES and not row.reason:
+        if found.wrong > MOST_WRONG:
+            wrong.append(f"{found.wrong:.2%} of the pixels differ")
+    if found.mean_error > 0.004:
+        wrong.append(f"the mean is too noisy to tell: {found.mean_error:.2%}")
+    if found.mean > row.mean + 2.5 * found.mean_error:
+        wrong.append(f"the mean differs by {found.mean:.2%} +- {found.mean_error:.2%}")
+    if found.block_excess > row.block and (row.kind is Kind.LIGHT or row.reason):
+        wrong.append(f"a block differs by {found.block:.2%}, {found.block_excess:.2%} beyond its noise")
+    if bool(found.warnings) != row.warns:
+        wrong.append(f"warnings: {found.warnings}")
+    return wrong

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Node trees in few words."""
+
+import bpy
+
+
+class Net:
+    """A node tree under construction."""
+
+    def __init__(self, tree: bpy.types.NodeTree) -> None:
+        self.tree = tree
+
+    def node(self, kind: str, /, inputs: dict | None = None, **properties: object) -> bpy.types.Node:
+        """A node by its bl_idname without "ShaderNode"; inputs by name, identifier or place: values or sockets."""
+        made = self.tree.nodes.new(f"ShaderNode{kind}")
+        for name, value in properties.items():
+            setattr(made, name, value)
+        for name, value in (inputs or {}).items():
+            self.set(_socket(made.inputs, name), value)
+        return made
+
+    def out(self, kind: str, output: str | int = 0, /, inputs: dict | None = None, **properties: object):
+        """An output of a new node."""
+        return _socket(self.node(kind, inputs, **properties).outputs, output)
+
+    def set(self, socket: bpy.types.NodeSocket, value: object) -> None:
+        """Link an output to an input, or store a value in it."""
+        if isinstance(value, bpy.types.NodeSocket):
+            self.tree.links.new(value, socket)
+        elif socket.type == "RGBA":
+            value = (value,) * 3 if isinstance(value, int | float) else tuple(value)
+            socket.default_value = (*value, 1.0)[:4]
+        else:
+            socket.default_value = value
+
+    def scaled(self, value: bpy.types.NodeSocket, scale: float, offset: float) -> bpy.types.NodeSocket:
+        """value * scale + offset, component by component."""
+        return self.out("VectorMath", inputs={0: value, 1: (scale,) * 3, 2: (offset,) * 3}, operation="MULTIPLY_ADD")
+
+    def emission(self, color: object, strength: object = 1.0) -> bpy.types.NodeSocket:
+        return self.out("Emission", inputs={"Color": color, "Strength": strength})
+
+    def output(self, surface: bpy.types.NodeSocket | None = None, **inputs: bpy.types.NodeSocket) -> None:
+        """The Material Output; further inputs by name."""
+        sockets = inputs | ({} if surface is None else {"Surface": surface})
+        self.node("OutputMaterial", inputs=sockets)
+
+
+def _socket(sockets, name: str | int):
+    if isinstance(name, int):
+        return sockets[name]
+    enabled = [socket for socket in sockets if socket.enabled]
+    return next(s for s in (*enabled, *sockets) if name in (s.name, s.identifier))
+
+
+def material(name: str = "Feature") -> tuple[bpy.types.Material, Net]:
+    """A material without nodes."""
+    made = bpy.data.materials.new(name)
+    if made.node_tree is None:
+        made.use_nodes = True
+    made.node_tree.nodes.clear()
+    return made, Net(made.node_tree)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sets that features are shown on."""
+
+import bmesh
+import bpy
+
+from ..scenes import camera, light, new_scene, place
+
+BALL = {"at": (0.1, 0.0, 0.95), "turn": (25.0, -15.0, 40.0), "scale": (1.0, 0.85, 1.1)}
+GROUND = {"at": (0.0, 0.2, 0.0), "turn": (0.0, 0.0, 20.0), "scale": (1.0, 1.3, 1.0)}
+
+
+def mesh_object(mesh: bmesh.types.BMesh, name: str, surface: bpy.types.Material | None, where: dict):
+    """An object of a mesh, which is freed."""
+    data = bpy.data.meshes.new(name)
+    mesh.to_mesh(data)
+    mesh.free()
+    if surface is not None:
+        data.materials.append(surface)
+    made = bpy.data.objects.new(name, data)
+    bpy.context.scene.collection.objects.link(made)
+    made.matrix_world = place(**where)
+    return made
+
+
+def ball(surface: bpy.types.Material | None, where: dict = BALL, segments: int = 32) -> bpy.types.Object:
+    """A smooth sphere of radius 0.9 with a UV map."""
+    mesh = bmesh.new()
+    mesh.loops.layers.uv.new("UVMap")
+    bmesh.ops.create_uvsphere(mesh, u_segments=segments, v_segments=segments // 2, radius=0.9, calc_uvs=True)
+    made = mesh_object(mesh, "Ball", surface, where)
+    made.data.shade_smooth()
+    return made
+
+
+def ground(surface: bpy.types.Material | None, half: float = 2.2, where: dict = GROUND) -> bpy.types.Object:
+    """A square of 2 x 2 faces with a UV map."""
+    mesh = bmesh.new()
+    mesh.loops.layers.uv.new("UVMap")
+    bmesh.ops.create_grid(mesh, x_segments=2, y_segments=2, size=half, calc_uvs=True)
+    return mesh_object(mesh, "Ground", surface, where)
+
+
+def set_up(surface: bpy.types.Material | None, world: float = 0.0, ground_surface: bpy.types.Material | None = None):
+    """A ball on the ground before the camera, of the same material unless the ground's is given. An empty scene must
+    be there (empty)."""
+    made = ball(surface), ground(ground_surface or surface)
+    camera((0.4, -4.6, 2.3), (0.1, 0.0, 0.62), 34.0)
+    background().inputs["Strength"].default_value = world
+    return made
+
+
+def empty() -> None:
+    """A new scene with a black world."""
+    new_scene()
+
+
+def background() -> bpy.types.Node:
+    """The world's Background node."""
+    return next(n for n in bpy.context.scene.world.node_tree.nodes if n.type == "BACKGROUND")
+
+
+def lamp() -> bpy.types.Object:
+    """The area light that lights what is lit."""
+    return light("AREA", 90.0, place(at=(1.6, -1.6, 3.0), turn=(35.0, 25.0, 0.0)), shape="SQUARE", size=1.4)
