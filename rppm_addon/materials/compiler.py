@@ -265,8 +265,7 @@ class _Compiler:
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
         scope.lines += [
             f"vec3 {value};",
-            "{ vec3 along_x, along_y, heights = vec3(0.0);",
-            f"  bump_offsets(surface, {width}, along_x, along_y);",
+            f"{{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, {width}, along_x, along_y);",
             # A loop, so that drivers need not compile the height three times.
             "  for (int k = 0; k < 3; ++k) {",
             "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",

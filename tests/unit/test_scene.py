@@ -31,6 +31,7 @@ from rppm_addon.scene import (
     save_scene,
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
+from rppm_addon.scene.meshes import RayVisibility
 
 
 def graph_of_everything() -> NodeGraph:
@@ -62,7 +63,7 @@ def full_scene() -> Scene:
         camera=Camera(np.eye(4), (-1, 1, -0.5, 0.5), 64, 32, True, 0.2, 50.0, (1, 2, 30, 31)),
         meshes=[mesh, bare],
         instances=[
-            Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3),
+            Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3, visibility=RayVisibility(5)),
             Instance(
                 1, np.eye(4), particle=Particle(index=2.0, velocity=(1.0, 2.0, 3.0)), attributes={"a": (1.0, 2.0)}
             ),
