@@ -35,7 +35,7 @@ class ShadowCatcher:
     def run(
         self, stages: Stages, importons: Importons, count: int, first_pixel: int, iteration: int, segment: int
     ) -> None:
-        """Fill ``lit`` for the resolved vertices of ``count`` camera paths. To be called before the paths scatter on."""
+        """Fill ``lit`` for the resolved vertices of ``count`` camera paths, before they scatter on."""
         stages.emission.environment.use()
         self._program.run(
             count,
