@@ -79,7 +79,7 @@ class Resolve:
             "world_to_camera": np.linalg.inv(camera.matrix),
             "window": camera.window,
             "orthographic": camera.orthographic,
-            "pixel_size": (camera.window[1] - camera.window[0]) / camera.width,
+            "pixel_size": camera.pixel_size,
             "seed": scene.settings.seed,
             "attribute_count": self._surface_attributes.count,
             "camera_stride": CAMERA_PATH.size // 4,
