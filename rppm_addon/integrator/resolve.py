@@ -79,7 +79,7 @@ class Resolve:
             "world_to_camera": np.linalg.inv(camera.matrix),
             "window": camera.window,
             "orthographic": camera.orthographic,
-            "pixel_size": (camera.window[1] - camera.window[0]) / camera.width,
+            "pixel_size": camera.pixel_size,
             "seed": scene.settings.seed,
             "attribute_count": self._surface_attributes.count,
             "camera_stride": CAMERA_PATH.size // 4,
@@ -110,7 +110,7 @@ class Resolve:
     ) -> None:
         """Fill ``count`` closures; inactive rays and misses give closures without a triangle.
 
-        The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen.
+        The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays are of no kind.
         """
         self._order.require(4 * (_RANGE_SIZE * len(self._programs) + count))
         buffers = {

@@ -40,6 +40,13 @@ class Panorama:
     polynomial: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
     """k0 to k4: minus the angle off the axis, radians, by powers of millimetres (FISHEYE_LENS_POLYNOMIAL)."""
 
+    @property
+    def angle(self) -> float:
+        """Radians across the frame."""
+        if self.kind in {PanoramaKind.EQUIRECTANGULAR, PanoramaKind.CENTRAL_CYLINDRICAL}:
+            return self.longitude[1] - self.longitude[0]
+        return 2.0 * math.pi if self.kind is PanoramaKind.MIRRORBALL else self.field_of_view
+
 
 @dataclass
 class Aperture:
@@ -82,6 +89,14 @@ class Camera:
     """None is a perspective or orthographic camera."""
     aperture: Aperture | None = None
     """None is a pinhole: everything is in focus."""
+
+    @property
+    def pixel_size(self) -> float:
+        """Of a pixel's width: metres (orthographic) or radians; of projections that stretch, the mean."""
+        across = self.window[1] - self.window[0]
+        if self.panorama is not None:
+            across *= self.panorama.angle
+        return across / self.width
 
     @property
     def region(self) -> tuple[int, int, int, int]:

@@ -99,14 +99,15 @@ def test_object_slots_win_over_those_of_the_mesh(scene):
     assert len(exported.meshes) == 1 and len(exported.materials) == 3
 
 
-def test_no_material_is_grey_diffuse(scene):
+def test_no_material_is_the_principled_surface_of_a_new_one(scene):
     add_mesh(scene, "None")
     empty_slot = add_mesh(scene, "EmptySlot")
     empty_slot.data.materials.append(None)
     exported = export(scene)
     (material,) = exported.materials
     ((shader, weight),) = shaders(material.graph)
-    assert shader.kind == "bsdf_diffuse" and shader.inputs["color"] == (0.8, 0.8, 0.8) and weight == 1.0
+    assert shader.kind == "bsdf_principled" and shader.options == {"distribution": "MULTI_GGX"}
+    assert not shader.inputs and weight == 1.0
     assert [instance.materials for instance in exported.instances] == [[0], [0]]
 
 

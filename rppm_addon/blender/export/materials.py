@@ -11,10 +11,6 @@ from .images import ImageTable
 from .links import Path, node_tree
 from .report import Report
 
-DEFAULT_COLOR = (0.8, 0.8, 0.8)
-"""What Blender shows where a face has no material."""
-
-
 class MaterialTable:
     """The materials of a scene under export, each exported once."""
 
@@ -27,18 +23,25 @@ class MaterialTable:
         self._indices: dict[int, int] = {}
 
     def index(self, material: bpy.types.Material | None) -> int:
-        """Index of a material, exported now if it is new; None is Blender's grey."""
+        """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
         # Not session_uid: Blender gives evaluated copies none.
         key = 0 if material is None else material.as_pointer()
         if key not in self._indices:
             if material is None:
-                exported = Material("Default", plain_surface(DEFAULT_COLOR))
+                exported = Material("Default", default_surface())
             else:
                 exported = export_material(material, self._report, self._images)
             self._indices[key] = len(self.materials)
             self.materials.append(exported)
             self.attributes.append({node.attribute for node in exported.graph.nodes} - {"", NO_ATTRIBUTE})
         return self._indices[key]
+
+
+def default_surface() -> NodeGraph:
+    """A Principled surface whose sockets are untouched."""
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_principled", "bsdf", options={"distribution": "MULTI_GGX"})
+    return graph
 
 
 def plain_surface(color: tuple[float, float, float]) -> NodeGraph:

@@ -10,6 +10,11 @@ void differential_frame(vec3 n, out vec3 x, out vec3 y) {
     y = cross(n, x);
 }
 
+// Metres across what a pixel sees of a place that faces it.
+float pixel_width(Surface surface) {
+    return parameters.pixel_size * (parameters.orthographic != 0u ? 1.0 : surface.ray_length);
+}
+
 void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object,
                     out vec3 camera, out vec3 window, out vec3 reflection) {
     bool world = surface.triangle == NO_TRIANGLE;
@@ -127,7 +132,7 @@ void node_wireframe(Surface surface, int pixel_size, float size, out float fac) 
         vec3 x, y;
         differential_frame(surface.geometric, x, y);
         vec2 along = vec2(dot(x, surface.viewer), dot(y, surface.viewer));
-        width *= parameters.pixel_size * surface.ray_length * dot(sqrt(max(1.0 - along * along, 0.0)), vec2(0.5));
+        width *= pixel_width(surface) * dot(sqrt(max(1.0 - along * along, 0.0)), vec2(0.5));
     }
     fac = min(heights.x, min(heights.y, heights.z)) < 0.5 * width ? 1.0 : 0.0;
 }

@@ -49,7 +49,7 @@ void node_normal_map(Surface surface, int space, uint layer, float strength, vec
 void bump_offsets(Surface surface, float filter_width, out vec3 along_x, out vec3 along_y) {
     differential_frame(surface.geometric, along_x, along_y);
     float extent = max(abs(surface.position.x), max(abs(surface.position.y), abs(surface.position.z)));
-    float width = max(filter_width * parameters.pixel_size * surface.ray_length, 1e-4 * max(surface.ray_length, 0.01 * extent));
+    float width = max(filter_width * pixel_width(surface), 1e-4 * max(surface.ray_length, 0.01 * extent));
     if (surface.backfacing) width = -width;  // seen from behind, Cycles looks the other way
     along_x *= width;
     along_y *= width;

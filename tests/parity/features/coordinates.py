@@ -3,6 +3,7 @@
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from ..scenes import place
 from .rows import value
@@ -206,6 +207,19 @@ value("Bump", "inverted, strength 0.6", _bump({"Distance": 0.3, "Strength": 0.6}
 value("Bump", "filter width 1", _bump({"Distance": 0.3, "Filter Width": 1.0}), 0.5, 0.5)
 value("Bump", "no height", lambda net: net.out("Bump"), 0.5, 0.5)
 value("Bump", "seen from behind", _bump({"Distance": 0.3}), 0.5, 0.5, prepare=_turned)
+
+
+def _far_and_parallel() -> None:
+    """What a pixel sees does not grow with the distance."""
+    camera = bpy.context.scene.camera
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 3.0
+    camera.data.clip_end = 1000.0
+    camera.matrix_world = camera.matrix_world @ Matrix.Translation((0.0, 0.0, 30.0))
+
+
+value("Bump", "orthographic camera", _bump({"Distance": 0.3, "Filter Width": 1.0}), 0.5, 0.5, _far_and_parallel)
+value("Wireframe", "pixels, orthographic camera", lambda net: net.out("Wireframe", inputs={"Size": 3.0},
+      use_pixel_size=True), prepare=_far_and_parallel)  # fmt: skip
 
 
 def _bump_on_map(net):

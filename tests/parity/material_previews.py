@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures of materials from .blend files, RPPM beside Cycles: ``python -m tests.parity.material_previews FOLDER OUT``.
+
+FOLDER holds .blend files with materials; OUT gets the sheets sheet_01.png, ... and table.txt. As many materials as
+--count says are drawn at random, always the same ones for a --seed, and put on monkeys with texture coordinates over
+a checkered floor, under an area light and a grey world, ten in a picture. Each sheet has RPPM's row of pictures above
+Cycles'. The table says for each material RPPM's mean over Cycles' by channel, the difference of 8x8 blocks as a
+share of Cycles' mean, and the warnings. --names renders the materials of those names only (with commas between them).
+"""
+
+import argparse
+import random
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import bpy
+import numpy as np
+from PIL import Image, ImageDraw
+
+from rppm_addon.blender.export import export_scene
+from rppm_addon.session.renderer import Renderer
+
+from .comparison import block_means
+from .scenes import camera, light, new_scene, place, render_cycles
+
+COLUMNS, ROWS = 5, 2
+CELL = 64
+SPACING = 3.2
+LABEL = 12
+
+
+@dataclass
+class Preview:
+    """A material in both engines' pictures: (CELL, CELL, 3), row 0 at the bottom."""
+
+    file: str
+    name: str
+    rppm: np.ndarray = None
+    cycles: np.ndarray = None
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def ratio(self) -> np.ndarray:
+        return self.rppm.mean(axis=(0, 1)) / self.cycles.mean(axis=(0, 1))
+
+    @property
+    def difference(self) -> float:
+        return float(np.abs(block_means(self.rppm) - block_means(self.cycles)).mean() / self.cycles.mean())
+
+
+def chosen(folder: Path, count: int, seed: int, names: set[str]) -> list[Preview]:
+    """The materials drawn from the files of a folder, or those of the given names."""
+    found = []
+    for path in sorted(folder.glob("matlib_*.blend")) or sorted(folder.glob("*.blend")):
+        with bpy.data.libraries.load(str(path)) as (source, _):
+            found += [Preview(str(path), name) for name in source.materials]
+    if names:
+        return [preview for preview in found if preview.name in names]
+    return random.Random(seed).sample(found, min(count, len(found)))
+
+
+def _append(previews: list[Preview]) -> list[bpy.types.Material]:
+    found = []
+    for preview in previews:
+        with bpy.data.libraries.load(preview.file) as (_, target):
+            target.materials = [preview.name]
+        found.append(target.materials[0])
+    return found
+
+
+def _floor() -> None:
+    surface = bpy.data.materials.new("Floor")
+    if surface.node_tree is None:
+        surface.use_nodes = True
+    tree = surface.node_tree
+    tree.nodes.clear()
+    checker, diffuse, output, coordinates = (
+        tree.nodes.new("ShaderNode" + name) for name in ("TexChecker", "BsdfDiffuse", "OutputMaterial", "TexCoord")
+    )
+    checker.inputs["Color1"].default_value = (0.6, 0.6, 0.6, 1.0)
+    checker.inputs["Color2"].default_value = (0.15, 0.15, 0.2, 1.0)
+    checker.inputs["Scale"].default_value = 1.999
+    tree.links.new(coordinates.outputs["Object"], checker.inputs["Vector"])
+    tree.links.new(checker.outputs["Color"], diffuse.inputs["Color"])
+    tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    bpy.ops.mesh.primitive_plane_add(size=60.0, location=(0.0, 0.0, -1.001))
+    bpy.context.object.data.materials.append(surface)
+
+
+def build(previews: list[Preview]) -> None:
+    """The scene of up to COLUMNS x ROWS materials; an orthographic camera gives each its square."""
+    scene = new_scene(world=0.25)
+    scene.render.resolution_x, scene.render.resolution_y = COLUMNS * CELL, ROWS * CELL
+    _floor()
+    tilt = np.radians(35.0)
+    for number, surface in enumerate(_append(previews)):
+        column, row = number % COLUMNS, number // COLUMNS
+        x = (column - (COLUMNS - 1) / 2) * SPACING
+        y = ((ROWS - 1) / 2 - row) * SPACING / np.sin(tilt)
+        bpy.ops.mesh.primitive_monkey_add(size=2.2, location=(x, y, 0.0), rotation=(-0.4, 0.0, 0.4))
+        made = bpy.context.object
+        made.data.shade_smooth()
+        made.modifiers.new("Subdivision", "SUBSURF").render_levels = 1
+        made.modifiers["Subdivision"].levels = 1
+        made.data.materials.clear()
+        made.data.materials.append(surface)
+    light("AREA", 6000.0, place((-8.0, -9.0, 14.0), (35.0, -25.0, 0.0)), size=5.0)
+    away = 30.0
+    made = camera((0.0, -away * np.cos(tilt), away * np.sin(tilt)), (0.0, 0.0, 0.0))
+    made.data.type, made.data.ortho_scale = "ORTHO", COLUMNS * SPACING
+
+
+def render(renderer: Renderer, previews: list[Preview], seconds: float, samples: int) -> None:
+    """Fill in both pictures and the warnings of materials that share a scene."""
+    build(previews)
+    scene = export_scene(bpy.context.evaluated_depsgraph_get())
+    scene.settings = scene.settings.with_values(iterations=100000, time_limit=seconds, photons=8192)
+    # Programs are compiled first, so that they take nothing of the time.
+    compiling = scene.settings
+    scene.settings = compiling.with_values(iterations=1)
+    renderer.render(scene)
+    scene.settings = compiling
+    result = renderer.render(scene)
+    rppm, cycles = result.frame.combined[..., :3], render_cycles(samples, seeds=1)[0]
+    for number, preview in enumerate(previews):
+        x, y = number % COLUMNS * CELL, (ROWS - 1 - number // COLUMNS) * CELL
+        preview.rppm, preview.cycles = (picture[y : y + CELL, x : x + CELL] for picture in (rppm, cycles))
+        preview.warnings = [text for text in result.statistics.warnings if f'"{preview.name}"' in text]
+    others = [text for text in result.statistics.warnings if not any(text in p.warnings for p in previews)]
+    print(f"{result.statistics.iterations} iterations", *others, sep="\n  ")
+
+
+def _encoded(picture: np.ndarray) -> Image.Image:
+    picture = np.clip(picture[::-1], 0.0, 1.0)
+    coded = np.where(picture <= 0.0031308, 12.92 * picture, 1.055 * picture ** (1 / 2.4) - 0.055)
+    return Image.fromarray(np.rint(coded * 255.0).astype(np.uint8))
+
+
+def sheet(previews: list[Preview], scale: int = 3) -> Image.Image:
+    """Labelled pictures: rows of RPPM's and of Cycles' in turn."""
+    side = CELL * scale
+    rows = -(-len(previews) // COLUMNS)
+    made = Image.new("RGB", (COLUMNS * (side + 2), rows * 2 * (side + LABEL)), "white")
+    draw = ImageDraw.Draw(made)
+    for number, preview in enumerate(previews):
+        x, row = number % COLUMNS * (side + 2), number // COLUMNS
+        for part, (engine, picture) in enumerate((("RPPM", preview.rppm), ("Cycles", preview.cycles))):
+            y = (2 * row + part) * (side + LABEL)
+            text = preview.name[:30] if part == 0 else f"Cycles; ratio {preview.ratio.mean():.3f}"
+            draw.text((x + 2, y), text, fill="black")
+            made.paste(_encoded(picture).resize((side, side), Image.Resampling.NEAREST), (x, y + LABEL))
+    return made
+
+
+def main() -> None:
+    """The program."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--count", type=int, default=50)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--names", default="")
+    parser.add_argument("--seconds", type=float, default=40.0, help="RPPM's for a picture of ten")
+    parser.add_argument("--samples", type=int, default=64, help="Cycles'")
+    arguments = parser.parse_args()
+    import rppm_addon
+
+    rppm_addon.register()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    names = {name for name in arguments.names.split(",") if name}
+    previews = chosen(arguments.folder, arguments.count, arguments.seed, names)
+    lines = []
+    with Renderer() as renderer:
+        for first in range(0, len(previews), COLUMNS * ROWS):
+            group = previews[first : first + COLUMNS * ROWS]
+            render(renderer, group, arguments.seconds, arguments.samples)
+            sheet(group).save(arguments.out / f"sheet_{first // (COLUMNS * ROWS) + 1:02d}.png")
+            for preview in group:
+                ratio = " ".join(f"{value:6.3f}" for value in preview.ratio)
+                lines.append(f"{preview.name[:44]:44s} {ratio}  {preview.difference:.3f}")
+                lines += [f"    {text}" for text in preview.warnings]
+            (arguments.out / "table.txt").write_text("\n".join(lines) + "\n")
+            print("\n".join(lines[-len(group) * 3 :]), flush=True)
+
+
+if __name__ == "__main__":
+    main()
