@@ -184,8 +184,8 @@ lamps(
 def _small_bulbs() -> None:
     surface, net = material("Bulb")
     net.output(net.emission((1.0, 0.8, 0.6), 60.0))
-    for x, y in ((1.0, -0.8), (-1.0, -1.0)):
-        stage.ball(surface, {"at": (x, y, 1.7), "scale": (0.18, 0.18, 0.18)}, 12)
+    for x, y in ((1.5, -1.2), (-1.4, -1.0)):
+        stage.ball(surface, {"at": (x, y, 2.9), "scale": (0.18, 0.18, 0.18)}, 12)
 
 
 lamps("Glowing mesh", "two bulbs", _small_bulbs, effort=2)
