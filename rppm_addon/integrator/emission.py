@@ -27,6 +27,8 @@ from .targets import caustic_targets
 log = logging.getLogger(__name__)
 
 _SOFT = 32
+_LAMP_ROWS = 16
+"""Of the map of directions over which the nodes of a lamp are averaged."""
 
 LIGHT_PARAMETERS = {
     "scene_centre": "vec3",
@@ -269,9 +271,15 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 
 def _nodes_of(light: Light, materials: MaterialTables) -> tuple[np.ndarray, float, float]:
     """What a light's nodes multiply its strength by: (3,) f, a power p and a smoothing s, of the distance d in metres
-    f d^p d^2 / (s + d^2), which the Light Falloff node's outputs are."""
+    f d^p d^2 / (s + d^2), which the Light Falloff node's outputs are. What varies by direction counts by its mean."""
     distances = (1.0, 2.0, 1e4, 2e4)
-    values = [np.maximum(materials.evaluate(light.graph, ray_length=d)[0, 0], 0.0) for d in distances]
+    sine = np.sin(np.pi * (np.arange(_LAMP_ROWS) + 0.5) / _LAMP_ROWS)[:, None, None]
+
+    def mean(distance: float) -> np.ndarray:
+        emitted = materials.evaluate(light.graph, 2 * _LAMP_ROWS, _LAMP_ROWS, ray_length=distance)
+        return np.maximum((emitted * sine).mean(axis=(0, 1), dtype=np.float64) / sine.mean(), 0.0)
+
+    values = [mean(distance) for distance in distances]
     near, twice, far, farther = (float(value.sum()) for value in values)
     if light.kind is LightKind.SUN or min(near, twice, far, farther) <= 0.0:
         return values[0], 0.0, 0.0

@@ -102,5 +102,5 @@ def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable)
         exporter.graph.surface = exporter.surface(output)
     kinds = {exporter.graph.nodes[index].kind for index in reachable(exporter.graph, exporter.graph.surface)}
     if any(KINDS[kind].surface for kind in kinds - {"light_path"}):
-        report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; one value is used')
+        report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; their mean is used')
     return exporter.graph
