@@ -73,7 +73,9 @@ void main() {
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;
     uint flags = path_flags(index);
-    surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags) : RAY_DIFFUSE;
+    // Where lights are sampled, no path has come to them, and it is of no kind, as in Cycles.
+    surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags)
+                : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
 
