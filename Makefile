@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample test lint pairs bench clean
+.PHONY: help setup render sample test lint pairs parity bench clean
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
@@ -28,6 +28,9 @@ lint: setup ## Check Python, imports, licence lines and shaders
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tests/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
+
+parity: setup ## Compare each feature with Cycles: table, contact sheets in out/parity/, docs/compatibility.md
+	.venv/bin/python -m tests.parity.features.report $(ROWS)
 
 bench: setup ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
 	@.venv/bin/python -c 'import matplotlib' 2>/dev/null || .venv/bin/python -m pip install --quiet \

@@ -3,7 +3,8 @@
 
 Every stage file below shaders/ must be valid OpenGL 4.3 core GLSL for glslangValidator. A file that
 needs defines names values for them in a comment: ``// lint: RESOLUTION=64 DEPTH=2``; several such
-lines are several variants, each checked.
+lines are several variants, each checked. Stages that run node graphs are checked with every kind of
+node, a file of kinds at a time.
 """
 
 import ast
@@ -22,6 +23,8 @@ FLOORS = ("scene", "gl", "materials", "integrator", "session", "blender")
 ROOMS = {"pictures": "gl", "commands": "session", "cli": "session"}
 """Modules beside the floors, and the highest floor that they may import."""
 STAGES = (".comp", ".vert", ".frag", ".geom")
+GENERATED = "materials/generated.glsl"
+"""Stands for what the compiler of node graphs writes."""
 _LINT = re.compile(r"^\s*//\s*lint:(.*)$", re.MULTILINE)
 
 
@@ -101,13 +104,21 @@ def register_records() -> None:
             importlib.import_module(module.name)
 
 
-def check_shader(file: Path, defines: dict[str, str]) -> str:
-    """What glslangValidator has against a stage file; empty when nothing."""
+def node_texts() -> list[str]:
+    """The programs of graphs that together have every function of every kind of node."""
+    sys.path.insert(0, str(ROOT / "tests"))
+    from every_node import programs
+
+    return list(programs().values())
+
+
+def check_shader(file: Path, defines: dict[str, str], generated: str = "") -> str:
+    """What glslangValidator has against a stage file; empty when nothing. generated: of a node graph."""
     from rppm_addon.gl.sources import ShaderError, expand
 
     name = file.relative_to(ROOT / "shaders").as_posix()
     try:
-        source = expand(name, defines)
+        source = expand(name, defines, {GENERATED: generated} if generated else {})
     except ShaderError as error:
         return str(error)
     try:
@@ -133,7 +144,12 @@ def check_shaders(files: list[Path]) -> tuple[list[str], int]:
     for file in files:
         if file.suffix in STAGES and file.is_relative_to(ROOT / "shaders"):
             lines = _LINT.findall(file.read_text(encoding="utf-8")) or [""]
-            variants += [(file, dict(item.partition("=")[::2] for item in line.split())) for line in lines]
+            texts = node_texts() if GENERATED in file.read_text(encoding="utf-8") else [""]
+            variants += [
+                (file, dict(item.partition("=")[::2] for item in line.split()), text)
+                for line in lines
+                for text in texts
+            ]
     with ThreadPoolExecutor(2) as pool:
         results = list(pool.map(lambda variant: check_shader(*variant), variants))
     return [result for result in results if result], len(variants)

@@ -156,9 +156,9 @@ class Emission:
         for light in scene.lights:
             entry, power = _light_entry(light, radius)
             if light.graph is not None:
-                emitted, entry["falloff"] = _nodes_of(light, materials)
+                emitted, entry["falloff"], entry["smoothing"] = _nodes_of(light, materials)
                 entry["strength"] *= emitted
-                power = power * emitted
+                power = power * emitted / (1.0 + entry["smoothing"])
             add(entry, power, light.photon_share)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
@@ -182,7 +182,7 @@ class Emission:
         table["selection_probability"] = selection
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
-        self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any())
+        self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
         self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
         self._share_photons(self._weights)
         self._guide.build(table, scene.settings.photons)
@@ -267,12 +267,18 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / size if size > 0 else np.array([0.0, 0.0, 1.0])
 
 
-def _nodes_of(light: Light, materials: MaterialTables) -> tuple[np.ndarray, float]:
-    """What a light's nodes multiply its strength by at 1 m, (3,), and by which power of the distance beyond."""
-    near, far = (np.maximum(materials.evaluate(light.graph, ray_length=d)[0, 0], 0.0) for d in (1.0, 2.0))
-    if light.kind is LightKind.SUN or not near.any() or not far.any():
-        return near, 0.0
-    return near, math.log2(float(far.sum()) / float(near.sum()))
+def _nodes_of(light: Light, materials: MaterialTables) -> tuple[np.ndarray, float, float]:
+    """What a light's nodes multiply its strength by: (3,) f, a power p and a smoothing s, of the distance d in metres
+    f d^p d^2 / (s + d^2), which the Light Falloff node's outputs are."""
+    distances = (1.0, 2.0, 1e4, 2e4)
+    values = [np.maximum(materials.evaluate(light.graph, ray_length=d)[0, 0], 0.0) for d in distances]
+    near, twice, far, farther = (float(value.sum()) for value in values)
+    if light.kind is LightKind.SUN or min(near, twice, far, farther) <= 0.0:
+        return values[0], 0.0, 0.0
+    power = math.log2(farther / far)
+    grown = min(0.25 * twice / near / 2.0**power, 0.999)  # a quarter without smoothing
+    smoothing = (4.0 * grown - 1.0) / (1.0 - grown) if grown > 0.2501 else 0.0
+    return values[0] * (1.0 + smoothing), power, smoothing
 
 
 def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarray]:

@@ -10,6 +10,7 @@ from ..materials.emitted import Emits, emits, reachable
 from ..materials.tables import MaterialTables
 from ..scene.images import Image
 from ..scene.lights import World
+from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 
 _WIDEST = 512
 _NARROWEST_MAP, _WIDEST_MAP = 1024, 4096
@@ -108,8 +109,23 @@ class Environment:
 
 
 def _map_width(world: World, images: list[Image]) -> int:
-    """Pixels across the map: as many as the widest image that the world shows, within reason."""
-    used = [images[node.image] for node in world.graph.nodes if 0 <= node.image < len(images)]
-    widest = max((image.pixels.shape[1] for image in used), default=0)
+    """Pixels across the map: those of an image that is shown as it is, else enough to show its pixels anywhere."""
+    used = [node for node in world.graph.nodes if 0 <= node.image < len(images)]
+    widest = max((images[node.image].pixels.shape[1] for node in used), default=0)
     patterns = any(node.kind.startswith("tex_") and node.image < 0 for node in world.graph.nodes)
-    return int(np.clip(widest + widest % 2, _NARROWEST_MAP if patterns or not used else 2, _WIDEST_MAP))
+    if used and not patterns and all(_is_plain(world.graph, node) for node in used):
+        return int(np.clip(widest + widest % 2, 2, _WIDEST_MAP))
+    return int(np.clip(2 * widest, _NARROWEST_MAP, _WIDEST_MAP))
+
+
+def _is_plain(graph: NodeGraph, node: ShaderNode) -> bool:
+    """Whether an image lies in the map pixel on pixel."""
+    where = node.inputs.get("vector")
+    linear = node.options.get("interpolation", "Linear") == "Linear"
+    equirectangular = node.kind == "tex_environment" and node.options.get("projection") in {None, "EQUIRECTANGULAR"}
+    direction = isinstance(where, Link) and (graph.nodes[where.node].kind, where.output) in _DIRECTIONS
+    return linear and equirectangular and direction
+
+
+_DIRECTIONS = {("generated_coord", "generated"), ("new_geometry", "position"), ("tex_coord", "object")}
+"""Nodes and outputs that are the direction in a world."""

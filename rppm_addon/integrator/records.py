@@ -105,10 +105,11 @@ PHOTON_DIFFUSED = 8
 PHOTON_INDIRECT = 16
 PHOTON_DIRECT = 32
 PHOTON_NOT_DIFFUSE = 64
-PHOTON_NOT_SPECULAR = 128
+PHOTON_NOT_GLOSSY = 128
+PHOTON_NOT_TRANSMITTED = 256
 """Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before; INDIRECT: by what stores
 photons there; DIRECT: nothing has, but for objects that cast no shadow; NOT_DIFFUSE,
-NOT_SPECULAR: while it is direct, from a light that does not light such surfaces."""
+NOT_GLOSSY, NOT_TRANSMITTED: while it is direct, from a light that such events do not see."""
 
 CAMERA_PATH = Record(
     "CameraPath",
@@ -185,12 +186,12 @@ LIGHT = Record(
     first_cell="uint",
     cells="uvec4",
     falloff="float",
-    unused0="float",
+    smoothing="float",
     unused1="float",
     unused2="float",
 )
 """A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
-unit axes, ``falloff`` the power of the distance that the light is multiplied by (Light Falloff nodes),
+unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
 ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
 ``first_cell`` those of integrator/guide.py."""
 

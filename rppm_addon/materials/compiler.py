@@ -87,6 +87,7 @@ class _Compiler:
             value = self._converted(normal, self._graph.normal, SocketType.VECTOR)
             self._functions.append(_function("vec3", "material_normal", normal.lines, value))
             scope.lines.append("surface.normal = visible_normal(surface, material_normal(surface, first));")
+            scope.lines.append("set_shading_normal(builder, surface.normal);")
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
         text = "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
@@ -156,7 +157,7 @@ class _Compiler:
         if isinstance(value, Link):
             self._check_order(index, value)
             return self._converted(scope, value, kind)
-        if isinstance(value, str):
+        if isinstance(value, str) and value in _IMPLICIT:
             return _IMPLICIT[value]
         place = self._place((index, name), self._constants_of(self._graph.nodes[index], name, value, kind))
         return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
@@ -228,19 +229,16 @@ class _Compiler:
             if weight is None:
                 raise GraphError(f'node "{node.name}" is a shader and gives no value')
             arguments += ["builder", weight]
-        function = f"node_{node.kind}"
-        for name, values in kind.options.items():
-            choice = _choice(node, name, values)
-            if name == kind.function_option:
-                function += f"_{values[choice].lower()}"
-            else:
-                arguments.append(str(choice))
+        function, literals = _function_of(node, kind)
+        arguments += literals
         for what in kind.resources:
             place = self._place((index, f"<{what}>"), [Resource(what, index)])
             arguments.append(f"constant_index(first + {place}u)")
         for name, (socket, default) in kind.inputs.items():
             arguments.append(self._input(scope, index, name, socket, default))
-        values = {name: f"n{self._number(index)}_{name}" for name, socket in kind.outputs.items() if socket is not SHADER}
+        values = {
+            name: f"n{self._number(index)}_{name}" for name, socket in kind.outputs.items() if socket is not SHADER
+        }
         for name, value in values.items():
             scope.lines.append(f"{kind.outputs[name].glsl} {value};")
         scope.lines.append(f"{function}({', '.join([*arguments, *values.values()])});")
@@ -264,14 +262,18 @@ class _Compiler:
             self._heights[index, scope.depth] = function
         others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
         width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
-        invert = _choice(self._graph.nodes[index], "invert", kind.options["invert"])
+        _, (invert,) = _function_of(self._graph.nodes[index], kind)
         scope.lines += [
             f"vec3 {value};",
-            f"{{ vec3 along_x, along_y; bump_offsets(surface, {width}, along_x, along_y);",
-            f"  float height = {function}(surface, first);",
-            f"  float height_x = {function}(surface_beside(surface, along_x), first) - height;",
-            f"  float height_y = {function}(surface_beside(surface, along_y), first) - height;",
-            f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, height_x, height_y, {value}); }}",
+            f"{{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, {width}, along_x, along_y);",
+            # A loop, so that drivers need not compile the height three times.
+            "  for (int k = 0; k < 3; ++k) {",
+            "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",
+            f"    float height = {function}(surface_beside(surface, way), first);",
+            "    if (k == 0) heights.x = height; else if (k == 1) heights.y = height; else heights.z = height;",
+            "  }",
+            f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, heights.y - heights.x,",
+            f"            heights.z - heights.x, {value}); }}",
         ]
 
 
@@ -286,11 +288,11 @@ def _finite(value: float) -> float:
     return float(np.clip(value, -_LARGEST, _LARGEST)) if np.isfinite(value) else 0.0
 
 
-def _choice(node: ShaderNode, name: str, values: tuple) -> int:
-    value = node.options.get(name, values[0])
-    if value not in values:
-        raise GraphError(f'node "{node.name}" ({node.kind}) has the unknown {name} {value}')
-    return values.index(value)
+def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:
+    try:
+        return kind.call(node.kind, node.options)
+    except ValueError as error:
+        raise GraphError(f'node "{node.name}" ({node.kind}) {error}') from error
 
 
 def compile_graph(graph: NodeGraph) -> CompiledGraph:

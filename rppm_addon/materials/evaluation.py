@@ -8,6 +8,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..scene.camera import Camera
 
 Record(
     "EvaluateParameters",
@@ -46,6 +47,7 @@ class GraphEvaluator:
         height: int,
         from_camera: bool,
         ray_length: float,
+        camera: Camera,
     ) -> np.ndarray:
         """(height, width, 3) float32 emission in the directions of an equirectangular map, row 0 at the bottom.
 
@@ -60,9 +62,10 @@ class GraphEvaluator:
         for first_row in range(0, height, rows):
             count = width * min(rows, height - first_row)
             parameters = {
-                "world_to_camera": np.eye(4), "window": (-1.0, 1.0, -1.0, 1.0), "count": count, "width": width,
-                "height": height, "first_row": first_row, "first_constant": first_constant,
-                "from_camera": from_camera, "attribute_count": 0, "orthographic": False, "pixel_size": 0.0,
+                "world_to_camera": np.linalg.inv(camera.matrix), "window": camera.window, "count": count,
+                "width": width, "height": height, "first_row": first_row, "first_constant": first_constant,
+                "from_camera": from_camera,
+                "attribute_count": 0, "orthographic": camera.orthographic, "pixel_size": 0.0,
                 "ray_length": ray_length,
             }  # fmt: skip
             program.run(count, bound, parameters)

@@ -45,8 +45,24 @@ class NodeKind:
     image; "attribute", the number of its mesh attribute."""
     surface: bool = False
     function_option: str = ""
-    """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not passed:
-    drivers take long to fold a choice among many at every call."""
+    """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
+    passed: drivers take long to fold a choice among many at every call."""
+
+    def call(self, name: str, options: dict[str, object]) -> tuple[str, list[str]]:
+        """The GLSL function of a node of this kind, which has a name, and its literals for options.
+
+        Options that are left out have their first value. Raises ValueError, with the option's name, for unknown values.
+        """
+        function, literals = f"node_{name}", []
+        for option, values in self.options.items():
+            value = options.get(option, values[0])
+            if value not in values:
+                raise ValueError(f"has the unknown {option} {value}")
+            if option == self.function_option:
+                function += f"_{value.lower()}"
+            else:
+                literals.append(str(values.index(value)))
+        return function, literals
 
     @property
     def is_shader(self) -> bool:

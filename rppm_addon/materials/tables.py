@@ -25,7 +25,7 @@ def default_material() -> Material:
     return Material("default", graph)
 
 
-_SRGB, _BYTES, _HALVES = 0, 1, 2
+_SRGB, _BYTES, _HALVES, _SRGB_HALVES = range(4)
 _DARK = "it gives nothing"
 
 
@@ -39,7 +39,7 @@ def _texels(image: Image) -> tuple[np.ndarray, int]:
     if pixels.dtype == np.uint8:
         return pixels.reshape(-1, 4).view(np.uint32).ravel(), _SRGB if image.encoding == "SRGB" else _BYTES
     halves = np.clip(np.nan_to_num(pixels), -65504, 65504).astype(np.float16)
-    return halves.reshape(-1, 4).view(np.uint32).ravel(), _HALVES
+    return halves.reshape(-1, 4).view(np.uint32).ravel(), _SRGB_HALVES if image.encoding == "SRGB" else _HALVES
 
 
 class MaterialTables:
@@ -137,7 +137,9 @@ class MaterialTables:
         """
         text, first, owner = self._others[id(graph)]
         try:
-            return self._evaluator.run(text, first, self.buffers, width, height, from_camera, ray_length)
+            return self._evaluator.run(
+                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera
+            )
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")
             return np.zeros((height, width, 3), np.float32)

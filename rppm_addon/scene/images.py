@@ -12,6 +12,6 @@ class Image:
 
     name: str
     pixels: np.ndarray
-    """(height, width, 4) float32 or uint8; uint8 is encoded as ``encoding`` says."""
+    """(height, width, 4) float32 or uint8, encoded as ``encoding`` says."""
     encoding: str = "LINEAR"
-    """LINEAR (scene-linear Rec.709) or SRGB (uint8 only: the sRGB transfer curve)."""
+    """LINEAR (scene-linear Rec.709) or SRGB (the sRGB transfer curve)."""

@@ -25,6 +25,8 @@ def save_scene(scene: Scene, path: str | Path) -> None:
         if isinstance(value, np.ndarray):
             arrays[key] = value
             return {"array": key}
+        if isinstance(value, enum.Flag):
+            return value.value  # combinations have no name
         if isinstance(value, enum.Enum):
             return value.name
         if dataclasses.is_dataclass(value):
@@ -73,7 +75,7 @@ def load_scene(path: str | Path) -> Scene:
         if origin is not None:  # optional: the first alternative
             return None if value is None else decode(value, typing.get_args(kind)[0])
         if isinstance(kind, type) and issubclass(kind, enum.Enum):
-            return kind[value]
+            return kind(value) if issubclass(kind, enum.Flag) else kind[value]
         if dataclasses.is_dataclass(kind):
             hints = typing.get_type_hints(kind)
             return kind(**{name: decode(item, hints[name]) for name, item in value.items()})

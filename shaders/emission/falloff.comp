@@ -23,7 +23,7 @@ void main() {
     Light light = lights[light_of(index)];
     Hit hit = hits[index];
     bool soft = (light.flags & LIGHT_SOFT) != 0u;
-    if (hit.triangle == NO_TRIANGLE || (!soft && light.falloff == 0.0)) return;
+    if (hit.triangle == NO_TRIANGLE || (!soft && light.falloff == 0.0 && light.smoothing == 0.0)) return;
     Ray ray = rays[index];
     photon_paths[index].flux *= distance_factor(light, hit.distance);
     if (!soft || soft_light_distance(light, ray.origin + hit.distance * ray.direction, -ray.direction) > 0.0) return;

@@ -37,9 +37,10 @@ float spread_attenuation(Light light, float cosine) {
     return max(0.0, (light.spread_tangent - tangent) * light.spread_scale);
 }
 
-// Light Falloff nodes: what a light gives may grow with a power of the distance.
+// Light Falloff nodes: what a light gives may grow with a power of the distance, and be weakened near it.
 float distance_factor(Light light, float distance) {
-    return light.falloff == 0.0 ? 1.0 : pow(max(distance, 1e-6), light.falloff);
+    float smoothed = light.smoothing > 0.0 ? distance * distance / (light.smoothing + distance * distance) : 1.0;
+    return light.falloff == 0.0 ? smoothed : smoothed * pow(max(distance, 1e-6), light.falloff);
 }
 
 vec3 radiant_strength(Light light, vec3 direction) {

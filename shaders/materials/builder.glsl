@@ -23,6 +23,12 @@ ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool b
     return builder;
 }
 
+// For bump that belongs to the surface itself, before any shader has been added.
+void set_shading_normal(inout ClosureBuilder builder, vec3 normal) {
+    builder.shading = normal;
+    builder.closure.diffuse_normal = pack_unit_vector(normal);
+}
+
 // True with a probability, and the random number is as good as new.
 bool chance(inout ClosureBuilder builder, float probability) {
     bool chosen = builder.u_choice < probability;

@@ -5,9 +5,9 @@
 #include <Material>
 layout(std430, binding = 10) readonly buffer Materials { Material materials[]; };
 
-// A path's flags: 8 bits of its own, then two material numbers plus one, 12 bits each.
-const uint MEDIUM_BITS = 12u, MEDIUM_MASK = 0xfffu, FIRST_MEDIUM = 8u, SECOND_MEDIUM = 20u;
-const uint PATH_MASK = 0xffu;
+// A path's flags: 10 bits of its own, then two material numbers plus one, 11 bits each.
+const uint MEDIUM_BITS = 11u, MEDIUM_MASK = 0x7ffu, FIRST_MEDIUM = 10u, SECOND_MEDIUM = 21u;
+const uint PATH_MASK = 0x3ffu;
 
 vec3 medium_absorption(uint medium) { return medium == 0u ? vec3(0.0) : materials[medium - 1u].absorption; }
 

@@ -5,7 +5,7 @@
 layout(std430, binding = 7) readonly buffer Images { ImageEntry images[]; };
 layout(std430, binding = 8) readonly buffer Texels { uint texels[]; };
 
-const uint FORMAT_SRGB = 0u, FORMAT_BYTES = 1u, FORMAT_HALF = 2u;
+const uint FORMAT_SRGB = 0u, FORMAT_BYTES = 1u, FORMAT_HALF = 2u, FORMAT_SRGB_HALF = 3u;
 const int EXTENSION_REPEAT = 0, EXTENSION_EXTEND = 1, EXTENSION_CLIP = 2, EXTENSION_MIRROR = 3;
 const int INTERPOLATION_LINEAR = 0, INTERPOLATION_CLOSEST = 1, INTERPOLATION_CUBIC = 2, INTERPOLATION_SMART = 3;
 
@@ -34,7 +34,7 @@ vec4 image_texel(ImageEntry image, ivec2 at, int extension) {
     at = ivec2(extended(at.x, size.x, extension), extended(at.y, size.y, extension));
     uint index = uint(at.y * size.x + at.x);
     vec4 color;
-    if (image.format == FORMAT_HALF) {
+    if (image.format >= FORMAT_HALF) {
         index = image.first_texel + 2u * index;
         color = vec4(unpackHalf2x16(texels[index]), unpackHalf2x16(texels[index + 1u]));
     } else color = unpackUnorm4x8(texels[image.first_texel + index]);
@@ -66,6 +66,6 @@ vec4 sample_image(uint number, vec2 uv, int interpolation, int extension, int di
     ImageEntry image = images[number];
     vec4 color = filter_image(image, uv, interpolation, extension);
     if (divide != 0 && color.a != 1.0 && color.a != 0.0) color.rgb /= color.a;
-    if (image.format == FORMAT_SRGB) color.rgb = srgb_to_linear(color.rgb);
+    if (image.format == FORMAT_SRGB || image.format == FORMAT_SRGB_HALF) color.rgb = srgb_to_linear(color.rgb);
     return color;
 }

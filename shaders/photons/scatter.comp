@@ -18,7 +18,8 @@ layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
 layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
 
-struct Scattering { vec3 direction; vec3 weight; vec3 normal; bool transmitted; uint flags; };
+// unseen: a flag of direct photons from lights that do not take part in such events.
+struct Scattering { vec3 direction; vec3 weight; vec3 normal; bool transmitted; uint flags; uint unseen; };
 
 // Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
 const float SHARPEST_ALPHA = 0.05;
@@ -26,7 +27,7 @@ const float SHARPEST_ALPHA = 0.05;
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
-    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT);
+    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE);
     float scale = 1.0 / largest(flux);
     float share[5];
     share[0] = largest(flux * closure.diffuse) * scale;
@@ -36,6 +37,10 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
         share[2 + k] = largest(flux * lobe_albedo(lobe, lobe_cosine(lobe, arrival))) * scale;
     }
     float translucent = largest(flux * closure.translucent) * scale;
+    if ((closure.flags & CLOSURE_KEEPS_LIGHT) != 0u) {
+        translucent = 0.0;
+        for (int k = 0; k < 5; ++k) share[k] = k == 1 ? share[k] : 0.0;
+    }
     float total = share[0] + share[1] + share[2] + share[3] + share[4] + translucent;
     float norm = max(total, 1.0);
     float u = next_random(random) * norm;
@@ -55,7 +60,7 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
         return result;
     }
     u -= translucent;
-    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u);
+    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u, 0u);
     u -= share[1];
     int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
     float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
@@ -63,7 +68,8 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, u_direction, u_event, false);
     return Scattering(sampled.direction, sampled.weight * (lobe_shadowing(lobe, closure.shading_normal, sampled.direction) * norm / max(probability, 1e-20)), lobe_normal(lobe), sampled.transmitted,
                       (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_DIFFUSED)
-                          | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u));
+                          | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
+                      sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY);
 }
 
 // Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
@@ -117,9 +123,8 @@ void main() {
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
             path_flags |= scattering.flags;
-            bool unlit = !straight && (path_flags & ((scattering.flags & PHOTON_DIFFUSED) != 0u ? PHOTON_NOT_DIFFUSE : PHOTON_NOT_SPECULAR)) != 0u;
-            if (unlit) photon_paths[index].flux = vec3(0.0);
-            if (!straight) path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_SPECULAR);
+            if ((path_flags & scattering.unseen) != 0u) photon_paths[index].flux = photon.scattered_flux = vec3(0.0);
+            if (!straight) path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED);
             if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             photon_paths[index].flags = path_flags;

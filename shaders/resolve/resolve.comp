@@ -86,7 +86,10 @@ void main() {
     bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;
     // Light reaches what casts no shadow, and what lies behind it too.
     bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & VISIBLE_TO_SHADOW_RAYS) == 0u;
-    bool unseen = (camera || (photon && (flags & PHOTON_DIRECT) == 0u)) && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
+    bool unseen = camera && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
+    // What diffuse surfaces do not see is lit, but gives no light, and light from other surfaces goes on through it.
+    bool keeps_light = photon && (instance.visibility & RAY_DIFFUSE) == 0u;
+    bool passes = unseen || shadowless || (keeps_light && (flags & PHOTON_DIRECT) == 0u);
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
     if (camera && instance.holdout != 0u && (surface.ray & RAY_CAMERA) != 0u) {
         vec3 transparent = clamp(builder.closure.transparent, 0.0, 1.0);
@@ -99,14 +102,15 @@ void main() {
         builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
         builder.closure.flags |= CLOSURE_CATCHES_SHADOWS;
     }
-    if (unseen || shadowless || catches) builder.closure.transparent = vec3(1.0);
+    if (passes || catches) builder.closure.transparent = vec3(1.0);
+    if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
     builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (shadowless ? CLOSURE_SHADOWLESS : 0u);
     builder.closure.material = material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
-    builder.closure.shading_normal = pack_unit_vector(shading);
+    builder.closure.shading_normal = pack_unit_vector(builder.shading);
     make_usable(builder.closure);
     closures[index] = builder.closure;
 }

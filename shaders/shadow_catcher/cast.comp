@@ -16,7 +16,7 @@ layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 
-const int CANDIDATES = 8;
+const int CANDIDATES = 64;
 
 void main() {
     uint index = invocation_index();

@@ -23,3 +23,11 @@ def scene(registered):
     scene.collection.objects.link(camera)
     scene.camera = camera
     return scene
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    from rppm_addon.session.renderer import Renderer
+
+    with Renderer() as renderer:
+        yield renderer

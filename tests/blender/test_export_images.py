@@ -79,9 +79,9 @@ def test_saved_and_packed_images_agree(scene, tmp_path):
     material = new_material()
     tree = material.node_tree
     add = add_node(tree, "ShaderNodeAddShader")
-    for socket, source in zip(add.inputs, (loaded, packed), strict=True):
+    for socket, picture in zip(add.inputs, (loaded, packed), strict=True):
         node, texture = add_node(tree, "ShaderNodeBsdfDiffuse"), add_node(tree, "ShaderNodeTexImage")
-        texture.image = source
+        texture.image = picture
         link(tree, texture.outputs["Color"], node.inputs["Color"])
         link(tree, node.outputs[0], socket)
     to_surface(material, add)
@@ -108,8 +108,9 @@ def test_an_image_on_two_inputs_is_one_node(scene):
     link(tree, tree.nodes["Picture"].outputs["Alpha"], principled.inputs["Alpha"])
     graph, warnings = export_graph(scene, material)
     ((shader, _),) = shaders(graph)
-    outputs = [shader.inputs[name] for name in ("base_color", "emission_color", "alpha")]
-    assert len({link.node for link in outputs}) == 1 and [link.output for link in outputs] == ["color", "color", "alpha"]
+    links = [shader.inputs[name] for name in ("base_color", "emission_color", "alpha")]
+    assert len({found.node for found in links}) == 1
+    assert [found.output for found in links] == ["color", "color", "alpha"]
     assert warnings == []
 
 

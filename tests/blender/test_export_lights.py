@@ -10,6 +10,7 @@ from blender_scenes import add_light, add_mesh, add_node, export, link, new_mate
 from emission import light_strength
 
 from rppm_addon.scene import LightKind
+from rppm_addon.scene.meshes import RayVisibility
 
 
 def exported_light(scene, kind, **values):
@@ -67,9 +68,9 @@ def test_photon_share_and_visibility(scene):
     added.data.rppm.photon_share = 2.5
     added.visible_camera = True
     (light,) = export(scene).lights
-    assert light.photon_share == 2.5 and light.visible_to_camera
+    assert light.photon_share == 2.5 and RayVisibility.CAMERA in light.visibility
     added.visible_camera = False
-    assert not export(scene).lights[0].visible_to_camera
+    assert RayVisibility.CAMERA not in export(scene).lights[0].visibility
 
 
 def test_instanced_lights(scene):

@@ -158,10 +158,10 @@ def _literal(name: str, socket_type: object, value: object) -> str:
 def node_call(kind: str, options: dict, inputs: dict) -> str:
     """The call of a node's GLSL function, options and inputs by name."""
     node = KINDS[kind]
-    arguments = ["builder", "1.0"]
-    arguments += [str(values.index(options.get(name, values[0]))) for name, values in node.options.items()]
+    function, literals = node.call(kind, options)
+    arguments = ["builder", "1.0", *literals]
     arguments += [_literal(name, socket, inputs.get(name, default)) for name, (socket, default) in node.inputs.items()]
-    return f"node_{kind}({', '.join(arguments)});"
+    return f"{function}({', '.join(arguments)});"
 
 
 def by_closure(

@@ -153,11 +153,7 @@ def cycles_values(
 
 def call_shader(name: str, kind: NodeKind, options: dict) -> str:
     """A compute shader that calls a node's function for each invocation; see our_values."""
-    choices = {option: options.get(option, values[0]) for option, values in kind.options.items()}
-    function = f"node_{name}"
-    if kind.function_option:
-        function += f"_{choices.pop(kind.function_option).lower()}"
-    places = [kind.options[option].index(choice) for option, choice in choices.items()]
+    function, literals = kind.call(name, options)
     constants = [given for given in kind.inputs if given not in ("vector", "w")]
     fetched = {"vector": "coordinates[3u * i], coordinates[3u * i + 1u], coordinates[3u * i + 2u]"}
     fetched["w"] = "coordinates[3u * count + i]"
@@ -166,7 +162,7 @@ def call_shader(name: str, kind: NodeKind, options: dict) -> str:
         width = 1 if kind.inputs[given][0] is FLOAT else 3
         fetched[given] = ", ".join(f"constants[{place + k}u]" for k in range(width))
         place += width
-    arguments = [str(value) for value in places]
+    arguments = literals
     arguments += [f"{kind.inputs[given][0].glsl}({fetched[given]})" for given in kind.inputs]
     declared, stored, place = [], [], 0
     for output, socket in kind.outputs.items():

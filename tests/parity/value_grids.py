@@ -253,7 +253,8 @@ def program_text(case: Case, surface: str = "") -> str:
     includes = [surface] if surface else []
     includes.append(f'#include "materials/nodes/{kind.source}"')
     arguments = ["surface"] if kind.surface else []
-    arguments += [str(values.index(case.options.get(name, values[0]))) for name, values in kind.options.items()]
+    function, literals = kind.call(case.kind_name, case.options)
+    arguments += literals
     arguments += ["0u" for _ in kind.resources]
     stride = sum(1 if kind.inputs[name][0] is FLOAT else 3 for name in case.inputs)
     offset, lines = 0, []
@@ -274,7 +275,7 @@ def program_text(case: Case, surface: str = "") -> str:
         lines.append("    Surface surface;")
         lines.append(f"    surface.viewer = {_literal(VIEWER)};")
         lines.append(f"    surface.backfacing = {str(case.backfacing).lower()};")
-    lines.append(f"    node_{case.kind_name}({', '.join(arguments)});")
+    lines.append(f"    {function}({', '.join(arguments)});")
     offset, stores = 0, []
     for index, socket_type in enumerate(kind.outputs.values()):
         for part in [""] if socket_type is FLOAT else [".x", ".y", ".z"]:

@@ -10,8 +10,8 @@ from lobes import Lobe, LobeKind, image_world, material
 from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.materials.compiler import compile_graph
 from rppm_addon.scene import (
-    AttributeDomain,
     Aperture,
+    AttributeDomain,
     Camera,
     DirectLight,
     Image,
@@ -22,16 +22,16 @@ from rppm_addon.scene import (
     Mesh,
     MeshAttribute,
     NodeGraph,
-    Particle,
     Panorama,
     PanoramaKind,
+    Particle,
     RenderSettings,
     Scene,
-    World,
     load_scene,
     save_scene,
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
+from rppm_addon.scene.meshes import RayVisibility
 
 
 def graph_of_everything() -> NodeGraph:
@@ -63,8 +63,10 @@ def full_scene() -> Scene:
         camera=Camera(np.eye(4), (-1, 1, -0.5, 0.5), 64, 32, True, 0.2, 50.0, (1, 2, 30, 31)),
         meshes=[mesh, bare],
         instances=[
-            Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3),
-            Instance(1, np.eye(4), particle=Particle(index=2.0, velocity=(1.0, 2.0, 3.0)), attributes={"a": (1.0, 2.0)}),
+            Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3, visibility=RayVisibility(5)),
+            Instance(
+                1, np.eye(4), particle=Particle(index=2.0, velocity=(1.0, 2.0, 3.0)), attributes={"a": (1.0, 2.0)}
+            ),
         ],
         materials=[
             material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0])),

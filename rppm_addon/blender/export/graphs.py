@@ -12,7 +12,7 @@ from ...scene import Link, NodeGraph
 from ...scene.sky import Sky
 from .attributes import GENERATED
 from .images import ImageTable
-from .links import Path, Source, find_source
+from .links import Path, Source, find_source, is_lost
 from .report import Report
 
 Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
@@ -85,12 +85,20 @@ class GraphExporter:
         """Tell the user what is done about a node."""
         self._report.warn(f'{self.owner}: node "{node.name}" ({node.type}) {text}')
 
+    def surface(self, output: bpy.types.Node) -> Link | None:
+        """The shader of an output node; groups that are lost are named even where Blender cut their links."""
+        for node in output.id_data.nodes:
+            if is_lost(node):
+                self.warn(node, _LOST)
+        return self.shader(output.inputs["Surface"])
+
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
         """The shader that feeds an input; a colour in place of it glows, as in Cycles."""
         source = find_source(socket, path)
         if not isinstance(source, Source):
             if source.broken is not None:
-                self.warn(source.broken, "is a group whose node tree is missing; nothing is there instead")
+                self.warn(source.broken, _LOST)
+                return self.graph.add("bsdf_diffuse", "bsdf", name=source.broken.name, color=0.8)
             return None
         value = self._output(source)
         if value is None and _is_undefined(source.node):
@@ -104,9 +112,7 @@ class GraphExporter:
         source = find_source(socket, path)
         if not isinstance(source, Source):
             if source.broken is not None:
-                self.warn(
-                    source.broken, "is a group whose node tree is missing; the value of the socket it feeds is used"
-                )
+                self.warn(source.broken, _LOST)
             return _stored(source.socket)
         value = self._output(source)
         # What the user had chosen before plugging something in is the best guess for the unknown.
@@ -258,6 +264,9 @@ class GraphExporter:
             return self.value(socket, path)
         self.warn(node, "is not rendered yet; the value of the socket it feeds is used")
         return None
+
+
+_LOST = "is a group whose node tree is missing; a neutral value or a grey surface stands in"
 
 
 def _is_undefined(node: bpy.types.Node) -> bool:

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from ...scene import Image
+from .color_spaces import linear_rec709, to_srgb
 
 if TYPE_CHECKING:
     from .graphs import GraphExporter
@@ -96,19 +97,29 @@ def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
 
 
 def _encoded(image: bpy.types.Image, pixels: np.ndarray, node: bpy.types.Node, exporter: "GraphExporter") -> Image:
-    """Pixels as they are to be filtered: colours times alpha while still encoded, as in Cycles."""
+    """Pixels as they are to be filtered: encoded where Cycles does it, and colours times alpha."""
     space = image.colorspace_settings.name
     if image.alpha_mode == "NONE":
         pixels[..., 3] = 1.0
-    if is_associated(image) and not image.is_float:
-        pixels[..., :3] *= pixels[..., 3:]
-    encoding = "LINEAR"
-    if not image.is_float:
-        pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
-        encoding = "SRGB" if space == "sRGB" else "LINEAR"
+    if image.is_float:
+        # Blender has made them linear.
+        if space == "sRGB":
+            pixels[..., :3] = to_srgb(pixels[..., :3])
+        return Image(image.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
     if space != "sRGB" and space not in _LINEAR_SPACES:
+        linear = linear_rec709(pixels[..., :3].astype(np.float64), space)
+        if linear is not None:
+            pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
+            return Image(image.name, pixels, "LINEAR")
         exporter.warn(node, f'has an image in the colour space "{space}", which is read as sRGB')
-        encoding = "LINEAR" if image.is_float else "SRGB"
+    encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
+    pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
+    if is_associated(image):
+        # Cycles takes colours in files of bytes for straight, whatever the user says.
+        products = pixels[..., :3].astype(np.uint16) * pixels[..., 3:]
+        if image.alpha_mode == "PREMUL" and image.source != "GENERATED" and image.packed_file is None:
+            products = (products + 127) // 255 * pixels[..., 3:]
+        pixels[..., :3] = products // 255
     return Image(image.name, pixels, encoding)
 
 

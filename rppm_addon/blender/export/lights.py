@@ -99,7 +99,7 @@ def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable)
     output = data.node_tree.get_output_node("CYCLES") or data.node_tree.get_output_node("ALL")
     exporter = GraphExporter(f'Light "{name}"', report, images)
     if output is not None:
-        exporter.graph.surface = exporter.shader(output.inputs["Surface"])
+        exporter.graph.surface = exporter.surface(output)
     kinds = {exporter.graph.nodes[index].kind for index in reachable(exporter.graph, exporter.graph.surface)}
     if any(KINDS[kind].surface for kind in kinds - {"light_path"}):
         report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; one value is used')

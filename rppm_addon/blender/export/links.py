@@ -62,14 +62,22 @@ def find_source(socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
                 return Unlinked(start)
             socket, path = outer, path[:-1]
             start = socket
-        elif node.type == "GROUP":
+        elif node.type in {"GROUP", "CUSTOM GROUP"}:
             inside = _group_output(node, output)
             if inside is None:
-                return Unlinked(start, node if node.node_tree is None else None)
+                return Unlinked(start, node if is_lost(node) else None)
             socket, path = inside, (*path, node)
             start = socket
         else:
             return Source(node, output, path)
+
+
+def is_lost(node: bpy.types.Node) -> bool:
+    """Whether a node is a group whose node tree is not there, as when the file that it was linked from is gone."""
+    if node.type not in {"GROUP", "CUSTOM GROUP"}:
+        return False
+    # Evaluated copies do not say so themselves.
+    return node.node_tree is None or node.node_tree.original.is_missing
 
 
 def _group_output(group: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:

@@ -65,7 +65,7 @@ def export_material(material: bpy.types.Material, report: Report, images: ImageT
     graph = exporter.graph
     if exporter.is_linked(output.inputs["Displacement"], ()):
         _bump(exporter, material, output)
-    graph.surface = exporter.shader(output.inputs["Surface"])
+    graph.surface = exporter.surface(output)
     exported = Material(material.name, graph)
     if exporter.is_linked(output.inputs["Volume"], ()):
         exported.interior = _interior(owner, report, images, output)

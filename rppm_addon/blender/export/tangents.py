@@ -51,7 +51,8 @@ def _welded(mesh: Mesh, uv: np.ndarray) -> np.ndarray:
     """(corners,) the same number for corners of the same place, normal and UV."""
     keys = np.concatenate([mesh.positions[mesh.corner_vertices], mesh.corner_normals, uv], axis=1) + np.float32(0.0)
     keys = np.ascontiguousarray(keys, np.float32)
-    return np.unique(keys.view(np.dtype((np.void, keys.dtype.itemsize * keys.shape[1]))), return_inverse=True)[1].ravel()
+    rows = keys.view(np.dtype((np.void, keys.dtype.itemsize * keys.shape[1])))
+    return np.unique(rows, return_inverse=True)[1].ravel()
 
 
 def sphere_uv(places: np.ndarray) -> np.ndarray:

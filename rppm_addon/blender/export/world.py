@@ -30,7 +30,7 @@ def export_world(world: bpy.types.World | None, report: Report, images: ImageTab
     exporter = GraphExporter(owner, report, images)
     if output.inputs["Volume"].is_linked:
         report.warn(f"{owner}: its volume is not rendered yet and is ignored")
-    exporter.graph.surface = exporter.shader(output.inputs["Surface"])
+    exporter.graph.surface = exporter.surface(output)
     if exporter.graph.surface is None:
         return World(), []
     suns = [_sun(exporter.graph, index, sky, owner) for index, sky in exporter.skies.items()]

@@ -3,7 +3,8 @@
 #include "common/bsdf/microfacet.glsl"
 
 const int CLOSURE_LOBES = 3;
-const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u;
+const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
+           CLOSURE_KEEPS_LIGHT = 8u;  // photons light it, but it sends none on
 
 Closure empty_closure() {
     vec3 none = vec3(0.0);

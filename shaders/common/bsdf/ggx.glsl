@@ -6,16 +6,18 @@
 
 struct MicrofacetFrame { vec3 t; vec3 b; vec3 n; vec2 alpha; };
 
-// Direction and ratio of the axes in two 16-bit parts: the angle of the rougher axis from
-// the normal's own tangent as a share of half a turn, and sqrt(smaller alpha / greater alpha).
+// Direction and ratio of the axes in two 16-bit parts: where the rougher axis meets the diamond |x| + |y| = 1, y >= 0,
+// about the normal's own tangent frame, and sqrt(smaller alpha / greater alpha).
 const uint ISOTROPIC = 0xffff0000u;
 
 MicrofacetFrame microfacet_frame(vec3 n, float alpha, uint anisotropy) {
     vec2 axes = unpackUnorm2x16(anisotropy);
     vec3 t, b;
     tangent_frame(n, t, b);
-    float c = cos(PI * axes.x), s = sin(PI * axes.x), aspect = max(axes.y, 1e-3);
-    return MicrofacetFrame(c * t + s * b, c * b - s * t, n, max(vec2(alpha / aspect, alpha * aspect), 1e-7));
+    vec2 along = vec2(1.0 - 2.0 * axes.x, 1.0 - abs(1.0 - 2.0 * axes.x));
+    along *= inversesqrt(dot(along, along));
+    float aspect = max(axes.y, 1e-3);
+    return MicrofacetFrame(along.x * t + along.y * b, along.x * b - along.y * t, n, max(vec2(alpha / aspect, alpha * aspect), 1e-7));
 }
 
 // Anisotropy whose greater alpha lies along the tangent; n as a lobe keeps it, unpacked again.
@@ -24,7 +26,8 @@ uint pack_anisotropy(vec3 n, vec3 tangent, float aspect) {
     tangent_frame(n, t, b);
     vec2 along = vec2(dot(tangent, t), dot(tangent, b));
     if (aspect >= 1.0 || dot(along, along) < 1e-12) return ISOTROPIC;
-    return packUnorm2x16(vec2(fract(atan(along.y, along.x) / PI), aspect));
+    if (along.y < 0.0) along = -along;
+    return packUnorm2x16(vec2(0.5 - 0.5 * along.x / (abs(along.x) + along.y), aspect));
 }
 
 vec3 to_frame(MicrofacetFrame frame, vec3 v) { return vec3(dot(v, frame.t), dot(v, frame.b), dot(v, frame.n)); }

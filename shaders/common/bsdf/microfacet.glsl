@@ -137,7 +137,7 @@ vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
     if (lobe_is_sheen(lobe.kind)) {
         if (cosine_o <= 0.0 || cosine_i <= 0.0) return vec3(0.0);
-        float scattered = lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, sheen_frame(n, wo), wi)
+        float scattered = lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, n, wo, wi)
                                                   : velvet_scattered(lobe.f0.x, n, wo, wi);
         return lobe.weight * (scattered / cosine_i);
     }
@@ -157,7 +157,7 @@ vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 // Density with which sample_lobe gives a direction, 1/sr.
 float lobe_density(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     if (lobe_is_sheen(lobe.kind))
-        return lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, sheen_frame(n, wo), wi) : max(dot(n, wi), 0.0) / PI;
+        return lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, n, wo, wi) : max(dot(n, wi), 0.0) / PI;
     vec3 h;
     float oh, ih;
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return 0.0;

@@ -18,10 +18,10 @@ SheenFrame sheen_frame(vec3 n, vec3 wo) {
 }
 
 // coefficients a and b: the direction (a x + b z, a y, z) is distributed by the cosine. 1/sr; z is wi's cosine.
-float sheen_density(vec2 coefficients, SheenFrame frame, vec3 wi) {
-    float z = max(dot(wi, frame.n), 0.0);
-    vec3 v = vec3(coefficients.x * dot(wi, frame.t) + coefficients.y * z, coefficients.x * dot(wi, frame.b), z);
-    float ratio = coefficients.x / dot(v, v);
+float sheen_density(vec2 coefficients, vec3 n, vec3 wo, vec3 wi) {
+    float a = coefficients.x, b = coefficients.y, z = max(dot(wi, n), 0.0), cosine_o = dot(wo, n);
+    float x = (dot(wo, wi) - cosine_o * z) * inversesqrt(max(1.0 - cosine_o * cosine_o, 1e-12));
+    float ratio = a / max(a * a * (1.0 - z * z) + 2.0 * a * b * x * z + (b * b + 1.0) * z * z, 1e-20);
     return z * ratio * ratio / PI;
 }
 

@@ -24,9 +24,9 @@ void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 obje
     uv = vec3(surface.uv, 0.0);
     camera = world ? mat3(parameters.world_to_camera) * surface.position : to_camera(surface.position);
     camera.z = -camera.z;
-    vec2 plane = parameters.orthographic != 0u ? camera.xy : camera.xy / max(abs(camera.z), 1e-20);
+    vec2 plane = parameters.orthographic != 0u ? camera.xy : camera.xy / (camera.z < 0.0 ? min(camera.z, -1e-20) : max(camera.z, 1e-20));
     window = vec3((plane - parameters.window.xz) / (parameters.window.yw - parameters.window.xz), 0.0);
-    reflection = world ? surface.position : 2.0 * dot(surface.normal, surface.viewer) * surface.normal - surface.viewer;
+    reflection = world ? surface.viewer : 2.0 * dot(surface.normal, surface.viewer) * surface.normal - surface.viewer;
 }
 
 // Coordinates in the space of another object, whose world-to-object rows are the inputs.

@@ -42,22 +42,23 @@ vec3 box_weights(vec3 n, float blend) {
 
 void node_tex_image(Surface surface, int projection, int interpolation, int extension, int divide, uint image, vec3 vector,
                     float projection_blend, out vec3 color, out float alpha) {
-    vec4 found;
-    if (projection == PROJECTION_BOX) {
-        vec3 n = normal_to_object(surface, surface.normal);
+    bool box = projection == PROJECTION_BOX;
+    vec3 n = vec3(0.0), weights = vec3(1.0, 0.0, 0.0);
+    if (box) {
+        n = normal_to_object(surface, surface.normal);
         n /= max(length(n), 1e-20);
-        vec3 weights = box_weights(n, projection_blend);
-        found = vec4(0.0);
-        for (int axis = 0; axis < 3; ++axis) {
-            vec2 at = axis == 0 ? vec2(n.x < 0.0 ? 1.0 - vector.y : vector.y, vector.z)
-                    : axis == 1 ? vec2(n.y > 0.0 ? 1.0 - vector.x : vector.x, vector.z)
-                                : vec2(n.z > 0.0 ? 1.0 - vector.y : vector.y, vector.x);
-            found += weights[axis] * sample_image(image, at, interpolation, extension, divide);
-        }
-    } else {
-        vec2 at = projection == PROJECTION_SPHERE ? sphere_to_uv(vector - 0.5)
-                : projection == PROJECTION_TUBE ? tube_to_uv(vector - 0.5) : vector.xy;
-        found = sample_image(image, at, interpolation, extension, divide);
+        weights = box_weights(n, projection_blend);
+    }
+    vec4 found = vec4(0.0);
+    for (int axis = 0; axis < (box ? 3 : 1); ++axis) {
+        vec2 at = vector.xy;
+        if (box)
+            at = axis == 0 ? vec2(n.x < 0.0 ? 1.0 - vector.y : vector.y, vector.z)
+               : axis == 1 ? vec2(n.y > 0.0 ? 1.0 - vector.x : vector.x, vector.z)
+                           : vec2(n.z > 0.0 ? 1.0 - vector.y : vector.y, vector.x);
+        else if (projection == PROJECTION_SPHERE) at = sphere_to_uv(vector - 0.5);
+        else if (projection == PROJECTION_TUBE) at = tube_to_uv(2.0 * vector - 1.0);
+        found += weights[axis] * sample_image(image, at, interpolation, extension, divide);
     }
     color = found.rgb;
     alpha = found.a;
@@ -73,7 +74,7 @@ void node_tex_image_tiles(int interpolation, int extension, int divide, uint tab
     if (any(lessThan(corner, vec2(0.0))) || corner.x > 9.0 || tile < 0 || tile >= int(tiles)) return;
     float image = material_data[table + uint(tile)];
     if (image < 0.0) return;
-    vec4 found = sample_image(uint(image), vector.xy - corner, interpolation, EXTENSION_EXTEND, divide);
+    vec4 found = sample_image(uint(image), vector.xy - corner, interpolation, extension, divide);
     color = found.rgb;
     alpha = found.a;
 }

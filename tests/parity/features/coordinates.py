@@ -71,7 +71,7 @@ for _output, _scale, _offset in CAMERA:
 # --- attributes ---------------------------------------------------------------------------------------
 
 
-def _attribute(kind: str, domain: str, field: str, width: int):
+def attribute_values(kind: str, domain: str, field: str, width: int):
     """Random values in an attribute of all meshes."""
 
     def prepare() -> None:
@@ -99,18 +99,18 @@ for _kind, (_field, _width) in ATTRIBUTES.items():
         value(
             "Attribute", f"Color of {_kind} by {_domain}",
             lambda net: net.out("Attribute", "Color", attribute_name="Values"), 0.2 if _kind.startswith("INT") else 1.0,
-            prepare=_attribute(_kind, _domain, _field, _width),
+            prepare=attribute_values(_kind, _domain, _field, _width),
         )  # fmt: skip
 for _output in ("Vector", "Fac", "Alpha"):
     for _kind in ("FLOAT", "FLOAT_COLOR", "FLOAT_VECTOR"):
         value(
             "Attribute", f"{_output} of {_kind}",
             (lambda output: lambda net: net.out("Attribute", output, attribute_name="Values"))(_output),
-            prepare=_attribute(_kind, "POINT", *ATTRIBUTES[_kind]),
+            prepare=attribute_values(_kind, "POINT", *ATTRIBUTES[_kind]),
         )  # fmt: skip
 value(
     "Attribute", "of an edge", lambda net: net.out("Attribute", "Fac", attribute_name="Values"), 1.0, 0.2,
-    prepare=_attribute("FLOAT", "EDGE", "value", 1),
+    prepare=attribute_values("FLOAT", "EDGE", "value", 1),
 )  # fmt: skip
 value("Attribute", "missing", lambda net: net.out("Attribute", "Color", attribute_name="Nothing"), 1.0, 0.2)
 
@@ -132,11 +132,11 @@ value("Attribute", "property color, OBJECT",
       lambda net: net.out("Attribute", "Color", attribute_name="color", attribute_type="OBJECT"),
       prepare=_properties)  # fmt: skip
 value("Color Attribute", "named", lambda net: net.out("VertexColor", "Color", layer_name="Values"),
-      prepare=_attribute("BYTE_COLOR", "CORNER", "color", 4))  # fmt: skip
+      prepare=attribute_values("BYTE_COLOR", "CORNER", "color", 4))  # fmt: skip
 value("Color Attribute", "in use", lambda net: net.out("VertexColor", "Color"),
-      prepare=_attribute("FLOAT_COLOR", "POINT", "color", 4))  # fmt: skip
+      prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4))  # fmt: skip
 value("Color Attribute", "Alpha", lambda net: net.out("VertexColor", "Alpha", layer_name="Values"),
-      prepare=_attribute("FLOAT_COLOR", "POINT", "color", 4))  # fmt: skip
+      prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4))  # fmt: skip
 
 
 for _output, _scale, _offset in (

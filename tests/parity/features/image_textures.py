@@ -13,7 +13,7 @@ import OpenEXR
 from PIL import Image
 
 from .coordinates import second_uv
-from .rows import lit, value
+from .rows import value
 
 GROUP = "Image Texture"
 
@@ -37,6 +37,8 @@ def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
     """A small picture file: png, opaque (png without alpha), grey (png), deep (png with 16 bits), exr."""
     path = _folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
     pixels = _pixels(width, height, 5)
+    if kind == "premultiplied":
+        pixels[..., :3] *= pixels[..., 3:]
     if kind == "exr":
         planes = {c: np.float32(3.0 * pixels[..., k]) for k, c in enumerate("RGB")}
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -46,7 +48,7 @@ def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
         Image.fromarray(grey).save(path)
     else:
         shown = np.uint8(np.round(255 * pixels))
-        shown = {"png": shown, "opaque": shown[..., :3], "grey": shown[..., 0]}[kind]
+        shown = {"png": shown, "premultiplied": shown, "opaque": shown[..., :3], "grey": shown[..., 0]}[kind]
         Image.fromarray(shown).save(path)
     return str(path)
 
@@ -94,21 +96,25 @@ for _projection in ("BOX", "SPHERE", "TUBE"):
 for _blend in (0.2, 1.0):
     value(GROUP, f"projection BOX, blend {_blend}",
           texture(projection="BOX", projection_blend=_blend, mapping=("Object", 0.1, 0.8)))  # fmt: skip
-for _space in ("sRGB", "Non-Color", "Linear Rec.709", "Raw"):
+for _space in ("sRGB", "Non-Color", "Linear Rec.709"):
     value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"))
-value(GROUP, "colour space ACEScg", texture(space="ACEScg", kind="opaque"))
-for _space in ("Linear Rec.709", "Non-Color"):
-    value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3)
+for _space in ("ACEScg", "Linear Rec.2020", "Linear CIE-XYZ E", "Display P3", "Rec.1886"):
+    value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.5, 0.8)
+value(GROUP, "colour space Filmic sRGB", texture(space="Filmic sRGB", kind="opaque"), warns=True, mean=0.8, block=1.0,
+      reason="read as sRGB")  # fmt: skip
+for _space in ("Linear Rec.709", "Non-Color", "sRGB", "ACEScg"):
+    value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3, 0.5)
 value(GROUP, "16 bits, grey", texture(kind="deep"))
 value(GROUP, "8 bits, grey", texture(kind="grey"))
 for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"):
-    value(GROUP, f"alpha {_alpha}, colour", texture(alpha=_alpha))
+    _kind = "premultiplied" if _alpha == "PREMUL" else "png"
+    value(GROUP, f"alpha {_alpha}, colour", texture(alpha=_alpha, kind=_kind))
     value(GROUP, f"alpha {_alpha}, alpha", texture("Alpha", alpha=_alpha))
 
 
 def _color_over_alpha(alpha):
     def give(net):
-        node = net.node("TexImage", image=image("png", None, alpha))
+        node = net.node("TexImage", image=image("premultiplied" if alpha == "PREMUL" else "png", None, alpha))
         return net.out("MixRGB", inputs={0: node.outputs["Alpha"], 1: (0.9, 0.1, 0.1), 2: node.outputs["Color"]})
 
     return give

@@ -37,6 +37,8 @@ class Row:
     """Largest difference of a block's mean, likewise."""
     settings: dict = field(default_factory=dict)
     """Of RPPM, in place of the usual ones."""
+    effort: int = 1
+    """How many times the usual iterations and samples it takes to tell anything."""
     warns: bool = False
     """Whether RPPM tells the user about what it does not render."""
 

@@ -28,8 +28,8 @@ TEXTURES = {
     "Noise, ridged": ("TexNoise", {"Scale": 2.0}, {"noise_type": "RIDGED_MULTIFRACTAL"}),
     "Voronoi": ("TexVoronoi", {"Scale": 3.0}, {}), "Voronoi, F2": ("TexVoronoi", {}, {"feature": "F2"}),
     "Voronoi, edges": ("TexVoronoi", {"Scale": 3.0}, {"feature": "DISTANCE_TO_EDGE"}),
-    "Checker": ("TexChecker", {"Scale": 4.3}, {}), "Brick": ("TexBrick", {"Scale": 3.0}, {}),
-    "Brick, offset": ("TexBrick", {"Scale": 3.0}, {"offset": 0.3, "squash": 1.5, "squash_frequency": 3}),
+    "Checker": ("TexChecker", {"Scale": 4.3}, {}), "Brick": ("TexBrick", {"Scale": 3.0, "Mortar Size": 0.06, "Mortar Smooth": 1.0}, {}),
+    "Brick, offset": ("TexBrick", {"Scale": 3.0, "Mortar Size": 0.06, "Mortar Smooth": 1.0}, {"offset": 0.3, "squash": 1.5, "squash_frequency": 3}),
     "Wave": ("TexWave", {"Scale": 2.0, "Distortion": 2.0}, {}),
     "Wave, rings": ("TexWave", {"Scale": 2.0}, {"wave_type": "RINGS", "wave_profile": "SAW"}),
     "Gradient": ("TexGradient", {}, {}), "Gradient, spherical": ("TexGradient", {}, {"gradient_type": "SPHERICAL"}),
@@ -63,7 +63,7 @@ for _operation in ("ADD", "CROSS_PRODUCT", "DOT_PRODUCT", "NORMALIZE", "REFLECT"
 for _blend in ("MIX", "MULTIPLY", "OVERLAY", "SCREEN", "DIFFERENCE", "COLOR", "HUE", "SATURATION", "VALUE", "LINEAR_LIGHT"):
     value("Mix", f"Color, {_blend}", (lambda blend: lambda net: net.out("Mix", 2, {
         "Factor_Float": 0.7, "A_Color": _noise(net, "Color"), "B_Color": (0.7, 0.3, 0.1)},
-        data_type="RGBA", blend_type=blend))(_blend), 1.0, 0.3)  # fmt: skip
+        data_type="RGBA", blend_type=blend))(_blend), 0.7, 0.8)  # fmt: skip
 value("Mix", "Float", lambda net: net.out("Mix", 0, {0: _noise(net), 2: 0.2, 3: 0.9}))
 value("Mix", "Vector, by components", lambda net: net.out("Mix", 1, {
     1: _noise(net, "Color"), 4: (0.2, 0.3, 0.1), 5: (0.9, 0.4, 0.6)}, data_type="VECTOR",
@@ -85,13 +85,8 @@ def _ramp(interpolation, mode="RGB"):
 
 for _interpolation in ("LINEAR", "CONSTANT", "EASE", "B_SPLINE", "CARDINAL"):
     value("Color Ramp", _interpolation, _of_noise("ValToRGB", prepare=_ramp(_interpolation)))
-value("Color Ramp", "Alpha", _of_noise("ValToRGB", 0, "Alpha" and 1, prepare=_ramp("LINEAR")))
-value("Color Ramp", "HSV", lambda net: _of_noise("ValToRGB", prepare=_hsv_ramp)(net))
-
-
-def _hsv_ramp(node):
-    _ramp("LINEAR")(node)
-    node.color_ramp.color_mode = "HSV"
+value("Color Ramp", "Alpha", _of_noise("ValToRGB", 0, 1, prepare=_ramp("LINEAR")))
+value("Color Ramp", "HSV", _of_noise("ValToRGB", prepare=_ramp("LINEAR", "HSV")))
 
 
 def _bend(node):
@@ -141,7 +136,7 @@ value("Blackbody", "800 to 9000 K", lambda net: net.out("Blackbody", inputs={0: 
     "MapRange", inputs={0: _noise(net), 1: 0.3, 2: 0.7, 3: 800.0, 4: 9000.0})}), 0.1, 0.1)  # fmt: skip
 value("Wavelength", "380 to 720 nm", lambda net: net.out("Wavelength", inputs={0: net.out(
     "MapRange", inputs={0: _noise(net), 1: 0.3, 2: 0.7, 3: 380.0, 4: 720.0})}), 0.5, 0.5)  # fmt: skip
-value("Normal", "dot", _of_noise("Normal", 0, "Dot", color=True) if False else lambda net: net.out(
+value("Normal", "dot", lambda net: net.out(
     "Normal", "Dot", {0: net.out("TexCoord", "Normal")}), 0.4, 0.5)  # fmt: skip
 value("Vector Rotate", "axis and angle", _of_noise("VectorRotate", 0, 0, {"Angle": 0.8}, True), 0.4, 0.4)
 

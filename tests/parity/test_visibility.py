@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ray visibility of objects and lights, lamps whose nodes change the falloff, and emission that varies over a mesh."""
+
+import math
+
+import pytest
+
+from .comparison import CONVERGED, compare
+from .scenes import (
+    DIFFUSE,
+    GLOSSY,
+    ball,
+    camera,
+    light,
+    material,
+    new_scene,
+    place,
+    plane,
+    render_cycles,
+    render_rppm,
+)
+
+MODES = {
+    "RAYS": {"photons": 8192, "photon_path_length": 6, "camera_path_length": 6, "iterations": 48},
+    "PHOTONS": {"photons": 65536, "photon_path_length": 6, "camera_path_length": 6, "iterations": 16},
+}
+OBJECTS = [
+    ("visible_camera", "RAYS"),
+    ("visible_diffuse", "RAYS"),
+    ("visible_glossy", "RAYS"),
+    ("visible_shadow", "RAYS"),
+    ("visible_shadow", "PHOTONS"),
+]
+
+
+@pytest.mark.parametrize(("flag", "mode"), OBJECTS)
+def test_objects_that_some_rays_do_not_see(renderer, flag, mode):
+    """A red ball between a grey floor and a mirror."""
+    new_scene()
+    plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7)))
+    plane(3.0, material(GLOSSY, Color=(0.9, 0.9, 0.9), Roughness=0.0), place(at=(0.0, 1.5, 1.0), turn=(90.0, 0.0, 0.0)))
+    seen = ball(0.5, material(DIFFUSE, Color=(0.8, 0.2, 0.1)), place(at=(0.0, 0.0, 0.6)), segments=32)
+    setattr(seen, flag, False)
+    light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
+    camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), 40.0)
+    reference = render_cycles(samples=512)
+    result = render_rppm(renderer, direct_light=mode, **MODES[mode])
+    compare(f"object_{flag}_{mode.lower()}", result.pictures, reference, CONVERGED)
+
+
+@pytest.mark.parametrize("flag", ["visible_diffuse", "visible_glossy"])
+def test_lights_that_do_not_light_all(renderer, flag):
+    """A rough metal ball on a floor."""
+    new_scene(world=0.1)
+    plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7)))
+    ball(0.7, material(GLOSSY, "GGX", Color=(0.9, 0.6, 0.3), Roughness=0.4), place(at=(0.0, 0.0, 0.7)))
+    lamp = light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
+    setattr(lamp, flag, False)
+    camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), 40.0)
+    reference = render_cycles(samples=512)
+    result = render_rppm(renderer, direct_light="RAYS", **MODES["RAYS"])
+    compare(f"light_{flag}", result.pictures, reference, CONVERGED)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize(("kind", "output"), [("POINT", "Linear"), ("AREA", "Constant"), ("SPOT", "Quadratic")])
+def test_falloff_of_lamps(renderer, kind, output, mode):
+    new_scene()
+    plane(3.0, material(DIFFUSE, Color=(0.8, 0.7, 0.6)))
+    camera((0.0, -1.0, 6.0), (0.0, 0.0, 0.0), 30.0)
+    lamp = light(kind, 40.0, place(at=(0.3, 0.2, 2.0)))
+    if lamp.data.node_tree is None:
+        lamp.data.use_nodes = True
+    tree = lamp.data.node_tree
+    falloff = tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value = 0.8
+    tree.links.new(falloff.outputs[output], tree.nodes["Emission"].inputs["Strength"])
+    reference = render_cycles(samples=256)
+    result = render_rppm(renderer, direct_light=mode, **MODES[mode])
+    compare(f"falloff_{kind.lower()}_{mode.lower()}", result.pictures, reference, CONVERGED)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_emission_that_varies_over_a_mesh(renderer, mode):
+    """A square of two triangles with a coarse checker of two colours, which also fades towards grazing angles."""
+    new_scene()
+    plane(3.0, material(DIFFUSE, Color=(0.8, 0.8, 0.8)))
+    camera((0.0, -1.0, 6.0), (0.0, 0.0, 0.0), 30.0)
+    glow = material("ShaderNodeEmission", Strength=20.0)
+    tree = glow.node_tree
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    checker, facing = tree.nodes.new("ShaderNodeTexChecker"), tree.nodes.new("ShaderNodeLayerWeight")
+    checker.inputs["Color1"].default_value, checker.inputs["Color2"].default_value = (1, 0.1, 0.1, 1), (0.1, 0.2, 1, 1)
+    checker.inputs["Scale"].default_value = 2.0
+    fade = tree.nodes.new("ShaderNodeMath")
+    fade.operation, fade.inputs[0].default_value = "SUBTRACT", 20.0
+    scale = tree.nodes.new("ShaderNodeMath")
+    scale.operation, scale.inputs[1].default_value = "MULTIPLY", 20.0
+    tree.links.new(facing.outputs["Facing"], scale.inputs[0])
+    tree.links.new(scale.outputs[0], fade.inputs[1])
+    tree.links.new(fade.outputs[0], emission.inputs["Strength"])
+    tree.links.new(checker.outputs["Color"], emission.inputs["Color"])
+    plane(0.6, glow, place(at=(0.3, 0.0, 1.2), turn=(160.0, 0.0, 30.0)))
+    reference = render_cycles(samples=512)
+    result = render_rppm(renderer, direct_light=mode, **MODES[mode])
+    compare(f"emission_varies_{mode.lower()}", result.pictures, reference, CONVERGED)
+
+
+def test_shadow_catchers_show_the_shadow_of_lights(renderer):
+    """Of a dark ball, which reflects next to nothing onto the floor."""
+    new_scene(world=0.5)
+    plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7))).is_shadow_catcher = True
+    ball(0.5, material(DIFFUSE, Color=(0.02, 0.02, 0.02)), place(at=(0.0, 0.0, 0.6)), segments=32)
+    light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
+    camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), math.degrees(0.7))
+    reference = render_cycles(samples=512)
+    result = render_rppm(renderer, direct_light="RAYS", **MODES["RAYS"])
+    compare("shadow_catcher", result.pictures, reference, CONVERGED)

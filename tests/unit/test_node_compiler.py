@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Node graphs to GLSL: what is part of the text, what is a constant, and what is refused."""
+
+import numpy as np
+import pytest
+from every_node import programs
+
+from rppm_addon.materials.compiler import GraphError, Resource, compile_graph
+from rppm_addon.scene import Link, NodeGraph
+
+
+def textured(scale=5.0, color=(0.8, 0.2, 0.1), table=None, image=0, attribute="UVMap", operation="ADD", roughness=0.5):
+    graph = NodeGraph()
+    place = graph.add("uvmap", "uv", attribute=attribute)
+    picture = graph.add("tex_image", "color", image=image, vector=place)
+    table = np.zeros((257, 4), np.float32) if table is None else table
+    ramp = graph.add("val_to_rgb", "color", table=table, fac=picture)
+    math = graph.add("math", "value", options={"operation": operation}, value=ramp, value_001=scale)
+    mixed = graph.add("mix_color", "result_color", factor_float=math, a_color=color, b_color=ramp)
+    graph.surface = graph.add("bsdf_principled", "bsdf", base_color=mixed, roughness=roughness)
+    return graph
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"scale": 7.0}, {"color": (0.0, 1.0, 0.5)}, {"table": np.ones((33, 4), np.float32)}, {"image": 3},
+        {"attribute": "Other"}, {"roughness": 0.0}, {"scale": float("nan")}, {"scale": 1e300},
+    ],
+)  # fmt: skip
+def test_constants_leave_the_text_as_it_is(change):
+    assert compile_graph(textured(**change)).text == compile_graph(textured()).text
+
+
+def test_constants_come_in_the_order_of_use():
+    constants = compile_graph(textured(7.0, (0.25, 0.5, 0.75), roughness=0.125)).constants
+    numbers = [constant for constant in constants if not isinstance(constant, Resource)]
+    assert {7.0, 0.125} <= set(numbers)
+    first = numbers.index(0.25)
+    assert numbers[first : first + 3] == [0.25, 0.5, 0.75]
+    assert sorted(resource.what for resource in constants if isinstance(resource, Resource)) == [
+        "attribute", "image", "table",
+    ]  # fmt: skip
+
+
+def test_numbers_are_finite_in_single_precision():
+    for value in (float("nan"), float("inf"), -float("inf"), 1e300, -1e300, (float("nan"), 1e300, 0.0)):
+        graph = NodeGraph()
+        graph.surface = graph.add("emission", "emission", color=value, strength=value)
+        assert np.isfinite(np.array(compile_graph(graph).constants, np.float32)).all()
+
+
+def other_structures():
+    yield "another operation", textured(operation="SINE")
+    graph = textured()
+    graph.nodes[graph.surface.node].inputs["roughness"] = Link(1, "color")
+    yield "another link", graph
+    graph = textured()
+    graph.nodes[1].options["interpolation"] = "Closest"
+    yield "another option", graph
+    graph = textured()
+    graph.surface = graph.add("add_shader", "shader", shader=graph.surface)
+    yield "another shader", graph
+    graph = textured()
+    graph.normal = graph.add("bump", "normal")
+    yield "another normal", graph
+
+
+@pytest.mark.parametrize(("name", "graph"), list(other_structures()))
+def test_other_structures_are_other_texts(name, graph):
+    assert compile_graph(graph).text != compile_graph(textured()).text
+
+
+def test_nodes_that_nothing_uses_leave_the_text_as_it_is():
+    graph = NodeGraph()
+    for _ in range(3):
+        graph.add("tex_noise", "color")
+    color = graph.add("combine_color", "color", red=0.5)
+    graph.add("tex_voronoi", "color")
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=color)
+    plain = NodeGraph()
+    plain.surface = plain.add("bsdf_diffuse", "bsdf", color=plain.add("combine_color", "color", red=0.25))
+    assert compile_graph(graph).text == compile_graph(plain).text
+
+
+def test_shared_nodes_are_emitted_once():
+    """A value that doubles thirty times, and a shader that all of its mixes share."""
+    graph = NodeGraph()
+    value = graph.add("tex_coord", "uv")
+    for _ in range(30):
+        value = graph.add("vector_math", "vector", vector=value, vector_001=value)
+    shader = graph.add("bsdf_diffuse", "bsdf", color=value)
+    for _ in range(30):
+        shader = graph.add("mix_shader", "shader", fac=value, shader=shader, shader_001=shader)
+    graph.surface = shader
+    text = compile_graph(graph).text
+    assert text.count("node_vector_math_add(") == 30 and text.count("node_bsdf_diffuse(") == 1
+    assert text.count("node_tex_coord(") == 1
+
+
+def bumped():
+    graph = NodeGraph()
+    place = graph.add("tex_coord", "uv")
+    noise = graph.add("tex_noise", "fac", vector=place)
+    normal = graph.add("bump", "normal", height=noise)
+    graph.surface = graph.add(
+        "bsdf_diffuse", "bsdf", color=graph.add("tex_noise", "color", vector=place), normal=normal
+    )
+    return graph
+
+
+def test_bump_asks_for_its_height_at_three_places():
+    text = compile_graph(bumped()).text
+    (name,) = {word.split("(")[0] for word in text.split() if word.startswith("height_") and "(Surface" in word}
+    assert text.count(f"{name}(surface_beside(surface, way), first)") == 1 and "k < 3" in text
+    body = text.split(f"float {name}(")[1].split("}")[0]
+    assert body.count("node_tex_noise(") == 1 and text.count("node_tex_noise(") == 2
+
+
+@pytest.mark.parametrize("depth", [3, 100])
+def test_bumps_within_heights_end(depth):
+    """The height of each bump depends on the normal of the one before: 3^depth evaluations if taken at their word; of
+    two bumps there are 3^2."""
+    graph = NodeGraph()
+    normal = graph.add("new_geometry", "normal")
+    for _ in range(depth):
+        normal = graph.add("bump", "normal", height=graph.add("fresnel", "fac", normal=normal))
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", normal=normal)
+    text = compile_graph(graph).text
+    assert text.count("node_bump(") == 2 and text.count("node_fresnel(") == 2
+    assert len(text) < 5000
+
+
+def test_bumps_one_after_the_other_are_all_there():
+    graph = NodeGraph()
+    normal = graph.add("new_geometry", "normal")
+    for _ in range(100):
+        normal = graph.add("bump", "normal", height=graph.add("tex_noise", "fac"), normal=normal)
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", normal=normal)
+    assert compile_graph(graph).text.count("node_bump(") == 100
+
+
+def test_a_normal_of_the_whole_surface_shares_nodes_with_it():
+    graph = bumped()
+    graph.normal = graph.nodes[graph.surface.node].inputs["normal"]
+    text = compile_graph(graph).text
+    main = text.split("void evaluate_material")[1]
+    assert main.count("material_normal(surface, first)") == 1
+    declared = [line.strip() for line in main.splitlines() if line.strip().startswith(("vec3 ", "float "))]
+    assert len(declared) == len(set(declared))
+
+
+def bad_graphs():
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_of_tomorrow", "bsdf", name="New")
+    yield "unknown kind", graph, "New.*unknown kind"
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", name="Lost", color=Link(7, "color"))
+    yield "link to nowhere", graph, "Lost"
+    graph = NodeGraph()
+    graph.surface = Link(3, "bsdf")
+    yield "surface nowhere", graph, "node 3 of 0"
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", name="Loop", color=Link(0, "bsdf"))
+    yield "link to itself", graph, "Loop"
+    graph = NodeGraph()
+    first = graph.add("math", "value", name="First", value=Link(1, "value"))
+    graph.add("math", "value", name="Second", value=first)
+    graph.surface = graph.add("emission", "emission", color=first)
+    yield "circle", graph, "First"
+    graph = NodeGraph()
+    shader = graph.add("bsdf_diffuse", "bsdf", name="Shader")
+    graph.surface = graph.add("emission", "emission", color=shader)
+    yield "shader as a colour", graph, "Shader"
+    graph = NodeGraph()
+    graph.surface = graph.add("math", "value", name="Number")
+    yield "number as a surface", graph, "Number.*no shader"
+    graph = NodeGraph()
+    value = graph.add("tex_noise", "smell", name="Noise")
+    graph.surface = graph.add("emission", "emission", color=value)
+    yield "unknown output", graph, "Noise.*smell"
+    graph = NodeGraph()
+    value = graph.add("math", "value", name="Sum", options={"operation": "INTEGRATE"})
+    graph.surface = graph.add("emission", "emission", color=value)
+    yield "unknown option", graph, "Sum.*INTEGRATE"
+    graph = NodeGraph()
+    graph.surface = graph.add("emission", "emission", name="Odd", color=(1.0, 2.0))
+    yield "two numbers", graph, "Odd.*color"
+    graph = NodeGraph()
+    graph.surface = graph.add("emission", "emission", name="Odd", color="red")
+    yield "a text", graph, "Odd"
+
+
+BAD = list(bad_graphs())
+
+
+@pytest.mark.parametrize(("graph", "message"), [case[1:] for case in BAD], ids=[case[0] for case in BAD])
+def test_bad_graphs_are_refused_by_name(graph, message):
+    with pytest.raises(GraphError, match=message):
+        compile_graph(graph)
+
+
+def test_a_chain_of_five_thousand_nodes():
+    graph = NodeGraph()
+    value = graph.add("tex_coord", "uv")
+    for _ in range(5000):
+        value = graph.add("math", "value", value=value)
+    graph.surface = graph.add("emission", "emission", color=value)
+    text = compile_graph(graph).text
+    assert text.count("node_math_add(") == 5000 and len(text) < 200 * 5000
+
+
+def test_the_same_graph_gives_the_same_text_each_time():
+    assert programs() == programs()
