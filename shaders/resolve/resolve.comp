@@ -102,7 +102,9 @@ void main() {
         builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
         builder.closure.flags |= CLOSURE_CATCHES_SHADOWS;
     }
+    bool opaque = photon && (flags & PHOTON_CASTS_SHADOWS) != 0u && materials[material].opaque_shadow != 0u;
     if (passes || catches) builder.closure.transparent = vec3(1.0);
+    else if (opaque) builder.closure.transparent = vec3(0.0);
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
