@@ -6,6 +6,8 @@ import numpy as np
 from blender_scenes import add_mesh, add_object, export, new_material, shaders
 from mathutils import Matrix
 
+from rppm_addon.scene import RayVisibility
+
 
 def test_nested_collection_instances_have_blenders_matrices(scene):
     quad = add_mesh(scene, "Quad", location=(1.0, 0.0, 0.0))
@@ -79,7 +81,8 @@ def test_hidden_things_stay_out(scene):
     partly.visible_shadow = False
     exported = export(scene)
     assert sorted(instance.object_name for instance in exported.instances) == ["Partly", "Seen"]
-    assert any('"Partly"' in warning for warning in exported.warnings)
+    partly, seen = sorted(exported.instances, key=lambda instance: instance.object_name)
+    assert partly.visibility == RayVisibility.ALL ^ RayVisibility.SHADOW and seen.visibility == RayVisibility.ALL
 
 
 def test_object_slots_win_over_those_of_the_mesh(scene):

@@ -21,7 +21,7 @@ EXPECTED = {
     "diamond_ring": (7278, 8, 1, 0),
     "water_caustic_cornell": (103487, 9, 0, 0),
     "fireplace_room": (143163, 19, 0, 5),
-    "bmw27": (699800, 23, 0, 3),
+    "bmw27": (699800, 23, 0, 4),
     "bathroom": (380290, 30, 0, 6),
     "mirror_room": (38544, 4, 2, 1),
     "grass_instances": (5644514, 2, 1, 0),

@@ -69,6 +69,8 @@ class ObjectExporter:
         if source.type != "MESH":
             self._unconverted.append((source.original, matrix, self._shading(instance, source)))
             return
+        if len(source.data.polygons) == 0:
+            return  # and its materials are not needed
         original = source.original
         if original.type in CONVERTED_TYPES:
             self._converted.add((original.as_pointer(), matrix.tobytes()))
