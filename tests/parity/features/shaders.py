@@ -25,8 +25,7 @@ for _roughness in (0.0, 0.25, 0.6):
             shader("BsdfAnisotropic", COLOR | {"Roughness": _roughness}, distribution=_distribution),
             effort=1 if _roughness else 3)  # fmt: skip
 lit("Glossy", "BECKMANN, roughness 0.3", shader(
-    "BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="BECKMANN"), mean=0.03, block=0.2,
-    reason="GGX stands in")  # fmt: skip
+    "BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="BECKMANN"))  # fmt: skip
 lit("Glossy", "ASHIKHMIN_SHIRLEY, roughness 0.3",
     shader("BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="ASHIKHMIN_SHIRLEY"), mean=0.04, block=0.15,
     reason="GGX stands in")  # fmt: skip
