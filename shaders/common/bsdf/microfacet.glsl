@@ -74,6 +74,7 @@ struct LobeSample { vec3 direction; vec3 weight; bool transmitted; };
 
 LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_event, bool radiance) {
     LobeSample result = LobeSample(n, vec3(0.0), false);
+    if (dot(wo, n) <= 0.0) return result;
     if (lobe_is_sheen(lobe.kind)) {
         SheenFrame sheen = sheen_frame(n, wo);
         bool fitted = lobe.kind == LOBE_SHEEN;
