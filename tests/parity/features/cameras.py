@@ -49,10 +49,20 @@ cam("fisheye", _panorama("FISHEYE_EQUIDISTANT", fisheye_fov=math.radians(120.0))
 cam("fisheye, equisolid", _panorama("FISHEYE_EQUISOLID", fisheye_lens=15.0, fisheye_fov=math.radians(150.0)))
 cam("mirror ball", _panorama("MIRRORBALL"))
 cam("cylinder", _panorama("CENTRAL_CYLINDRICAL"))
-cam("depth of field", _set(use_dof=True, focus_distance=4.0, aperture_fstop=0.15), Kind.LIGHT,
-    effort=2)  # fmt: skip
-cam("depth of field, 5 blades", _set(use_dof=True, focus_distance=3.6, aperture_fstop=0.12, aperture_blades=5,
-    aperture_rotation=0.4, aperture_ratio=1.5), Kind.LIGHT, effort=2)  # fmt: skip
+cam("depth of field", _set(use_dof=True, focus_distance=4.0, aperture_fstop=0.15), Kind.LIGHT, effort=2)
+cam(
+    "depth of field, 5 blades",
+    _set(
+        use_dof=True,
+        focus_distance=3.6,
+        aperture_fstop=0.12,
+        aperture_blades=5,
+        aperture_rotation=0.4,
+        aperture_ratio=1.5,
+    ),
+    Kind.LIGHT,
+    effort=2,
+)
 
 
 def _film(**properties):
@@ -64,7 +74,17 @@ def _film(**properties):
     return change
 
 
-cam("border", _film(use_border=True, use_crop_to_border=True, border_min_x=0.25, border_max_x=0.75, border_min_y=0.125, border_max_y=0.875))
+cam(
+    "border",
+    _film(
+        use_border=True,
+        use_crop_to_border=True,
+        border_min_x=0.25,
+        border_max_x=0.75,
+        border_min_y=0.125,
+        border_max_y=0.875,
+    ),
+)
 cam("oblong pixels", _film(pixel_aspect_x=2.0, pixel_aspect_y=1.0))
 cam("transparent film", _film(film_transparent=True))
 cam("exposure", lambda camera: setattr(bpy.context.scene.cycles, "film_exposure", 1.7))

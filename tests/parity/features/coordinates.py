@@ -56,12 +56,23 @@ def _turned() -> None:
 
 
 for _output in ("Normal", "True Normal", "Backfacing"):
-    value("Geometry", f"{_output}, seen from behind",
-          (lambda output: lambda net: net.out("NewGeometry", output))(_output), 0.5, 0.5, _turned)  # fmt: skip
+    value(
+        "Geometry",
+        f"{_output}, seen from behind",
+        (lambda output: lambda net: net.out("NewGeometry", output))(_output),
+        0.5,
+        0.5,
+        _turned,
+    )
 value(
-    "Geometry", "Pointiness", lambda net: net.out("NewGeometry", "Pointiness"), warns=True, mean=0.05, block=0.3,
+    "Geometry",
+    "Pointiness",
+    lambda net: net.out("NewGeometry", "Pointiness"),
+    warns=True,
+    mean=0.05,
+    block=0.3,
     reason="surfaces count as flat",
-)  # fmt: skip
+)
 
 CAMERA = (("View Vector", 0.5, 0.5), ("View Z Depth", 0.1, 0.0), ("View Distance", 0.1, 0.0))
 for _output, _scale, _offset in CAMERA:
@@ -97,21 +108,28 @@ for _kind, (_field, _width) in ATTRIBUTES.items():
         if _kind == "FLOAT2":
             _domain = "CORNER"
         value(
-            "Attribute", f"Color of {_kind} by {_domain}",
-            lambda net: net.out("Attribute", "Color", attribute_name="Values"), 0.2 if _kind.startswith("INT") else 1.0,
+            "Attribute",
+            f"Color of {_kind} by {_domain}",
+            lambda net: net.out("Attribute", "Color", attribute_name="Values"),
+            0.2 if _kind.startswith("INT") else 1.0,
             prepare=attribute_values(_kind, _domain, _field, _width),
-        )  # fmt: skip
+        )
 for _output in ("Vector", "Fac", "Alpha"):
     for _kind in ("FLOAT", "FLOAT_COLOR", "FLOAT_VECTOR"):
         value(
-            "Attribute", f"{_output} of {_kind}",
+            "Attribute",
+            f"{_output} of {_kind}",
             (lambda output: lambda net: net.out("Attribute", output, attribute_name="Values"))(_output),
             prepare=attribute_values(_kind, "POINT", *ATTRIBUTES[_kind]),
-        )  # fmt: skip
+        )
 value(
-    "Attribute", "of an edge", lambda net: net.out("Attribute", "Fac", attribute_name="Values"), 1.0, 0.2,
+    "Attribute",
+    "of an edge",
+    lambda net: net.out("Attribute", "Fac", attribute_name="Values"),
+    1.0,
+    0.2,
     prepare=attribute_values("FLOAT", "EDGE", "value", 1),
-)  # fmt: skip
+)
 value("Attribute", "missing", lambda net: net.out("Attribute", "Color", attribute_name="Nothing"), 1.0, 0.2)
 
 
@@ -125,26 +143,52 @@ def _properties() -> None:
 
 
 for _kind in ("OBJECT", "INSTANCER", "VIEW_LAYER"):
-    value("Attribute", f"custom property, {_kind}",
-          (lambda kind: lambda net: net.out("Attribute", "Color", attribute_name="Own", attribute_type=kind))(_kind),
-          1.0, 0.1, _properties)  # fmt: skip
-value("Attribute", "property color, OBJECT",
-      lambda net: net.out("Attribute", "Color", attribute_name="color", attribute_type="OBJECT"),
-      prepare=_properties)  # fmt: skip
-value("Color Attribute", "named", lambda net: net.out("VertexColor", "Color", layer_name="Values"),
-      prepare=attribute_values("BYTE_COLOR", "CORNER", "color", 4))  # fmt: skip
-value("Color Attribute", "in use", lambda net: net.out("VertexColor", "Color"),
-      prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4))  # fmt: skip
-value("Color Attribute", "Alpha", lambda net: net.out("VertexColor", "Alpha", layer_name="Values"),
-      prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4))  # fmt: skip
+    value(
+        "Attribute",
+        f"custom property, {_kind}",
+        (lambda kind: lambda net: net.out("Attribute", "Color", attribute_name="Own", attribute_type=kind))(_kind),
+        1.0,
+        0.1,
+        _properties,
+    )
+value(
+    "Attribute",
+    "property color, OBJECT",
+    lambda net: net.out("Attribute", "Color", attribute_name="color", attribute_type="OBJECT"),
+    prepare=_properties,
+)
+value(
+    "Color Attribute",
+    "named",
+    lambda net: net.out("VertexColor", "Color", layer_name="Values"),
+    prepare=attribute_values("BYTE_COLOR", "CORNER", "color", 4),
+)
+value(
+    "Color Attribute",
+    "in use",
+    lambda net: net.out("VertexColor", "Color"),
+    prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4),
+)
+value(
+    "Color Attribute",
+    "Alpha",
+    lambda net: net.out("VertexColor", "Alpha", layer_name="Values"),
+    prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4),
+)
 
 
 for _output, _scale, _offset in (
     ("Location", 0.3, 0.3), ("Color", 1.0, 0.0), ("Alpha", 1.0, 0.0), ("Object Index", 0.1, 0.0),
     ("Material Index", 0.1, 0.1), ("Random", 1.0, 0.0),
 ):  # fmt: skip
-    value("Object Info", _output, (lambda output: lambda net: net.out("ObjectInfo", output))(_output),
-          _scale, _offset, _properties)  # fmt: skip
+    value(
+        "Object Info",
+        _output,
+        (lambda output: lambda net: net.out("ObjectInfo", output))(_output),
+        _scale,
+        _offset,
+        _properties,
+    )
 
 
 def _with_material_index(net):
@@ -157,18 +201,29 @@ value("Object Info", "Material Index, set", _with_material_index, 0.1)
 # --- tangents, normal maps and bump -------------------------------------------------------------------
 
 
-
 def _ball_alone() -> None:
     """A plane's tangents about its own axes have no length, of which Cycles makes NaN."""
     bpy.data.objects.remove(bpy.data.objects["Ground"])
 
 
 for _axis in "XYZ":
-    value("Tangent", f"Radial {_axis}", (lambda axis: lambda net: net.out("Tangent", axis=axis))(_axis), 0.5, 0.5,
-          _ball_alone)  # fmt: skip
+    value(
+        "Tangent",
+        f"Radial {_axis}",
+        (lambda axis: lambda net: net.out("Tangent", axis=axis))(_axis),
+        0.5,
+        0.5,
+        _ball_alone,
+    )
 value("Tangent", "UV Map", lambda net: net.out("Tangent", direction_type="UV_MAP"), 0.5, 0.5)
-value("Tangent", "UV Map, named", lambda net: net.out("Tangent", direction_type="UV_MAP", uv_map="Second"), 0.5, 0.5,
-      prepare=second_uv)  # fmt: skip
+value(
+    "Tangent",
+    "UV Map, named",
+    lambda net: net.out("Tangent", direction_type="UV_MAP", uv_map="Second"),
+    0.5,
+    0.5,
+    prepare=second_uv,
+)
 
 
 def _bumpy_color(net):
@@ -180,18 +235,41 @@ def _bumpy_color(net):
 for _space in ("TANGENT", "OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD"):
     for _strength in (1.0, 0.4):
         value(
-            "Normal Map", f"{_space}, strength {_strength}",
-            (lambda space, strength: lambda net: net.out(
-                "NormalMap", inputs={"Color": _bumpy_color(net), "Strength": strength}, space=space
-            ))(_space, _strength), 0.5, 0.5,
-        )  # fmt: skip
-value("Normal Map", "TANGENT, strength 2",
-      lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net), "Strength": 2.0}), 0.5, 0.5)  # fmt: skip
-value("Normal Map", "TANGENT, named UV map",
-      lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}, uv_map="Second"), 0.5, 0.5,
-      prepare=second_uv)  # fmt: skip
-value("Normal Map", "TANGENT, seen from behind",
-      lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}), 0.5, 0.5, prepare=_turned)  # fmt: skip
+            "Normal Map",
+            f"{_space}, strength {_strength}",
+            (
+                lambda space, strength: (
+                    lambda net: net.out(
+                        "NormalMap", inputs={"Color": _bumpy_color(net), "Strength": strength}, space=space
+                    )
+                )
+            )(_space, _strength),
+            0.5,
+            0.5,
+        )
+value(
+    "Normal Map",
+    "TANGENT, strength 2",
+    lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net), "Strength": 2.0}),
+    0.5,
+    0.5,
+)
+value(
+    "Normal Map",
+    "TANGENT, named UV map",
+    lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}, uv_map="Second"),
+    0.5,
+    0.5,
+    prepare=second_uv,
+)
+value(
+    "Normal Map",
+    "TANGENT, seen from behind",
+    lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}),
+    0.5,
+    0.5,
+    prepare=_turned,
+)
 
 
 def _bump(inputs, **properties):
@@ -232,20 +310,30 @@ value("Bump", "over a normal map", _bump_on_map, 0.5, 0.5)
 for _from, _to in (("WORLD", "OBJECT"), ("OBJECT", "WORLD"), ("CAMERA", "WORLD"), ("OBJECT", "CAMERA")):
     for _kind in ("POINT", "VECTOR", "NORMAL"):
         value(
-            "Vector Transform", f"{_kind} {_from} to {_to}",
-            (lambda kind, start, end: lambda net: net.out(
-                "VectorTransform", inputs={0: net.out("TexCoord", "Normal")}, vector_type=kind, convert_from=start,
-                convert_to=end,
-            ))(_kind, _from, _to), 0.1, 0.7,
-        )  # fmt: skip
+            "Vector Transform",
+            f"{_kind} {_from} to {_to}",
+            (
+                lambda kind, start, end: (
+                    lambda net: net.out(
+                        "VectorTransform",
+                        inputs={0: net.out("TexCoord", "Normal")},
+                        vector_type=kind,
+                        convert_from=start,
+                        convert_to=end,
+                    )
+                )
+            )(_kind, _from, _to),
+            0.1,
+            0.7,
+        )
 
 for _output in ("Fresnel", "Facing"):
-    value("Layer Weight", _output,
-          (lambda output: lambda net: net.out("LayerWeight", output, {"Blend": 0.4}))(_output))  # fmt: skip
+    value("Layer Weight", _output, (lambda output: lambda net: net.out("LayerWeight", output, {"Blend": 0.4}))(_output))
 value("Fresnel", "IOR 1.45", lambda net: net.out("Fresnel", inputs={"IOR": 1.45}))
 value("Fresnel", "seen from behind", lambda net: net.out("Fresnel", inputs={"IOR": 1.45}), 1.0, 0.1, _turned)
 value("Fresnel", "of a bump", lambda net: net.out("Fresnel", inputs={"Normal": _bump({"Distance": 0.3})(net)}))
-value("Layer Weight", "of a bump",
-      lambda net: net.out("LayerWeight", "Facing", {"Normal": _bump({"Distance": 0.3})(net)}))  # fmt: skip
+value(
+    "Layer Weight", "of a bump", lambda net: net.out("LayerWeight", "Facing", {"Normal": _bump({"Distance": 0.3})(net)})
+)
 value("Wireframe", "metres", lambda net: net.out("Wireframe", inputs={"Size": 0.06}), 1.0, 0.1)
 value("Wireframe", "pixels", lambda net: net.out("Wireframe", inputs={"Size": 2.0}, use_pixel_size=True), 1.0, 0.1)

@@ -71,9 +71,14 @@ def texture(output="Color", inputs=None, kind="png", space=None, alpha=None, map
         if mapping is not None:
             coordinates, location, scale = mapping
             chosen["Vector"] = net.out(
-                "Mapping", inputs={"Vector": net.out("TexCoord", coordinates), "Location": (location,) * 3,
-                                   "Scale": (scale,) * 3, "Rotation": (0.3, -0.2, 0.5)},
-            )  # fmt: skip
+                "Mapping",
+                inputs={
+                    "Vector": net.out("TexCoord", coordinates),
+                    "Location": (location,) * 3,
+                    "Scale": (scale,) * 3,
+                    "Rotation": (0.3, -0.2, 0.5),
+                },
+            )
         return net.out("TexImage", output, chosen, image=image(kind, space, alpha), **properties)
 
     return give
@@ -85,23 +90,39 @@ for _interpolation in ("Linear", "Closest", "Cubic", "Smart"):
     value(GROUP, f"interpolation {_interpolation}", texture(interpolation=_interpolation, kind="opaque"))
 for _extension in ("REPEAT", "EXTEND", "CLIP", "MIRROR"):
     for _interpolation in ("Linear", "Closest"):
-        value(GROUP, f"extension {_extension}, {_interpolation}",
-              texture(extension=_extension, interpolation=_interpolation, mapping=BEYOND))  # fmt: skip
+        value(
+            GROUP,
+            f"extension {_extension}, {_interpolation}",
+            texture(extension=_extension, interpolation=_interpolation, mapping=BEYOND),
+        )
 value(GROUP, "extension CLIP, alpha", texture("Alpha", extension="CLIP", mapping=BEYOND))
 value(GROUP, "extension MIRROR, Cubic", texture(extension="MIRROR", interpolation="Cubic", mapping=BEYOND))
 for _projection in ("BOX", "SPHERE", "TUBE"):
     for _coordinates in ("Generated", "Object"):
-        value(GROUP, f"projection {_projection}, {_coordinates}",
-              texture(projection=_projection, mapping=(_coordinates, 0.1, 0.8)))  # fmt: skip
+        value(
+            GROUP,
+            f"projection {_projection}, {_coordinates}",
+            texture(projection=_projection, mapping=(_coordinates, 0.1, 0.8)),
+        )
 for _blend in (0.2, 1.0):
-    value(GROUP, f"projection BOX, blend {_blend}",
-          texture(projection="BOX", projection_blend=_blend, mapping=("Object", 0.1, 0.8)))  # fmt: skip
+    value(
+        GROUP,
+        f"projection BOX, blend {_blend}",
+        texture(projection="BOX", projection_blend=_blend, mapping=("Object", 0.1, 0.8)),
+    )
 for _space in ("sRGB", "Non-Color", "Linear Rec.709"):
     value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"))
 for _space in ("ACEScg", "Linear Rec.2020", "Linear CIE-XYZ E", "Display P3", "Rec.1886"):
     value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.5, 0.8)
-value(GROUP, "colour space Filmic sRGB", texture(space="Filmic sRGB", kind="opaque"), warns=True, mean=0.8, block=1.0,
-      reason="read as sRGB")  # fmt: skip
+value(
+    GROUP,
+    "colour space Filmic sRGB",
+    texture(space="Filmic sRGB", kind="opaque"),
+    warns=True,
+    mean=0.8,
+    block=1.0,
+    reason="read as sRGB",
+)
 for _space in ("Linear Rec.709", "Non-Color", "sRGB", "ACEScg"):
     value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3, 0.5)
 value(GROUP, "16 bits, grey", texture(kind="deep"))
@@ -122,8 +143,12 @@ def _color_over_alpha(alpha):
 
 for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED"):
     value(GROUP, f"alpha {_alpha}, both outputs", _color_over_alpha(_alpha))
-value(GROUP, "in a second UV map",
-      lambda net: texture(inputs={"Vector": net.out("UVMap", uv_map="Second")})(net), prepare=second_uv)  # fmt: skip
+value(
+    GROUP,
+    "in a second UV map",
+    lambda net: texture(inputs={"Vector": net.out("UVMap", uv_map="Second")})(net),
+    prepare=second_uv,
+)
 value(GROUP, "without an image", lambda net: net.out("TexImage"), warns=True)
 
 
@@ -168,8 +193,17 @@ def _image_bump(net):
 
 
 value("Bump", "image", _image_bump, 0.5, 0.5)
-value("Bump", "image, linear",
-      lambda net: net.out("Bump", inputs={"Height": texture(kind="grey")(net), "Distance": 0.05}), 0.5, 0.5)  # fmt: skip
-value("Normal Map", "image",
-      lambda net: net.out("NormalMap", inputs={"Color": texture(space="Non-Color", kind="opaque")(net)}),
-      0.5, 0.5)  # fmt: skip
+value(
+    "Bump",
+    "image, linear",
+    lambda net: net.out("Bump", inputs={"Height": texture(kind="grey")(net), "Distance": 0.05}),
+    0.5,
+    0.5,
+)
+value(
+    "Normal Map",
+    "image",
+    lambda net: net.out("NormalMap", inputs={"Color": texture(space="Non-Color", kind="opaque")(net)}),
+    0.5,
+    0.5,
+)

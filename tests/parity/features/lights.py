@@ -77,21 +77,57 @@ def _with_nodes(kind, feed, **properties):
 
 
 lamps("Light nodes", "constant", _with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
-lamps("Light nodes", "blackbody",
-      _with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8))  # fmt: skip
-lamps("Light nodes", "quadratic falloff", _with_nodes("POINT", lambda net: (
-    (1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0})), shadow_soft_size=0.1))  # fmt: skip
-lamps("Light nodes", "smooth quadratic falloff", _with_nodes("POINT", lambda net: (
-    (1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0, "Smooth": 1.0})),
-    shadow_soft_size=0.1))  # fmt: skip
-lamps("Light nodes", "linear falloff", _with_nodes("POINT", lambda net: (
-    (1.0, 1.0, 1.0), net.out("LightFalloff", "Linear", {"Strength": 0.4})), shadow_soft_size=0.1))  # fmt: skip
-lamps("Light nodes", "constant falloff", _with_nodes("AREA", lambda net: (
-    (1.0, 1.0, 1.0), net.out("LightFalloff", "Constant", {"Strength": 0.2})), size=0.8))  # fmt: skip
-lamps("Light nodes", "IES-like, by direction", _with_nodes("SPOT", lambda net: (
-    (1.0, 1.0, 1.0), net.out("TexGradient", "Fac", {0: net.out("TexCoord", "Normal")})),
-    shadow_soft_size=0.0, spot_size=2.0), warns=True, mean=1.0, block=3.0,
-    reason="nodes of lamps that vary by direction give one value")  # fmt: skip
+lamps(
+    "Light nodes", "blackbody", _with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8)
+)
+lamps(
+    "Light nodes",
+    "quadratic falloff",
+    _with_nodes(
+        "POINT",
+        lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0})),
+        shadow_soft_size=0.1,
+    ),
+)
+lamps(
+    "Light nodes",
+    "smooth quadratic falloff",
+    _with_nodes(
+        "POINT",
+        lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0, "Smooth": 1.0})),
+        shadow_soft_size=0.1,
+    ),
+)
+lamps(
+    "Light nodes",
+    "linear falloff",
+    _with_nodes(
+        "POINT",
+        lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Linear", {"Strength": 0.4})),
+        shadow_soft_size=0.1,
+    ),
+)
+lamps(
+    "Light nodes",
+    "constant falloff",
+    _with_nodes(
+        "AREA", lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Constant", {"Strength": 0.2})), size=0.8
+    ),
+)
+lamps(
+    "Light nodes",
+    "IES-like, by direction",
+    _with_nodes(
+        "SPOT",
+        lambda net: ((1.0, 1.0, 1.0), net.out("TexGradient", "Fac", {0: net.out("TexCoord", "Normal")})),
+        shadow_soft_size=0.0,
+        spot_size=2.0,
+    ),
+    warns=True,
+    mean=1.0,
+    block=3.0,
+    reason="nodes of lamps that vary by direction give one value",
+)
 
 
 def _two() -> None:
@@ -115,21 +151,41 @@ def _glowing(feed, half=0.7):
 
 lamps("Glowing mesh", "plain", _glowing(lambda net: ((1.0, 0.8, 0.6), 10.0)), effort=2)
 lamps("Glowing mesh", "strength by an image", _glowing(lambda net: (texture(kind="opaque")(net), 20.0)), effort=2)
-lamps("Glowing mesh", "strength by a checker", _glowing(lambda net: (
-    (1.0, 0.9, 0.8), net.out("Math", 0, {0: net.out("TexChecker", "Fac", {"Scale": 2.0}), 1: 20.0},
-                             operation="MULTIPLY"))), effort=2)  # fmt: skip
-lamps("Glowing mesh", "one side only", _glowing(lambda net: (
-    (1.0, 0.9, 0.8), net.out("Math", 0, {0: net.out("NewGeometry", "Backfacing"), 1: -12.0, 2: 12.0},
-                             operation="MULTIPLY_ADD"))), effort=2)  # fmt: skip
-lamps("Glowing mesh", "by a ramp of noise", _glowing(lambda net: (
-    net.out("ValToRGB", 0, {0: net.out("TexNoise", "Fac", {"Scale": 5.0})}), 20.0)), effort=2)  # fmt: skip
+lamps(
+    "Glowing mesh",
+    "strength by a checker",
+    _glowing(
+        lambda net: (
+            (1.0, 0.9, 0.8),
+            net.out("Math", 0, {0: net.out("TexChecker", "Fac", {"Scale": 2.0}), 1: 20.0}, operation="MULTIPLY"),
+        )
+    ),
+    effort=2,
+)
+lamps(
+    "Glowing mesh",
+    "one side only",
+    _glowing(
+        lambda net: (
+            (1.0, 0.9, 0.8),
+            net.out("Math", 0, {0: net.out("NewGeometry", "Backfacing"), 1: -12.0, 2: 12.0}, operation="MULTIPLY_ADD"),
+        )
+    ),
+    effort=2,
+)
+lamps(
+    "Glowing mesh",
+    "by a ramp of noise",
+    _glowing(lambda net: (net.out("ValToRGB", 0, {0: net.out("TexNoise", "Fac", {"Scale": 5.0})}), 20.0)),
+    effort=2,
+)
 
 
 def _small_bulbs() -> None:
     surface, net = material("Bulb")
     net.output(net.emission((1.0, 0.8, 0.6), 60.0))
-    for x, y in ((1.0, -0.8), (-1.0, -1.0)):
-        stage.ball(surface, {"at": (x, y, 1.7), "scale": (0.18, 0.18, 0.18)}, 12)
+    for x, y in ((1.5, -1.2), (-1.4, -1.0)):
+        stage.ball(surface, {"at": (x, y, 2.9), "scale": (0.18, 0.18, 0.18)}, 12)
 
 
 lamps("Glowing mesh", "two bulbs", _small_bulbs, effort=2)
@@ -140,6 +196,7 @@ def _unseen() -> None:
     made.visible_camera = False
 
 
-lamps("Area Light", "in view", _lamp("AREA", 60.0, {"at": (0.0, 1.2, 2.2), "turn": (-40.0, 0.0, 0.0)}, size=0.8),
-      effort=3)  # fmt: skip
+lamps(
+    "Area Light", "in view", _lamp("AREA", 60.0, {"at": (0.0, 1.2, 2.2), "turn": (-40.0, 0.0, 0.0)}, size=0.8), effort=3
+)
 lamps("Area Light", "hidden from the camera", _unseen, effort=3)

@@ -132,10 +132,9 @@ MOST_WRONG = 0.005
 def shortcomings(row: Row, found: Measurement) -> list[str]:
     """What of a row is not as it should be, empty when it is."""
     wrong = []
-    if row.kind is Kind.VALUES and not row.reason:
-        if found.wrong > MOST_WRONG:
-            wrong.append(f"{found.wrong:.2%} of the pixels differ")
-    if found.mean_error > 0.006:
+    if row.kind is Kind.VALUES and not row.reason and found.wrong > MOST_WRONG:
+        wrong.append(f"{found.wrong:.2%} of the pixels differ")
+    if found.mean_error > 0.008:
         wrong.append(f"the mean is too noisy to tell: {found.mean_error:.2%}")
     if found.mean > row.mean + 2.5 * found.mean_error:
         wrong.append(f"the mean differs by {found.mean:.2%} +- {found.mean_error:.2%}")

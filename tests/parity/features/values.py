@@ -23,13 +23,14 @@ def _of_noise(kind, socket=0, output=0, inputs=None, color=False, prepare=None, 
     return give
 
 
+BRICK = {"Scale": 3.0, "Mortar Size": 0.06, "Mortar Smooth": 1.0}
 TEXTURES = {
     "Noise": ("TexNoise", {"Scale": 3.0}, {}), "Noise, 4D": ("TexNoise", {"W": 0.7}, {"noise_dimensions": "4D"}),
     "Noise, ridged": ("TexNoise", {"Scale": 2.0}, {"noise_type": "RIDGED_MULTIFRACTAL"}),
     "Voronoi": ("TexVoronoi", {"Scale": 3.0}, {}), "Voronoi, F2": ("TexVoronoi", {}, {"feature": "F2"}),
     "Voronoi, edges": ("TexVoronoi", {"Scale": 3.0}, {"feature": "DISTANCE_TO_EDGE"}),
-    "Checker": ("TexChecker", {"Scale": 4.3}, {}), "Brick": ("TexBrick", {"Scale": 3.0, "Mortar Size": 0.06, "Mortar Smooth": 1.0}, {}),
-    "Brick, offset": ("TexBrick", {"Scale": 3.0, "Mortar Size": 0.06, "Mortar Smooth": 1.0}, {"offset": 0.3, "squash": 1.5, "squash_frequency": 3}),
+    "Checker": ("TexChecker", {"Scale": 4.3}, {}), "Brick": ("TexBrick", BRICK, {}),
+    "Brick, offset": ("TexBrick", BRICK, {"offset": 0.3, "squash": 1.5, "squash_frequency": 3}),
     "Wave": ("TexWave", {"Scale": 2.0, "Distortion": 2.0}, {}),
     "Wave, rings": ("TexWave", {"Scale": 2.0}, {"wave_type": "RINGS", "wave_profile": "SAW"}),
     "Gradient": ("TexGradient", {}, {}), "Gradient, spherical": ("TexGradient", {}, {"gradient_type": "SPHERICAL"}),
@@ -37,39 +38,116 @@ TEXTURES = {
     "Gabor": ("TexGabor", {"Scale": 3.0}, {"gabor_type": "3D"}),
 }  # fmt: skip
 for _name, (_kind, _inputs, _properties) in TEXTURES.items():
-    value("Textures", _name,
-          (lambda kind, inputs, properties: lambda net: net.out(kind, 0, inputs, **properties))(
-              _kind, _inputs, _properties), 0.9, 0.1)  # fmt: skip
+    value(
+        "Textures",
+        _name,
+        (lambda kind, inputs, properties: lambda net: net.out(kind, 0, inputs, **properties))(
+            _kind, _inputs, _properties
+        ),
+        0.9,
+        0.1,
+    )
 value("Textures", "Voronoi, Color", lambda net: net.out("TexVoronoi", "Color", {"Scale": 3.0}))
-value("Textures", "White Noise, of cells", lambda net: net.out("TexWhiteNoise", "Color", {"Vector": net.out(
-    "VectorMath", inputs={0: net.out("TexCoord", "Generated"), 1: (0.211,) * 3}, operation="SNAP")}))  # fmt: skip
-value("Textures", "Gradient of an object's coordinates", lambda net: net.out(
-    "TexGradient", inputs={"Vector": net.out("TexCoord", "Object")}), 0.8, 0.1)  # fmt: skip
+value(
+    "Textures",
+    "White Noise, of cells",
+    lambda net: net.out(
+        "TexWhiteNoise",
+        "Color",
+        {
+            "Vector": net.out(
+                "VectorMath", inputs={0: net.out("TexCoord", "Generated"), 1: (0.211,) * 3}, operation="SNAP"
+            )
+        },
+    ),
+)
+value(
+    "Textures",
+    "Gradient of an object's coordinates",
+    lambda net: net.out("TexGradient", inputs={"Vector": net.out("TexCoord", "Object")}),
+    0.8,
+    0.1,
+)
 
 for _type in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
-    value("Mapping", _type, (lambda kind: lambda net: net.out(
-        "Mapping", inputs={0: net.out("TexCoord", "Object"), "Rotation": (0.4, 0.2, -0.7), "Scale": (0.5, 0.8, 1.5)}
-        | ({"Location": (0.1, 0.2, 0.3)} if kind in {"POINT", "TEXTURE"} else {}), vector_type=kind))(_type),
-        0.1, 0.5)  # fmt: skip
+    value(
+        "Mapping",
+        _type,
+        (
+            lambda kind: (
+                lambda net: net.out(
+                    "Mapping",
+                    inputs={0: net.out("TexCoord", "Object"), "Rotation": (0.4, 0.2, -0.7), "Scale": (0.5, 0.8, 1.5)}
+                    | ({"Location": (0.1, 0.2, 0.3)} if kind in {"POINT", "TEXTURE"} else {}),
+                    vector_type=kind,
+                )
+            )
+        )(_type),
+        0.1,
+        0.5,
+    )
 
 for _operation in ("MULTIPLY", "POWER", "SINE", "LESS_THAN", "SMOOTH_MIN", "PINGPONG"):
     value("Math", _operation, _of_noise("Math", 0, 0, {1: 0.45, 2: 0.3}, operation=_operation), 0.8, 0.1)
 value("Math", "clamped", _of_noise("Math", 0, 0, {1: 0.6}, operation="ADD", use_clamp=True))
 for _operation in ("ADD", "CROSS_PRODUCT", "DOT_PRODUCT", "NORMALIZE", "REFLECT", "WRAP"):
     _socket = 1 if _operation == "DOT_PRODUCT" else 0
-    value("Vector Math", _operation, _of_noise("VectorMath", 0, _socket, {1: (0.5, 0.2, 0.8)}, True,
-                                               operation=_operation), 0.3, 0.4)  # fmt: skip
+    value(
+        "Vector Math",
+        _operation,
+        _of_noise("VectorMath", 0, _socket, {1: (0.5, 0.2, 0.8)}, True, operation=_operation),
+        0.3,
+        0.4,
+    )
 
-for _blend in ("MIX", "MULTIPLY", "OVERLAY", "SCREEN", "DIFFERENCE", "COLOR", "HUE", "SATURATION", "VALUE", "LINEAR_LIGHT"):
-    value("Mix", f"Color, {_blend}", (lambda blend: lambda net: net.out("Mix", 2, {
-        "Factor_Float": 0.7, "A_Color": _noise(net, "Color"), "B_Color": (0.7, 0.3, 0.1)},
-        data_type="RGBA", blend_type=blend))(_blend), 0.7, 0.8)  # fmt: skip
+for _blend in (
+    "MIX",
+    "MULTIPLY",
+    "OVERLAY",
+    "SCREEN",
+    "DIFFERENCE",
+    "COLOR",
+    "HUE",
+    "SATURATION",
+    "VALUE",
+    "LINEAR_LIGHT",
+):
+    value(
+        "Mix",
+        f"Color, {_blend}",
+        (
+            lambda blend: (
+                lambda net: net.out(
+                    "Mix",
+                    2,
+                    {"Factor_Float": 0.7, "A_Color": _noise(net, "Color"), "B_Color": (0.7, 0.3, 0.1)},
+                    data_type="RGBA",
+                    blend_type=blend,
+                )
+            )
+        )(_blend),
+        0.7,
+        0.8,
+    )
 value("Mix", "Float", lambda net: net.out("Mix", 0, {0: _noise(net), 2: 0.2, 3: 0.9}))
-value("Mix", "Vector, by components", lambda net: net.out("Mix", 1, {
-    1: _noise(net, "Color"), 4: (0.2, 0.3, 0.1), 5: (0.9, 0.4, 0.6)}, data_type="VECTOR",
-    factor_mode="NON_UNIFORM"))  # fmt: skip
-value("Mix", "legacy, ADD", lambda net: net.out("MixRGB", inputs={
-    0: _noise(net), 1: (0.2, 0.3, 0.1), 2: (0.9, 0.4, 0.6)}, blend_type="ADD", use_clamp=True))  # fmt: skip
+value(
+    "Mix",
+    "Vector, by components",
+    lambda net: net.out(
+        "Mix",
+        1,
+        {1: _noise(net, "Color"), 4: (0.2, 0.3, 0.1), 5: (0.9, 0.4, 0.6)},
+        data_type="VECTOR",
+        factor_mode="NON_UNIFORM",
+    ),
+)
+value(
+    "Mix",
+    "legacy, ADD",
+    lambda net: net.out(
+        "MixRGB", inputs={0: _noise(net), 1: (0.2, 0.3, 0.1), 2: (0.9, 0.4, 0.6)}, blend_type="ADD", use_clamp=True
+    ),
+)
 
 
 def _ramp(interpolation, mode="RGB"):
@@ -111,10 +189,16 @@ for _mode in ("RGB", "HSV", "HSL"):
     value("Colours", f"Separate and Combine Color, {_mode}", (lambda mode: lambda net: _swapped(net, mode))(_mode))
 value("Colours", "Separate and Combine XYZ", lambda net: _swapped(net, None))
 value("Colours", "RGB", lambda net: net.out("RGB"))
-value("Colours", "colour as a number", lambda net: net.out(
-    "Math", inputs={0: _noise(net, "Color"), 1: 1.0}, operation="MULTIPLY"))  # fmt: skip
-value("Colours", "vector as a number", lambda net: net.out(
-    "Math", inputs={0: net.out("TexCoord", "Generated"), 1: 1.0}, operation="MULTIPLY"))  # fmt: skip
+value(
+    "Colours",
+    "colour as a number",
+    lambda net: net.out("Math", inputs={0: _noise(net, "Color"), 1: 1.0}, operation="MULTIPLY"),
+)
+value(
+    "Colours",
+    "vector as a number",
+    lambda net: net.out("Math", inputs={0: net.out("TexCoord", "Generated"), 1: 1.0}, operation="MULTIPLY"),
+)
 
 
 def _swapped(net, mode):
@@ -129,15 +213,38 @@ def _swapped(net, mode):
 for _type in ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP"):
     value("Map Range", _type, _of_noise("MapRange", 0, 0, {1: 0.35, 2: 0.6, 3: 0.1, 4: 0.9}, interpolation_type=_type))
 value("Map Range", "not clamped", _of_noise("MapRange", 0, 0, {1: 0.2, 2: 0.8, 3: 0.1, 4: 0.9}, clamp=False), 1.0, 0.2)
-value("Map Range", "Vector", lambda net: net.out("MapRange", "Vector", {
-    "Vector": _noise(net, "Color"), "From_Min_FLOAT3": (0.3, 0.2, 0.1)}, data_type="FLOAT_VECTOR"), 0.5, 0.5)  # fmt: skip
+value(
+    "Map Range",
+    "Vector",
+    lambda net: net.out(
+        "MapRange",
+        "Vector",
+        {"Vector": _noise(net, "Color"), "From_Min_FLOAT3": (0.3, 0.2, 0.1)},
+        data_type="FLOAT_VECTOR",
+    ),
+    0.5,
+    0.5,
+)
 value("Clamp", "range", _of_noise("Clamp", 0, 0, {1: 0.6, 2: 0.4}, clamp_type="RANGE"))
-value("Blackbody", "800 to 9000 K", lambda net: net.out("Blackbody", inputs={0: net.out(
-    "MapRange", inputs={0: _noise(net), 1: 0.3, 2: 0.7, 3: 800.0, 4: 9000.0})}), 0.1, 0.1)  # fmt: skip
-value("Wavelength", "380 to 720 nm", lambda net: net.out("Wavelength", inputs={0: net.out(
-    "MapRange", inputs={0: _noise(net), 1: 0.3, 2: 0.7, 3: 380.0, 4: 720.0})}), 0.5, 0.5)  # fmt: skip
-value("Normal", "dot", lambda net: net.out(
-    "Normal", "Dot", {0: net.out("TexCoord", "Normal")}), 0.4, 0.5)  # fmt: skip
+value(
+    "Blackbody",
+    "800 to 9000 K",
+    lambda net: net.out(
+        "Blackbody", inputs={0: net.out("MapRange", inputs={0: _noise(net), 1: 0.3, 2: 0.7, 3: 800.0, 4: 9000.0})}
+    ),
+    0.1,
+    0.1,
+)
+value(
+    "Wavelength",
+    "380 to 720 nm",
+    lambda net: net.out(
+        "Wavelength", inputs={0: net.out("MapRange", inputs={0: _noise(net), 1: 0.3, 2: 0.7, 3: 380.0, 4: 720.0})}
+    ),
+    0.5,
+    0.5,
+)
+value("Normal", "dot", lambda net: net.out("Normal", "Dot", {0: net.out("TexCoord", "Normal")}), 0.4, 0.5)
 value("Vector Rotate", "axis and angle", _of_noise("VectorRotate", 0, 0, {"Angle": 0.8}, True), 0.4, 0.4)
 
 # --- groups, muted nodes, reroutes --------------------------------------------------------------------
@@ -217,9 +324,18 @@ value("Muted", "Gamma", _muted("Gamma"))
 value("Muted", "Math", _muted("Math", operation="SINE"))
 value("Muted", "Color Ramp", _muted("ValToRGB"))
 value("Muted", "Noise Texture", lambda net: _mute(net.node("TexNoise")).outputs[0], 1.0, 0.2)
-value("Muted", "RGB", lambda net: net.out("Mix", 2, {
-    "Factor_Float": 0.5, "A_Color": _mute(net.node("RGB")).outputs[0], "B_Color": (0.7, 0.3, 0.1)},
-    data_type="RGBA"), 1.0, 0.1)  # fmt: skip
+value(
+    "Muted",
+    "RGB",
+    lambda net: net.out(
+        "Mix",
+        2,
+        {"Factor_Float": 0.5, "A_Color": _mute(net.node("RGB")).outputs[0], "B_Color": (0.7, 0.3, 0.1)},
+        data_type="RGBA",
+    ),
+    1.0,
+    0.1,
+)
 
 
 def _mute(node):

@@ -55,7 +55,9 @@ def _environment(mapping=None, projection="EQUIRECTANGULAR", interpolation="Line
         inputs = {}
         if mapping is not None:
             inputs["Vector"] = net.out("Mapping", inputs={0: net.out("TexCoord", "Generated"), "Rotation": mapping})
-        return net.out("TexEnvironment", 0, inputs, image=image, projection=projection, interpolation=interpolation), 0.5
+        return net.out(
+            "TexEnvironment", 0, inputs, image=image, projection=projection, interpolation=interpolation
+        ), 0.5
 
     return give
 
@@ -66,23 +68,69 @@ world("Environment Texture", "turned, mirrored", _environment((0.4, -0.5, 1.1)),
 world("Environment Texture", "turned", _environment((0.0, 0.0, 1.1)))
 world("Environment Texture", "turned about all axes", _environment((0.4, -0.5, 1.1)))
 for _interpolation in ("Closest", "Cubic"):
-    world("Environment Texture", f"mirrored, {_interpolation}", _environment(interpolation=_interpolation), _shiny,
-          **MIRRORED, **MAPPED)  # fmt: skip
-world("Environment Texture", "mirror ball, mirrored", _environment(projection="MIRROR_BALL"), _shiny, **MIRRORED,
-      **MAPPED)  # fmt: skip
-world("Environment Texture", "a bright spot", lambda net: (net.out("MixRGB", 0, {
-    0: net.out("Math", 0, {0: net.out("VectorMath", "Value", {0: net.out("TexCoord", "Generated"), 1: (0.5, -0.5, 0.7)},
-                                      operation="DOT_PRODUCT"), 1: 0.9}, operation="GREATER_THAN"),
-    1: (0.1, 0.1, 0.15), 2: (9.0, 8.0, 6.0)}), 1.0))  # fmt: skip
+    world(
+        "Environment Texture",
+        f"mirrored, {_interpolation}",
+        _environment(interpolation=_interpolation),
+        _shiny,
+        **MIRRORED,
+        **MAPPED,
+    )
+world(
+    "Environment Texture", "mirror ball, mirrored", _environment(projection="MIRROR_BALL"), _shiny, **MIRRORED, **MAPPED
+)
+world(
+    "Environment Texture",
+    "a bright spot",
+    lambda net: (
+        net.out(
+            "MixRGB",
+            0,
+            {
+                0: net.out(
+                    "Math",
+                    0,
+                    {
+                        0: net.out(
+                            "VectorMath",
+                            "Value",
+                            {0: net.out("TexCoord", "Generated"), 1: (0.5, -0.5, 0.7)},
+                            operation="DOT_PRODUCT",
+                        ),
+                        1: 0.9,
+                    },
+                    operation="GREATER_THAN",
+                ),
+                1: (0.1, 0.1, 0.15),
+                2: (9.0, 8.0, 6.0),
+            },
+        ),
+        1.0,
+    ),
+)
 for _output in ("Generated", "Normal", "Object", "Reflection"):
-    world("World coordinates", _output, (lambda output: lambda net: (
-        net.scaled(net.out("TexCoord", output), 0.4, 0.5), 1.0))(_output), _shiny, **MIRRORED)  # fmt: skip
-world("World coordinates", "Window", lambda net: (net.out("TexCoord", "Window"), 1.0), _black, **MIRRORED)  # fmt: skip
-world("World nodes", "gradient", lambda net: (net.out("ValToRGB", 0, {0: net.out(
-    "SeparateXYZ", 2, {0: net.out("TexCoord", "Generated")})}), 1.0))  # fmt: skip
+    world(
+        "World coordinates",
+        _output,
+        (lambda output: lambda net: (net.scaled(net.out("TexCoord", output), 0.4, 0.5), 1.0))(_output),
+        _shiny,
+        **MIRRORED,
+    )
+world("World coordinates", "Window", lambda net: (net.out("TexCoord", "Window"), 1.0), _black, **MIRRORED)
+world(
+    "World nodes",
+    "gradient",
+    lambda net: (net.out("ValToRGB", 0, {0: net.out("SeparateXYZ", 2, {0: net.out("TexCoord", "Generated")})}), 1.0),
+)
 world("World nodes", "noise", lambda net: (net.out("TexNoise", "Color", {"Scale": 3.0}), 1.0))
-world("World nodes", "black to the camera", lambda net: ((0.6, 0.8, 1.0), net.out("Math", 0, {
-    0: 1.0, 1: net.out("LightPath", "Is Camera Ray")}, operation="SUBTRACT")))  # fmt: skip
+world(
+    "World nodes",
+    "black to the camera",
+    lambda net: (
+        (0.6, 0.8, 1.0),
+        net.out("Math", 0, {0: 1.0, 1: net.out("LightPath", "Is Camera Ray")}, operation="SUBTRACT"),
+    ),
+)
 world("World nodes", "blackbody", lambda net: (net.out("Blackbody", 0, {0: 4500.0}), 0.7))
 
 
