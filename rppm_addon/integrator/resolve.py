@@ -110,7 +110,8 @@ class Resolve:
     ) -> None:
         """Fill ``count`` closures; inactive rays and misses give closures without a triangle.
 
-        The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays are of no kind.
+        The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
+        are of no kind.
         """
         self._order.require(4 * (_RANGE_SIZE * len(self._programs) + count))
         buffers = {

@@ -11,6 +11,7 @@ from .images import ImageTable
 from .links import Path, node_tree
 from .report import Report
 
+
 class MaterialTable:
     """The materials of a scene under export, each exported once."""
 
