@@ -107,9 +107,11 @@ PHOTON_DIRECT = 32
 PHOTON_NOT_DIFFUSE = 64
 PHOTON_NOT_GLOSSY = 128
 PHOTON_NOT_TRANSMITTED = 256
+PHOTON_CASTS_SHADOWS = 512
 """Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before; INDIRECT: by what stores
 photons there; DIRECT: nothing has, but for objects that cast no shadow; NOT_DIFFUSE,
-NOT_GLOSSY, NOT_TRANSMITTED: while it is direct, from a light that such events do not see."""
+NOT_GLOSSY, NOT_TRANSMITTED: while it is direct, from a light that such events do not see; CASTS_SHADOWS: nothing but
+transparency lies between it and its light, which is not the world."""
 
 CAMERA_PATH = Record(
     "CameraPath",

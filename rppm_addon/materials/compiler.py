@@ -86,7 +86,7 @@ class _Compiler:
             normal = _Scope()
             value = self._converted(normal, self._graph.normal, SocketType.VECTOR)
             self._functions.append(_function("vec3", "material_normal", normal.lines, value))
-            scope.lines.append("surface.normal = visible_normal(surface, material_normal(surface, first));")
+            scope.lines.append("surface.normal = material_normal(surface, first);")
             scope.lines.append("set_shading_normal(builder, surface.normal);")
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)

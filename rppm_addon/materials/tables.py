@@ -97,6 +97,7 @@ class MaterialTables:
         for record, material, graph in zip(records, materials, compiled, strict=True):
             record["program"] = number[graph.text]
             record["first_constant"] = layout.add(material.graph, graph)
+            record["opaque_shadow"] = not material.transparent_shadow
         interiors = [material.interior for material in materials]
         others = [("The world", scene.world.graph)]
         others += [(f'Light "{light.name}"', light.graph) for light in scene.lights]

@@ -14,3 +14,5 @@ class Material:
     graph: NodeGraph = field(default_factory=NodeGraph)
     interior: NodeGraph | None = None
     """What the surface encloses: the "emission" of this graph is the absorption coefficient in 1/m."""
+    transparent_shadow: bool = True
+    """Whether light of lamps and meshes passes where the surface is transparent; that of the world always does."""

@@ -65,7 +65,8 @@ void main() {
     bool dark = !(largest(flux) > 0.0);
     uint path_flags = PHOTON_DIRECT | ((light.flags & RAY_DIFFUSE) == 0u ? PHOTON_NOT_DIFFUSE : 0u)
         | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
-        | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u);
+        | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
+        | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags);
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);

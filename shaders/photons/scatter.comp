@@ -124,7 +124,7 @@ void main() {
             photon_paths[index].flux = photon.scattered_flux;
             path_flags |= scattering.flags;
             if ((path_flags & scattering.unseen) != 0u) photon_paths[index].flux = photon.scattered_flux = vec3(0.0);
-            if (!straight) path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED);
+            if (!straight) path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
             if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             photon_paths[index].flags = path_flags;

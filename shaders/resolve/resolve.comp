@@ -73,7 +73,9 @@ void main() {
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;
     uint flags = path_flags(index);
-    surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags) : RAY_DIFFUSE;
+    // Where lights are sampled, no path has come to them, and it is of no kind, as in Cycles.
+    surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags)
+                : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
 
@@ -100,7 +102,9 @@ void main() {
         builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
         builder.closure.flags |= CLOSURE_CATCHES_SHADOWS;
     }
+    bool opaque = photon && (flags & PHOTON_CASTS_SHADOWS) != 0u && materials[material].opaque_shadow != 0u;
     if (passes || catches) builder.closure.transparent = vec3(1.0);
+    else if (opaque) builder.closure.transparent = vec3(0.0);
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;

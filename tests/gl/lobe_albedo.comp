@@ -17,7 +17,7 @@ void main() {
     RandomSequence random = random_sequence(7u, 1u, 1u, 0u, index);
     vec3 n = unpack_unit_vector(pack_unit_vector(normalize(vec3(0.3, -0.5, 0.8)))), t, b;
     tangent_frame(n, t, b);
-    uint anisotropy = pack_anisotropy(n, normalize(t + 0.4 * b), parameters.aspect);
+    uint anisotropy = pack_anisotropy(n, normalize(t + 0.4 * b), parameters.aspect) | (parameters.beckmann != 0u ? BECKMANN : 0u);
     MicrofacetLobe lobe = MicrofacetLobe(parameters.weight, parameters.kind, parameters.f0, parameters.alpha, parameters.tint,
                                          parameters.ior, pack_unit_vector(n), anisotropy);
     vec3 wo = normalize(sqrt(1.0 - parameters.cosine * parameters.cosine) * t + parameters.cosine * n);

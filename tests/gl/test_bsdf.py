@@ -14,7 +14,7 @@ from rppm_addon.materials import albedo_tables
 Record(
     "LobeTestParameters",
     weight="vec3", count="uint", f0="vec3", kind="uint", tint="vec3", alpha="float", ior="float", cosine="float",
-    aspect="float", radiance="uint",
+    aspect="float", radiance="uint", beckmann="uint",
 )  # fmt: skip
 SHADER = str(Path(__file__).with_name("lobe_albedo.comp"))
 MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEEN, VELVET = range(1, 9)
@@ -34,7 +34,8 @@ class Lobe:
 
 
 def run(
-    context, library, kind, alpha, ior, cosine, radiance=1, weight=(1, 1, 1), f0=(1, 1, 1), tint=(1, 1, 1), aspect=1.0
+    context, library, kind, alpha, ior, cosine, radiance=1, weight=(1, 1, 1), f0=(1, 1, 1), tint=(1, 1, 1), aspect=1.0,
+    beckmann=False,
 ) -> Lobe:
     results = context.moderngl.buffer(reserve=80 * COUNT)
     library.compute(SHADER).run(
@@ -51,6 +52,7 @@ def run(
             "cosine": cosine,
             "aspect": aspect,
             "radiance": radiance,
+            "beckmann": beckmann,
         },
     )
     table = np.frombuffer(results.read(), np.float32).reshape(COUNT, 5, 4).astype(np.float64)
@@ -94,6 +96,17 @@ def test_stretched_and_tinted_lobes(context, library, kind, aspect):
     for cosine in (0.35, 0.95):
         lobe = run(context, library, kind, 0.4, 1.5, cosine, tint=(0.2, 0.6, 0.4), aspect=aspect, **COLORS)
         assert_sampled_as_evaluated(lobe, f"kind {kind} aspect {aspect} cosine {cosine}")
+
+
+@pytest.mark.parametrize("kind", [MIRROR, GLASS, REFRACTION])
+@pytest.mark.parametrize(("alpha", "aspect"), [(0.1, 1.0), (0.6, 1.0), (0.4, 0.4)])
+def test_beckmann(context, library, kind, alpha, aspect):
+    """Sampled by GGX's visible normals: weights are bounded by 4/e, the largest ratio of the densities, and masking."""
+    for cosine in (0.35, 0.95):
+        lobe = run(context, library, kind, alpha, 1.5, cosine, aspect=aspect, beckmann=True)
+        assert_sampled_as_evaluated(lobe, f"Beckmann, kind {kind} alpha {alpha} aspect {aspect} cosine {cosine}")
+        across = alpha / aspect * np.sqrt(1.0 / cosine**2 - 1.0)
+        assert lobe.sampled[:, :3].max() <= 4.0 / np.e * 0.5 * (1.0 + np.hypot(1.0, across)) + 1e-3
 
 
 @pytest.mark.parametrize("coefficients", [(0.15, -0.1, 0.0), (0.7, 0.0, 0.0), (0.3, -0.17, 0.0)])

@@ -144,7 +144,7 @@ def sheet(previews: list[Preview], scale: int = 3) -> Image.Image:
     draw = ImageDraw.Draw(made)
     for number, preview in enumerate(previews):
         x, row = number % COLUMNS * (side + 2), number // COLUMNS
-        for part, (engine, picture) in enumerate((("RPPM", preview.rppm), ("Cycles", preview.cycles))):
+        for part, picture in enumerate((preview.rppm, preview.cycles)):
             y = (2 * row + part) * (side + LABEL)
             text = preview.name[:30] if part == 0 else f"Cycles; ratio {preview.ratio.mean():.3f}"
             draw.text((x + 2, y), text, fill="black")

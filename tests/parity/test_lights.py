@@ -21,6 +21,19 @@ def _glowing_square():
     plane(0.4, glow, place(at=(0.5, 0.0, 2.0), turn=(80.0, 0.0, 30.0)))
 
 
+def _square_seen_by_no_ray():
+    """Its nodes let it shine except along rays of any kind: where a light is sampled, there is none yet."""
+    glow = material(EMISSION, Color=(1.0, 0.6, 0.3), Strength=20.0)
+    tree = glow.node_tree
+    path, none = tree.nodes.new("ShaderNodeLightPath"), tree.nodes.new("ShaderNodeMath")
+    none.operation = "MULTIPLY_ADD"
+    none.inputs[1].default_value, none.inputs[2].default_value = -20.0, 20.0
+    tree.links.new(path.outputs["Is Reflection Ray"], none.inputs[0])
+    tree.links.new(none.outputs[0], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Strength"])
+    glow.cycles.emission_sampling = "FRONT_BACK"
+    plane(0.4, glow, place(**TILTED))
+
+
 LIGHTS = {
     "point": _lamp("POINT", UP_TWO, shadow_soft_size=0.0),
     "point_soft": _lamp("POINT", UP_TWO, shadow_soft_size=0.5),
@@ -42,6 +55,7 @@ LIGHTS = {
     "area_spread": _lamp("AREA", TILTED, shape="SQUARE", size=0.7, spread=math.radians(100.0)),
     "area_not_normalized": _lamp("AREA", UP_TWO, energy=10.0, shape="DISK", size=1.5, normalize=False),
     "emissive_mesh": _glowing_square,
+    "emissive_mesh_of_no_ray": _square_seen_by_no_ray,
 }
 MODES = {
     "RAYS": {"photons": 1024, "photon_path_length": 2, "iterations": 40},

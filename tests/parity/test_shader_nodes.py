@@ -91,6 +91,14 @@ SINGLE = {
     "glossy_across": (
         "bsdf_glossy", {"distribution": "GGX"}, {"color": COLOR, "roughness": 0.5, "anisotropy": -0.5, "rotation": 0.2}
     ),
+    "glossy_beckmann": ("bsdf_glossy", {"distribution": "BECKMANN"}, {"color": COLOR, "roughness": 0.7}),
+    "glossy_beckmann_stretched": (
+        "bsdf_glossy", {"distribution": "BECKMANN"},
+        {"color": COLOR, "roughness": 0.5, "anisotropy": 0.6, "rotation": 0.1},
+    ),
+    "metal_beckmann": (
+        "bsdf_metallic", {"distribution": "BECKMANN", "fresnel_type": "F82"}, {"base_color": COLOR, "roughness": 0.4}
+    ),
     "metal": (
         "bsdf_metallic", {"distribution": "MULTI_GGX", "fresnel_type": "F82"},
         {"base_color": COLOR, "edge_tint": (0.3, 0.6, 0.9), "roughness": 0.6, "anisotropy": 0.4, "rotation": 0.1},
@@ -117,10 +125,12 @@ def test_single_lobes(context, tmp_path, name, view):
 
 
 @pytest.mark.parametrize("view", [ABOVE, THROUGH, INSIDE, INSIDE_OUT], ids=["above", "through", "inside", "inside_out"])
-@pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])
+@pytest.mark.parametrize("distribution", ["BECKMANN", "GGX", "MULTI_GGX"])
 def test_glass(context, tmp_path, view, distribution):
     inputs = {"color": COLOR, "roughness": 0.5, "ior": 1.5}
     assert_alike(context, tmp_path, "bsdf_glass", view, {"distribution": distribution}, inputs, EXACT)
+    if distribution == "BECKMANN":
+        return
     inputs = {"base_color": COLOR, "roughness": 0.4, "ior": 1.3, "transmission_weight": 1.0, "specular_tint": TINT}
     assert_alike(context, tmp_path, "bsdf_principled", view, {"distribution": distribution}, inputs, EXACT)
 
@@ -128,7 +138,8 @@ def test_glass(context, tmp_path, view, distribution):
 @pytest.mark.parametrize("view", [THROUGH, INSIDE_OUT], ids=["through", "inside_out"])
 def test_refraction_and_translucency(context, tmp_path, view):
     inputs = {"color": COLOR, "roughness": 0.4, "ior": 1.4}
-    assert_alike(context, tmp_path, "bsdf_refraction", view, {"distribution": "GGX"}, inputs, EXACT)
+    for distribution in ("BECKMANN", "GGX"):
+        assert_alike(context, tmp_path, "bsdf_refraction", view, {"distribution": distribution}, inputs, EXACT)
     assert_alike(context, tmp_path, "bsdf_translucent", view, {}, {"color": COLOR}, EXACT)
 
 

@@ -116,3 +116,18 @@ def test_shadow_catchers_show_the_shadow_of_lights(renderer):
     reference = render_cycles(samples=512)
     result = render_rppm(renderer, direct_light="RAYS", **MODES["RAYS"])
     compare("shadow_catcher", result.pictures, reference, CONVERGED)
+
+
+@pytest.mark.parametrize("lets_pass", [True, False])
+def test_transparent_shadows(renderer, lets_pass):
+    """Half of the light passes a transparent screen, or none of a lamp's."""
+    new_scene()
+    plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7)))
+    half = material("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.4, 0.8), Alpha=0.5, Specular_IOR_Level=0.0)
+    half.use_transparent_shadow = lets_pass
+    plane(0.6, half, place(at=(0.0, 0.0, 0.6)))
+    light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.3)
+    camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), 40.0)
+    reference = render_cycles(samples=512)
+    result = render_rppm(renderer, direct_light="RAYS", **MODES["RAYS"])
+    compare(f"transparent_shadow_{lets_pass}", result.pictures, reference, CONVERGED)

@@ -67,7 +67,8 @@ def export_material(material: bpy.types.Material, report: Report, images: ImageT
     if exporter.is_linked(output.inputs["Displacement"], ()):
         _bump(exporter, material, output)
     graph.surface = exporter.surface(output)
-    exported = Material(material.name, graph)
+    shadow = getattr(material, "use_transparent_shadow", True)
+    exported = Material(material.name, graph, transparent_shadow=shadow)
     if exporter.is_linked(output.inputs["Volume"], ()):
         exported.interior = _interior(owner, report, images, output)
         if not exporter.is_linked(output.inputs["Surface"], ()):

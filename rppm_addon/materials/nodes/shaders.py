@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes.
 
-Stand-ins: GGX for the distributions of Beckmann and of Ashikhmin and Shirley; diffuse for subsurface scattering and
+Stand-ins: GGX for the distribution of Ashikhmin and Shirley; diffuse for subsurface scattering and
 for toon shading, whose glossy part is GGX; for hair, GGX stretched across the fibre and translucency; for the physical
 conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
 """

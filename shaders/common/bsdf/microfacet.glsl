@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lobes of a closure: GGX microfacets that reflect or refract, and sheen. n is a lobe's own normal.
+// Lobes of a closure: microfacets that reflect or refract, and sheen. n is a lobe's own normal.
 
 #include <MicrofacetLobe>
 #include "common/bsdf/diffuse.glsl"
@@ -74,6 +74,7 @@ struct LobeSample { vec3 direction; vec3 weight; bool transmitted; };
 
 LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_event, bool radiance) {
     LobeSample result = LobeSample(n, vec3(0.0), false);
+    if (dot(wo, n) <= 0.0) return result;
     if (lobe_is_sheen(lobe.kind)) {
         SheenFrame sheen = sheen_frame(n, wo);
         bool fitted = lobe.kind == LOBE_SHEEN;
@@ -86,7 +87,8 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
     vec3 local_wo = to_frame(frame, wo);
     bool smooth_lobe = lobe.alpha < 1e-6;
-    vec3 h = smooth_lobe ? n : from_frame(frame, sample_visible_normal(local_wo, frame.alpha, u));
+    vec3 local_h = sample_visible_normal(local_wo, frame.alpha, u);
+    vec3 h = smooth_lobe ? n : from_frame(frame, local_h);
     float cosine = dot(wo, h);
     if (cosine <= 0.0) return result;
     vec3 reflected = lobe.weight * lobe_reflectance(lobe, cosine);
@@ -106,9 +108,9 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
         if (dot(result.direction, n) >= 0.0) result.weight = vec3(0.0);
     }
     if (!smooth_lobe) {
-        float lambda_o = ggx_lambda(local_wo, frame.alpha);
-        float lambda_i = ggx_lambda(to_frame(frame, result.direction), frame.alpha);
-        result.weight *= (1.0 + lambda_o) / (1.0 + lambda_o + lambda_i);
+        float lambda_o = facet_lambda(frame, local_wo), lambda_i = facet_lambda(frame, to_frame(frame, result.direction));
+        float ratio = frame.beckmann ? beckmann_ratio(local_h, frame.alpha) : 1.0;
+        result.weight *= ratio * (1.0 + ggx_lambda(local_wo, frame.alpha)) / (1.0 + lambda_o + lambda_i);
     }
     return result;
 }
@@ -145,8 +147,8 @@ vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float oh, ih;
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return vec3(0.0);
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
-    float density = ggx_density(to_frame(frame, h), frame.alpha);
-    float masking = 1.0 / (1.0 + ggx_lambda(to_frame(frame, wo), frame.alpha) + ggx_lambda(to_frame(frame, wi), frame.alpha));
+    float density = facet_density(frame, to_frame(frame, h));
+    float masking = 1.0 / (1.0 + facet_lambda(frame, to_frame(frame, wo)) + facet_lambda(frame, to_frame(frame, wi)));
     if (cosine_i > 0.0)
         return lobe.weight * lobe_reflectance(lobe, oh) * (density * masking / (4.0 * cosine_o * cosine_i));
     float spread = lobe.ior * ih + oh;

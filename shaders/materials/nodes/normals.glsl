@@ -2,11 +2,6 @@
 // Nodes that turn the shading normal.
 
 #include "materials/nodes/geometry.glsl"
-// A normal that makes the mirrored viewer dip below the surface is bent until it just does not.
-vec3 visible_normal(Surface surface, vec3 n) {
-    float seen = dot(n, surface.viewer);
-    return seen < 1e-3 ? normalize(n + (1e-3 - seen) * surface.viewer) : n;
-}
 
 // The front's normal in object space, interpolated between unit normals of the corners, or the triangle's where that
 // is flat.

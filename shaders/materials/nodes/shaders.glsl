@@ -35,28 +35,30 @@ Microfacets stretched_microfacets(ClosureBuilder builder, vec3 normal, float rou
     return anisotropic_microfacets(builder, normal, unit(roughness), aspect, tangent, rotation);
 }
 
-// GGX stands in for Beckmann's and for Ashikhmin and Shirley's distribution.
+// GGX stands in for Ashikhmin and Shirley's distribution.
 void node_bsdf_glossy(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
                       float anisotropy, float rotation, vec3 normal, vec3 tangent) {
     Microfacets at = stretched_microfacets(builder, normal, roughness, anisotropy, tangent, rotation);
+    if (distribution == 0) at.anisotropy |= BECKMANN;
     add_mirror(builder, at, weight, max(color, 0.0), distribution == 3);
 }
 
-// GGX stands in for Beckmann's distribution.
 void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
                      float ior, vec3 normal, float thin_film_thickness, float thin_film_ior) {
     vec3 weighted = weight * max(color, 0.0);
     Microfacets at = isotropic_microfacets(builder, normal, unit(roughness));
+    if (distribution == 0) at.anisotropy |= BECKMANN;
     Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
     if (film.thickness > THINNEST_FILM)
         add_glass_with_film(builder, at, weighted, weighted, film, valid_ior(ior));
     else add_glass(builder, at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), valid_ior(ior), distribution == 2);
 }
 
-// GGX stands in for Beckmann's distribution.
 void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
                           float ior, vec3 normal) {
-    add_refraction(builder, isotropic_microfacets(builder, normal, unit(roughness)), weight * max(color, 0.0), valid_ior(ior));
+    Microfacets at = isotropic_microfacets(builder, normal, unit(roughness));
+    if (distribution == 0) at.anisotropy |= BECKMANN;
+    add_refraction(builder, at, weight * max(color, 0.0), valid_ior(ior));
 }
 
 void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness, vec3 normal) {
@@ -80,12 +82,12 @@ vec3 conductor_reflectance(float cosine, vec3 n, vec3 k) {
     return 0.5 * perpendicular * (1.0 + both);
 }
 
-// GGX stands in for Beckmann's distribution; of a physical conductor, the F82 curve that meets its own at normal
-// incidence and at 82 degrees.
+// Of a physical conductor, the F82 curve that meets its own at normal incidence and at 82 degrees.
 void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribution, int fresnel_type, vec3 base_color,
                         vec3 edge_tint, vec3 ior, vec3 extinction, float roughness, float anisotropy, float rotation,
                         vec3 normal, vec3 tangent, float thin_film_thickness, float thin_film_ior) {
     Microfacets at = anisotropic_microfacets(builder, normal, unit(roughness), sqrt(1.0 - 0.9 * unit(anisotropy)), tangent, rotation);
+    if (distribution == 0) at.anisotropy |= BECKMANN;
     vec3 f0 = clamp(base_color, 0.0, 1.0), edge = clamp(edge_tint, 0.0, 1.0);
     if (fresnel_type == 0) {
         const float cosine = 1.0 / 7.0;

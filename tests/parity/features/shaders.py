@@ -30,9 +30,6 @@ lit(
     "Glossy",
     "BECKMANN, roughness 0.3",
     shader("BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="BECKMANN"),
-    mean=0.03,
-    block=0.2,
-    reason="GGX stands in",
 )
 lit(
     "Glossy",
