@@ -19,8 +19,9 @@ render: setup ## Render the sample scene inside Blender with RPPM to out/ (PNG a
 sample: setup ## Build docs/samples/first_light.blend anew
 	$(BLENDER_PYTHON) docs/samples/first_light.py docs/samples/first_light.blend
 
+# Two at a time: most tests compile, or wait for one of the two engines, on a single core.
 test: setup ## Run the tests
-	timeout --kill-after=10 4500 .venv/bin/python -m pytest
+	timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=2 --dist=worksteal
 
 lint: setup ## Check Python, imports, licence lines and shaders
 	.venv/bin/ruff check .
