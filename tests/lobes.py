@@ -79,6 +79,8 @@ def _shader(graph: NodeGraph, lobe: Lobe) -> Link:
         inputs["ior"] = lobe.ior
     if lobe.kind in {LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.PRINCIPLED}:
         options["distribution"] = "MULTI_GGX" if lobe.multiscatter else "GGX"
+    if lobe.kind is LobeKind.REFRACTION:
+        options["distribution"] = "GGX"
     output = next(iter(KINDS[lobe.kind.value].outputs))
     return graph.add(lobe.kind.value, output, options=options, **inputs)
 

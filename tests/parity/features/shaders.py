@@ -58,7 +58,7 @@ for _roughness in (0.0, 0.2):
         f"roughness {_roughness}",
         shader("BsdfRefraction", {"Roughness": _roughness, "IOR": 1.3}),
         settings=LONG,
-        effort=2,
+        effort=3,
     )
 lit("Transparent", "tinted", shader("BsdfTransparent", {"Color": (0.8, 0.6, 0.4)}), effort=3)
 lit("Translucent", "plain", shader("BsdfTranslucent", COLOR))
