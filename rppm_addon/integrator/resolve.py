@@ -74,7 +74,6 @@ class Resolve:
             **materials.buffers,
         }
         camera = scene.camera
-        width, _ = camera.resolution
         self._parameters = {
             "world_to_camera": np.linalg.inv(camera.matrix),
             "window": camera.window,

@@ -109,8 +109,9 @@ class MaterialTables:
                 self._others[id(graph)] = compiled_graph.text, layout.add(graph, compiled_graph), owner
         self.attribute_names = list(layout.attributes)
         self._buffers["MaterialData"].upload(layout.data())
-        self._buffers["Images"].upload(layout.image_entries())
-        self._buffers["Texels"].upload(layout.texels())
+        entries, texels = layout.images()
+        self._buffers["Images"].upload(entries)
+        self._buffers["Texels"].upload(texels)
         for record, interior in zip(records, interiors, strict=True):
             if interior is not None:
                 record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
@@ -193,23 +194,19 @@ class _Layout:
             self._numbers[place] = float(starts[table])
         return np.concatenate([np.array(self._numbers or [0.0], np.float32), *self._tables]).astype(np.float32)
 
-    def image_entries(self) -> np.ndarray:
-        """(n,) IMAGE_ENTRY records of the images in use; one that is missing is magenta."""
+    def images(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) IMAGE_ENTRY records of the images in use, and (m,) uint32, their texels one after the other; an image
+        that is missing is magenta."""
         entries = IMAGE_ENTRY.zeros(max(1, len(self._used)))
-        first = 0
-        for entry, image in zip(entries, self._used, strict=False):
-            data, kind = _texels(self._image_of(image))
-            height, width = self._image_of(image).pixels.shape[:2]
+        texels, first = [], 0
+        for entry, index in zip(entries, self._used, strict=False):
+            image = _MISSING if index < 0 else self._images[index]
+            data, kind = _texels(image)
+            height, width = image.pixels.shape[:2]
             entry["first_texel"], entry["width"], entry["height"], entry["format"] = first, width, height, kind
+            texels.append(data)
             first += len(data)
-        return entries
-
-    def texels(self) -> np.ndarray:
-        """(n,) uint32, the images in use one after the other."""
-        return np.concatenate([_texels(self._image_of(image))[0] for image in self._used] or [np.zeros(1, np.uint32)])
-
-    def _image_of(self, image: int) -> Image:
-        return _MISSING if image < 0 else self._images[image]
+        return entries, np.concatenate(texels) if texels else np.zeros(1, np.uint32)
 
 
 _MISSING = Image("missing", np.array([[[255, 0, 255, 255]]], np.uint8), "LINEAR")

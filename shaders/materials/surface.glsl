@@ -20,7 +20,7 @@ struct Surface {
     uint triangle;      // NO_TRIANGLE: a world or a light
     uint instance;
     bool backfacing;
-    uint ray;           // one or more of the bits above
+    uint ray;           // one or more of the bits of common/ray_kinds.glsl
     float ray_length;
     uint ray_depth;
 };

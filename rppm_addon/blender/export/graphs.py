@@ -300,7 +300,7 @@ def _is_placed(node: bpy.types.Node) -> bool:
     return node.type.startswith("TEX_") and node.type != "TEX_WHITE_NOISE"
 
 
-_OLDER = {"factor": "fac", "fac": "factor", "bsdf": "bsdf"}
+_OLDER = {"factor": "fac", "fac": "factor"}
 """Identifiers that differ between versions of Blender."""
 
 

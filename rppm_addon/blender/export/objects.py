@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 
-from ...scene import Instance, Mesh, Scene
+from ...scene import Instance, Mesh, RayVisibility, Scene
 from .attributes import add_attributes, attribute_of
+from .hashing import hashed
 from .images import ImageTable
 from .lights import export_light
 from .materials import MaterialTable
@@ -64,30 +65,34 @@ class ObjectExporter:
             return
         if source.type not in CONVERTED_TYPES and source.type != "MESH":
             return
-        if not visibility_of(source):
+        visibility = visibility_of(source)
+        if not visibility:
             return
         if source.type != "MESH":
-            self._unconverted.append((source.original, matrix, self._shading(instance, source)))
+            self._unconverted.append((source.original, matrix, self._shading(instance, source, visibility)))
             return
         if len(source.data.polygons) == 0:
             return  # and its materials are not needed
         original = source.original
         if original.type in CONVERTED_TYPES:
             self._converted.add((original.as_pointer(), matrix.tobytes()))
-        self._place(source, source.data, matrix, self._shading(instance, source))
+        self._place(source, source.data, matrix, self._shading(instance, source, visibility))
 
-    def _shading(self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object) -> dict[str, object]:
-        """What shading nodes may ask about an instance: members of scene.Instance."""
+    def _shading(
+        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, visibility: RayVisibility
+    ) -> dict[str, object]:
+        """Materials of an instance and what their nodes may ask about it: members of scene.Instance."""
+        materials = self._material_slots(source)
         members: dict[str, object] = {
+            "materials": materials,
             "color": tuple(source.color),
             "random": _random(instance, source),
             "particle": particle_of(instance, self._frame),
-            "visibility": visibility_of(source),
+            "visibility": visibility,
             "holdout": source.is_holdout,
             "shadow_catcher": source.is_shadow_catcher,
         }
         instancer = instance.parent if instance.is_instance else None
-        materials = self._material_slots(source)
         values: dict[str, tuple[float, ...]] = {}
         for name in self._attributes_of(materials):
             domain, _, path = name.partition(":")
@@ -106,10 +111,9 @@ class ObjectExporter:
     def _place(
         self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, matrix: np.ndarray, shading: dict[str, object]
     ) -> None:
-        materials = self._material_slots(source)
-        index = self._mesh_index(source, mesh, self._attributes_of(materials))
+        index = self._mesh_index(source, mesh, self._attributes_of(shading["materials"]))
         if index is not None:
-            instance = Instance(index, matrix, materials, source.name, source.pass_index, **shading)
+            instance = Instance(index, matrix, object_name=source.name, object_index=source.pass_index, **shading)
             self._placed.append((instance, matrix))
 
     def _convert(self, depsgraph: bpy.types.Depsgraph) -> None:
@@ -191,20 +195,4 @@ def _random(instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Objec
     number = 0
     for byte in source.name.encode():
         number = (37 * number + byte) & 0xFFFFFFFF
-    return _hashed(number) / 0xFFFFFFFF
-
-
-_MIXED = ((2, 1, 14), (0, 2, 11), (1, 0, 25), (2, 1, 16), (0, 2, 4), (1, 0, 14), (2, 1, 24))
-"""Which of three numbers is mixed with which, turned by how many bits."""
-
-
-def _hashed(number: int) -> int:
-    """The last mix of Bob Jenkins' lookup3 of a number and 0."""
-    a = b = c = (0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF
-    a = (a + number) & 0xFFFFFFFF
-    for first, second, third in _MIXED:
-        values = [a, b, c]
-        rotated = ((values[second] << third) | (values[second] >> (32 - third))) & 0xFFFFFFFF
-        values[first] = ((values[first] ^ values[second]) - rotated) & 0xFFFFFFFF
-        a, b, c = values
-    return c
+    return hashed(number)

@@ -4,6 +4,7 @@
 import bpy
 
 from ...scene import Particle
+from .hashing import hashed
 
 
 def particle_of(instance: bpy.types.DepsgraphObjectInstance, frame: float) -> Particle | None:
@@ -17,7 +18,7 @@ def particle_of(instance: bpy.types.DepsgraphObjectInstance, frame: float) -> Pa
     particle = system.particles[index]
     return Particle(
         index=float(index),
-        random=_hash(index) / 0xFFFFFFFF,
+        random=hashed(index),
         age=frame - particle.birth_time,
         lifetime=particle.lifetime,
         size=particle.size,
@@ -25,21 +26,3 @@ def particle_of(instance: bpy.types.DepsgraphObjectInstance, frame: float) -> Pa
         velocity=tuple(particle.velocity),
         angular_velocity=tuple(particle.angular_velocity),
     )
-
-
-def _hash(key: int) -> int:
-    """Jenkins' final mix of (key, 0), as Cycles makes a particle's random number of its index."""
-    mask = 0xFFFFFFFF
-
-    def rotated(x: int, k: int) -> int:
-        return ((x << k) | (x >> (32 - k))) & mask
-
-    start = 0xDEADBEEF + (2 << 2) + 13 & mask
-    a, b, c = (start + key) & mask, start, start
-    c = ((c ^ b) - rotated(b, 14)) & mask
-    a = ((a ^ c) - rotated(c, 11)) & mask
-    b = ((b ^ a) - rotated(a, 25)) & mask
-    c = ((c ^ b) - rotated(b, 16)) & mask
-    a = ((a ^ c) - rotated(c, 4)) & mask
-    b = ((b ^ a) - rotated(a, 14)) & mask
-    return ((c ^ b) - rotated(b, 24)) & mask

@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random numbers that Cycles makes of whole numbers."""
+
+_MIXED = ((2, 1, 14), (0, 2, 11), (1, 0, 25), (2, 1, 16), (0, 2, 4), (1, 0, 14), (2, 1, 24))
+"""Which of three numbers is mixed with which, turned by how many bits."""
+
+
+def hashed(number: int) -> float:
+    """From 0 to 1, the last mix of Bob Jenkins' lookup3 of a number and 0."""
+    values = [(0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF] * 3
+    values[0] = (values[0] + number) & 0xFFFFFFFF
+    for first, second, bits in _MIXED:
+        rotated = ((values[second] << bits) | (values[second] >> (32 - bits))) & 0xFFFFFFFF
+        values[first] = ((values[first] ^ values[second]) - rotated) & 0xFFFFFFFF
+    return values[2] / 0xFFFFFFFF
