@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a test can ask of Blender: each function is a step; what it returns must fit into JSON."""
+
+import time
+
+import bpy
+
+renders = {"started": 0, "completed": 0, "cancelled": 0}
+
+
+def _count(name: str):
+    def handler(*_: object) -> None:
+        renders[name] += 1
+
+    return bpy.app.handlers.persistent(handler)
+
+
+bpy.app.handlers.render_init.append(_count("started"))
+bpy.app.handlers.render_complete.append(_count("completed"))
+bpy.app.handlers.render_cancel.append(_count("cancelled"))
+
+
+def ready() -> str:
+    """Blender's version, once it answers at all."""
+    return bpy.app.version_string
+
+
+def window() -> bpy.types.Window:
+    return bpy.context.window_manager.windows[0]
+
+
+def area(kind: str) -> bpy.types.Area:
+    """The largest area of a kind in the first window."""
+    return max((area for area in window().screen.areas if area.type == kind), key=lambda a: a.width * a.height)
+
+
+def region(kind: str) -> bpy.types.Region:
+    return next(region for region in area(kind).regions if region.type == "WINDOW")
+
+
+def override(kind: str = "VIEW_3D"):
+    """Context in which operators see an area of the window."""
+    found = area(kind)
+    return bpy.context.temp_override(window=window(), area=found, region=region(kind))
+
+
+def rectangle(kind: str) -> list[int]:
+    """x, y, width, height of an area's main region on the screen, y from the top."""
+    found = region(kind)
+    return [found.x, window().height - found.y - found.height, found.width, found.height]
+
+
+def change_area(kind: str, to: str) -> None:
+    area(kind).type = to
+
+
+def evaluate(text: str) -> object:
+    """Value of an expression over bpy and the scene."""
+    return eval(text, {"bpy": bpy, "scene": window().scene})  # noqa: S307 - tests only
+
+
+def assign(path: str, value: object) -> None:
+    """Set an attribute: ``scene.rppm.iterations`` or any path from bpy."""
+    owner, name = path.rsplit(".", 1)
+    setattr(evaluate(owner), name, value)
+
+
+def properties_tab(name: str) -> None:
+    """Show a tab of the Properties editor, its panels open."""
+    area("PROPERTIES").spaces.active.context = name
+
+
+def render_counts() -> dict[str, int]:
+    return dict(renders)
+
+
+def rendering() -> bool:
+    return bpy.app.is_job_running("RENDER")
+
+
+def save_result(path: str) -> None:
+    """Save the last render with the scene's format and view."""
+    bpy.data.images["Render Result"].save_render(path, scene=window().scene)
+
+
+def open_file(path: str) -> None:
+    with override():
+        bpy.ops.wm.open_mainfile(filepath=path)
+
+
+def quit_blender() -> None:
+    """Leave, a little later so that this step is answered."""
+
+    def leave() -> None:
+        with bpy.context.temp_override(window=window()):
+            bpy.ops.wm.quit_blender()
+
+    bpy.app.timers.register(leave, first_interval=0.1)
+
+
+def clock() -> float:
+    return time.perf_counter()
