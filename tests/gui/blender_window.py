@@ -67,7 +67,7 @@ class BlenderWindow:
         return result
 
     def screenshot(self, name: str, kind: str = "") -> np.ndarray:
-        """The screen, or an area's main region, as (height, width, 3) of 8 bits, row 0 at the top; also ``name``.png."""
+        """The screen, or an area's main region, (height, width, 3) of 8 bits, row 0 at the top; also ``name``.png."""
         path = self.machine.screenshot(name)
         if kind:
             x, y, width, height = self.step("rectangle", kind=kind)
