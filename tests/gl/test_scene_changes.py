@@ -133,7 +133,7 @@ def test_the_centre_of_the_deep_cubemap_changes_no_picture(mapper, other_mapper)
     other_mapper.build(moved)
     assert not np.array_equal(other_mapper.centre, centre)
     kept, built = pictures(mapper), pictures(other_mapper)
-    # The splats' cubemap has that centre as well, and rays start in other cells: the same photons and hits all the same.
+    # Splats and rays start from other cells: the same photons and hits all the same.
     np.testing.assert_allclose(kept[0], built[0], rtol=1e-5, atol=1e-7)
 
 
