@@ -25,7 +25,6 @@ class Changes:
     """Lights, the world, or how many photons they share."""
     world: bool
     """The world, its images, or the camera if its nodes ask for it."""
-    camera: bool
     cubemap: bool
     """Where the deep cubemap is asked to be, and how fine."""
 
@@ -33,7 +32,7 @@ class Changes:
 def changes_between(before: Scene | None, after: Scene) -> Changes:
     """Members are compared by identity, the settings by value; before None: all has changed."""
     if before is None:
-        return Changes(True, True, True, True, True, True)
+        return Changes(True, True, True, True, True)
     images = _differ(before.images, after.images)
     camera = before.camera is not after.camera
     world = images or before.world is not after.world or (camera and _asks_for_camera([after.world.graph]))
@@ -49,7 +48,6 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
         or (camera and _asks_for_camera(graphs))
         or after.settings.photons != before.settings.photons,
         world=world,
-        camera=camera,
         cubemap=after.settings.cubemap_resolution != before.settings.cubemap_resolution
         or not np.array_equal(_point(before), _point(after), equal_nan=True),
     )

@@ -68,6 +68,7 @@ class ProgressivePhotonMapper:
         self._built: Scene | None = None
         """What stands on the device; None is nothing that a change could be told from."""
         self._warnings: list[str] = []
+        self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
         self._wide_radius = 0.0
         self._diffused_photons: list[np.ndarray] = []
@@ -105,7 +106,8 @@ class ProgressivePhotonMapper:
             self._emission.build(scene, self._geometry, self._materials, self._resolve, not changes.world)
         else:
             self._emission.begin()
-        if changes.geometry or changes.cubemap or (changes.camera and not keep_centre):
+        moved = not keep_centre and not np.array_equal(next(cubemap_centres(scene, self._geometry)), self._wanted_centre)
+        if changes.geometry or changes.cubemap or moved:
             with self.timers.stage("deep cubemap"):
                 self._build_deep_cubemap()
         self._keep_warnings(scene, known, changes)
@@ -169,6 +171,7 @@ class ProgressivePhotonMapper:
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
+        self._wanted_centre = next(cubemap_centres(self.scene, self._geometry))
         for centre in cubemap_centres(self.scene, self._geometry):
             self.centre = centre
             self._deep_cubemap.build(
