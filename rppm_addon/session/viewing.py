@@ -11,7 +11,7 @@ from ..integrator.progressive import ProgressivePhotonMapper
 from ..scene.errors import RppmError
 from ..scene.scene import Scene
 from .frames import FrameWriter
-from .renderer import log, read_frame
+from .renderer import log, read_frame, slices_of_iteration
 from .sessions import SessionStatus
 
 Send = Callable[..., None]
@@ -53,6 +53,8 @@ class Viewing:
         try:
             if next(self._slices, self) is self:  # ended
                 self._slices = None
+        except BrokenPipeError:
+            raise
         except Exception as error:
             self._fail(error)
 
@@ -65,7 +67,8 @@ class Viewing:
         built = time.perf_counter()
         yield
         while mapper.iteration < settings.iterations:
-            mapper.iterate()
+            for _ in slices_of_iteration(mapper):
+                yield
             combined = read_frame(mapper.film, scene.exposure).combined
             slots = self._frames.reserve(combined.shape[0] * combined.shape[1])
             if slots is not None:
