@@ -9,7 +9,12 @@ from pathlib import Path
 import bpy
 from bpy.app.handlers import persistent
 
+from ..scene import Scene
+from ..session import remote_rendering
 from ..session.client import RendererProcess
+from ..session.render_job import RenderJob
+from ..session.results import RenderResult
+from ..session.sessions import SessionKind
 
 _EXTENSIONS = "bl_ext"
 _process: RendererProcess | None = None
@@ -24,6 +29,16 @@ def renderer_process() -> RendererProcess:
             folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
             _process = RendererProcess([python_program(), *bpy.app.python_args], folders, log_path())
         return _process
+
+
+def is_used() -> bool:
+    """Whether renders go to the process: where there is a window, which must not freeze."""
+    return not bpy.app.background
+
+
+def render(scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
+    """Render in the process, as remote_rendering.render does."""
+    return remote_rendering.render(renderer_process(), scene, job, kind)
 
 
 def close() -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..gl.context import DeviceInformation
 from .child_process import ChildProcess
-from .client_session import Session
+from .client_session import RenderSession, Session, ViewportSession
 from .connection import Connection
 from .sessions import SessionKind
 from .shared_memory import remove_leftovers
@@ -82,13 +82,15 @@ class RendererProcess:
         self._leaving = False
         self._restarting = False
 
-    def open(self, kind: SessionKind) -> Session:
+    def open(self, kind: SessionKind) -> ViewportSession | RenderSession:
         """A new session; starts the process if there is none."""
         with self.changed:
             self._numbers += 1
-            session = self.sessions[self._numbers] = Session(self, self._numbers, kind)
-            self.post("open", session=self._numbers, session_kind=kind.name)
-            if self.state is ProcessState.STOPPED:
+            made = ViewportSession if kind is SessionKind.VIEWPORT else RenderSession
+            session = self.sessions[self._numbers] = made(self, self._numbers, kind)
+            if self.state is ProcessState.RUNNING:
+                session.introduce()
+            elif self.state is ProcessState.STOPPED:
                 self._start()
             elif self.state is ProcessState.FAILED:
                 session.fail(self.error)
@@ -109,6 +111,8 @@ class RendererProcess:
     def close(self) -> None:
         """End the process and all sessions. Waits for it, but a few seconds at the most."""
         with self.changed:
+            for session in self.sessions.values():
+                session.fail("The renderer process was closed")
             self.sessions.clear()
             keeper = self._keeper
             self._leaving = True

@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 from ..gl.context import DeviceInformation
 from .child_process import ChildProcess, ProcessEnded
 from .client_session import Session
-from .frames import FrameReader
 from .protocol import VERSION, ProtocolError
-from .sessions import SessionStatus
 
 if TYPE_CHECKING:
     from .client import RendererProcess
@@ -134,22 +132,13 @@ class Connection:
         number = message.pop("session")
         if kind == "taken":
             self._child.taken(number, message["number"])
-        reader = FrameReader(**message) if kind == "slots" else None
         with owner.changed:
             session = owner.sessions.get(number)
-            if session is None:
-                return  # it was closed meanwhile
-            if kind == "taken":
+            if kind == "taken" and session is not None:
                 session.snapshot_taken(message["number"])
                 owner.changed.notify_all()
-            elif kind == "slots":
-                session.use_slots(reader)
-            elif kind == "status":
-                session.status = SessionStatus(**message["status"])
-            elif kind != "frame":
-                raise ProtocolError(f"there is no message {kind!r}")
-        if kind == "frame":
-            session.receive_frame(**message)
+        if kind != "taken" and session is not None:  # None: it was closed meanwhile
+            session.receive(kind, message)
 
     def _handle_greeting(self, kind: str, message: dict) -> None:
         with self._owner.changed:

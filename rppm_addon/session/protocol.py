@@ -10,6 +10,10 @@ open session, session_kind            a SessionKind's name
 show session, number, generation, navigating, scene, arrays
                                       a snapshot (transfer.py)
 pause session, paused
+expect_snapshots session, seconds     a render is to send its picture at these times
+want_picture session                  a render is to send its picture once
+received session                      the render's oldest frame is copied: its shared memory is free
+stop session                          a render is to end with what it has
 close session, dead                   dead are the handles of members that nothing uses any more
 forget dead                           the same without closing
 ping
@@ -22,6 +26,11 @@ taken session, number                 a snapshot is decoded: its shared memory i
 slots session, block, capacity        where the session's frames are from now on (frames.py)
 frame session, slot, generation, sequence, width, height, progress
 status session, status                a SessionStatus
+progress session, progress            a render's Progress
+picture session, arrays, progress     as it was wanted
+snapshot session, arrays, seconds     as it was expected
+result session, arrays, statistics, stopped
+failed session, error, text           the render has ended with an error of this name
 pong
 """
 

@@ -11,7 +11,7 @@ from ..integrator.progressive import ProgressivePhotonMapper
 from ..scene.errors import RppmError
 from ..scene.scene import Scene
 from .frames import FrameWriter
-from .renderer import log, read_frame
+from .renderer import log, read_combined
 from .sessions import SessionStatus
 from .sharpness import Sharpness, at_level
 
@@ -89,8 +89,7 @@ class Viewing:
         built = time.perf_counter()
         yield
         while mapper.iteration < settings.iterations:
-            for _ in mapper.steps():
-                yield
+            yield from mapper.steps()
             now = time.perf_counter()
             if mapper.iteration % settings.iterations_per_frame == 0 or mapper.iteration == settings.iterations:
                 self._give_out(scene, generation)

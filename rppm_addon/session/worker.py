@@ -17,12 +17,14 @@ from ..scene.errors import RppmError
 from .arrays import unpack
 from .fair_share import FairShare
 from .protocol import VERSION, ProtocolError, read_message, write_message
+from .rendering import Rendering
 from .sessions import SessionKind
 from .transfer import SceneReceiver
 from .viewing import Viewing
 
 log = logging.getLogger(__name__)
 
+_FOR_SESSIONS = frozenset(("show", "pause", "expect_snapshots", "want_picture", "received", "stop"))
 LEAVE_SECONDS = 1.0
 """How long what the device is at may take to end once Blender has left."""
 
@@ -56,7 +58,7 @@ class Worker:
         self._writing = threading.Lock()
         self._receiver = SceneReceiver()
         self._inbox: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
-        self._sessions: dict[int, tuple[SessionKind, Viewing]] = {}
+        self._sessions: dict[int, tuple[SessionKind, Viewing | Rendering]] = {}
         self._share = FairShare()
         self._left = threading.Event()
 
@@ -83,8 +85,8 @@ class Worker:
             while (message := read_message(self._reader)) is not None and message["kind"] != "leave":
                 if message["kind"] == "show":
                     message["scene"] = self._receiver.receive(message["scene"], unpack(message.pop("arrays")))
-                    self._send("taken", session=message["session"], number=message["number"])
-                self._receiver.forget(message.get("dead", ()))
+                    self._send("taken", session=message["session"], number=message.pop("number"))
+                self._receiver.forget(message.pop("dead", ()))
                 self._inbox.put(message)
         except BrokenPipeError:
             pass
@@ -93,8 +95,8 @@ class Worker:
             code = 1
         self._inbox.put(None)
         if not self._left.wait(LEAVE_SECONDS):
-            for _, viewing in list(self._sessions.values()):
-                viewing.unlink()
+            for _, session in list(self._sessions.values()):
+                session.unlink()
             os._exit(code)
 
     # In the main thread.
@@ -103,7 +105,7 @@ class Worker:
         """Take what has come, and wait for it when there is nothing to render; False when Blender has left."""
         with contextlib.suppress(queue.Empty):
             while True:
-                busy = any(viewing.busy for _, viewing in self._sessions.values())
+                busy = any(session.busy for _, session in self._sessions.values())
                 message = self._inbox.get(block=not busy)
                 if message is None:
                     return False
@@ -111,28 +113,28 @@ class Worker:
         return True
 
     def _handle(self, message: dict) -> None:
-        kind, number = message["kind"], message.get("session")
+        kind, number = message.pop("kind"), message.pop("session", None)
         if kind == "ping":
             self._send("pong")
         elif kind == "open":
+            session_kind = SessionKind[message["session_kind"]]
+            serve = Viewing if session_kind is SessionKind.VIEWPORT else Rendering
             send = functools.partial(self._send, session=number)
-            self._sessions[number] = SessionKind[message["session_kind"]], Viewing(self._context, self._library, send)
-        elif kind == "show":
-            self._sessions[number][1].show(message["scene"], message["generation"], message["navigating"])
-        elif kind == "pause":
-            self._sessions[number][1].pause(message["paused"])
+            self._sessions[number] = session_kind, serve(self._context, self._library, send)
         elif kind == "close":
             self._close(number)
+        elif kind in _FOR_SESSIONS:
+            getattr(self._sessions[number][1], kind)(**message)
         elif kind != "forget":
             raise ProtocolError(f"there is no message {kind}")
 
     def _run_slice(self) -> None:
-        number = self._share.next(number for number, (_, viewing) in self._sessions.items() if viewing.busy)
+        number = self._share.next(number for number, (_, session) in self._sessions.items() if session.busy)
         if number is None:
             return
-        kind, viewing = self._sessions[number]
+        kind, session = self._sessions[number]
         started = time.perf_counter()
-        viewing.run_slice()
+        session.run_slice()
         self._context.finish()
         self._share.took(number, time.perf_counter() - started, kind.value)
 
