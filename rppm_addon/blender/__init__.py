@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RPPM inside Blender: the only floor that imports bpy."""
 
-from . import engine, panels, properties, renderer_thread
+from . import engine, panels, properties, renderer_process, renderer_thread
 
 
 def register() -> None:
@@ -9,10 +9,12 @@ def register() -> None:
     properties.register()
     engine.register()
     panels.register()
+    renderer_process.register()
 
 
 def unregister() -> None:
-    """Undo register and release the graphics device."""
+    """Undo register, end the renderer process and release the graphics device."""
+    renderer_process.unregister()
     panels.unregister()
     engine.unregister()
     properties.unregister()

@@ -11,11 +11,13 @@ import numpy as np
 from ..scene import Scene
 from ..scene.errors import RppmError
 from ..session.observers import RenderObserver, current_observer
-from . import renderer_thread
+from ..session.render_job import RenderJob
+from ..session.sessions import SessionKind
+from . import renderer_process, renderer_thread
 from .export import ExportStopped, export_scene
 
 if TYPE_CHECKING:
-    from ..session.renderer import Frame, Progress
+    from ..session.results import Frame, Progress, RenderResult
 
 logger = logging.getLogger(__name__)
 
@@ -56,7 +58,7 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     engine.update_stats("", "Preparing the graphics device")
     job = _FinalJob(engine, scene, depsgraph.view_layer_eval.name, observer)
     try:
-        result = renderer_thread.render(scene, job)
+        result = _render_scene(engine, scene, job)
         job.show(result.frame)
     except BaseException:
         job.end(cancel=True)
@@ -65,6 +67,13 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     # The statistics repeat the scene's warnings, which have been reported.
     _report_warnings(engine, [text for text in result.statistics.warnings if text not in scene.warnings])
     observer.on_finish(result, scene)
+
+
+def _render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) -> "RenderResult":
+    if renderer_process.is_used():
+        kind = SessionKind.PREVIEW if engine.is_preview else SessionKind.FINAL
+        return renderer_process.render(scene, job, kind)
+    return renderer_thread.render(scene, job)
 
 
 def _fail(engine: bpy.types.RenderEngine, observer: RenderObserver, text: str) -> None:
@@ -84,7 +93,7 @@ def _report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> Non
 DEEP_CUBEMAP_PASS = "Deep Cubemap"
 
 
-class _FinalJob(renderer_thread.RenderJob):
+class _FinalJob(RenderJob):
     """Shows a render in the engine's result and tells the observer."""
 
     def __init__(self, engine: bpy.types.RenderEngine, scene: Scene, layer: str, observer: RenderObserver) -> None:
