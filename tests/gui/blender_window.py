@@ -35,7 +35,7 @@ class BlenderWindow:
         command = ["blender", "--offline-mode", "--window-geometry", "0", "0", str(width), str(height)]
         command += ["--python-exit-code", "1", f"/mnt/{file}", "--python", "/mnt/inside/agent.py", "--", "/mnt/agent"]
         self.pid = machine.start("blender", command, USER_FOLDER | {"DISPLAY": DISPLAY})
-        self.version = self.step("ready", 120.0)
+        self.wait_until("ready", 120.0)
 
     def log(self) -> str:
         """What Blender has printed."""
@@ -81,6 +81,14 @@ class BlenderWindow:
         x, y, width, height = self.step("rectangle", kind=kind)
         self.machine.press("mousemove", int(x + across * width), int(y + down * height))
         time.sleep(0.1)
+
+    def shrink(self, kind: str, width: int, height: int) -> None:
+        """Give an area's main region about this size, less than half of what it has."""
+        for size, wanted in (("width", width), ("height", height)):
+            self.step("split", kind=kind, size=size, wanted=wanted)
+            self.wait_until("ready", 10.0)  # sizes are known once the window is laid out
+            self.step("keep_smallest", kind=kind)
+            self.wait_until("ready", 10.0)
 
     def press(self, key: str) -> None:
         """Press and release a key, by its X11 name."""

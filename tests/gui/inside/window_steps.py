@@ -20,9 +20,9 @@ bpy.app.handlers.render_complete.append(_count("completed"))
 bpy.app.handlers.render_cancel.append(_count("cancelled"))
 
 
-def ready() -> str:
-    """Blender's version, once it answers at all."""
-    return bpy.app.version_string
+def ready() -> bool:
+    """Whether the window is laid out, as it is once it has been drawn."""
+    return all(min(area.width, area.height) > 1 for area in window().screen.areas) and region("VIEW_3D").height > 1
 
 
 def window() -> bpy.types.Window:
@@ -50,9 +50,21 @@ def rectangle(kind: str) -> list[int]:
     return [found.x, window().height - found.y - found.height, found.width, found.height]
 
 
-def change_area(kind: str, to: str) -> None:
-    area(kind).type = to
+def split(kind: str, size: str, wanted: int) -> None:
+    """Split an area so that one half's main region has about this ``size`` (width or height)."""
+    total = getattr(area(kind), size)
+    border = total - getattr(region(kind), size)
+    with override(kind):
+        bpy.ops.screen.area_split(
+            direction="VERTICAL" if size == "width" else "HORIZONTAL", factor=(wanted + border) / total
+        )
 
+
+def keep_smallest(kind: str) -> None:
+    """Of the areas of a kind keep the smallest one; the others become text editors."""
+    found = sorted((area for area in window().screen.areas if area.type == kind), key=lambda a: a.width * a.height)
+    for other in found[1:]:
+        other.type = "TEXT_EDITOR"
 
 def evaluate(text: str) -> object:
     """Value of an expression over bpy and the scene."""
