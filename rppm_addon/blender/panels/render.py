@@ -36,6 +36,10 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
         column.prop(settings, "photons")
         column.prop(settings, "direct_light")
         column.prop(settings, "final_gather")
+        column.separator()
+        column.prop(settings, "viewport_iterations")
+        column.prop(settings, "viewport_photons")
+        column.prop(settings, "viewport_paused")
 
 
 class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
