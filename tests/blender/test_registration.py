@@ -36,7 +36,7 @@ def test_blenders_panels_show(scene):
         "VIEWLAYER_PT_layer",
         "DATA_PT_uv_texture",
     }
-    assert not shown & {"DATA_PT_light", "RENDER_PT_eevee_sampling", "RENDER_PT_gpencil"}
+    assert not shown & {"DATA_PT_light", "RENDER_PT_eevee_sampling", "RENDER_PT_freestyle"}
 
 
 def test_unregister_leaves_nothing(scene):

@@ -15,18 +15,14 @@ UNFIT = {
     "DATA_PT_falloff_curve": "light falls off with the square of the distance; nodes change that",
     "DATA_PT_camera_stereoscopy": "one eye is rendered",
     "DATA_PT_volume_render": "volumes are not rendered",
-    "MATERIAL_PT_freestyle_line": "lines are not rendered",
+    "MATERIAL_PT_freestyle_line": "as RENDER_PT_freestyle",
     "OBJECT_PT_shading": "is empty without Cycles' panels in it",
-    "RENDER_PT_freestyle": "lines are not rendered",
-    "RENDER_PT_gpencil": "grease pencil is not rendered",
-    "RENDER_PT_grease_pencil_render": "grease pencil is not rendered",
-    "RENDER_PT_grease_pencil_viewport": "grease pencil is not rendered",
-    "RENDER_PT_simplify_greasepencil": "grease pencil is not rendered",
+    "RENDER_PT_freestyle": "the strokes, which Blender has the engine render, come out too wide",
     "RENDER_PT_stereoscopy": "one eye is rendered",
     "VIEWLAYER_PT_layer_passes": "is empty without the panels of other engines",
 }
 """Panels for all engines that promise something that RPPM does not do, and what."""
-_UNFIT_BEGINNINGS = ("VIEWLAYER_PT_freestyle",)
+UNFIT_BEGINNINGS = ("VIEWLAYER_PT_freestyle",)
 
 FITTING = {
     "DATA_PT_camera_dof",
@@ -39,7 +35,7 @@ FITTING = {
 
 def _is_fit(panel: type) -> bool:
     name = panel.__name__
-    unfit = name in UNFIT or name.startswith(_UNFIT_BEGINNINGS)
+    unfit = name in UNFIT or name.startswith(UNFIT_BEGINNINGS)
     return name in FITTING or ("BLENDER_RENDER" in panel.COMPAT_ENGINES and not unfit)
 
 
