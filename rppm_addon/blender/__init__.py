@@ -11,15 +11,16 @@ def register() -> None:
     operators.register()
     panels.register()
     preferences.register()
+    renderer_process.register()
 
 
 def unregister() -> None:
-    """Undo register and release the graphics device."""
+    """Undo register, end the renderer process and release the graphics device."""
+    renderer_process.unregister()
     preferences.unregister()
     panels.unregister()
     operators.unregister()
     engine.unregister()
     properties.unregister()
     reports.forget()
-    renderer_process.release()
     renderer_thread.release()

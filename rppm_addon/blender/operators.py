@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
+from ..session.client import ProcessState
 from . import panels, renderer_process
 from .subjects import SubjectKind, select
 
@@ -48,7 +49,7 @@ class RPPM_OT_start_renderer(bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        renderer_process.shared().restart()
+        renderer_process.renderer_process().restart()
         if not bpy.app.timers.is_registered(_show_start):
             bpy.app.timers.register(_show_start, first_interval=START_SHOWN_EVERY)
         return {"FINISHED"}
@@ -56,9 +57,9 @@ class RPPM_OT_start_renderer(bpy.types.Operator):
 
 def _show_start() -> float | None:
     """Have the preferences drawn again until the process has started or failed."""
-    process = renderer_process.existing()
     panels.redraw()
-    return START_SHOWN_EVERY if process is not None and process.state.name == "STARTING" else None
+    starting = renderer_process.renderer_process().state is ProcessState.STARTING
+    return START_SHOWN_EVERY if starting else None
 
 
 class RPPM_OT_open_log(bpy.types.Operator):
@@ -69,7 +70,7 @@ class RPPM_OT_open_log(bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        path = renderer_process.shared().log_path
+        path = renderer_process.renderer_process().log_path
         if not path.is_file():
             self.report({"WARNING"}, f"There is no log yet: {path} is written once the renderer has started")
             return {"CANCELLED"}

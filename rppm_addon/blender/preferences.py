@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The extension's preferences: the renderer process, the graphics device that it found, and what is missing."""
 
+import importlib.util
 import os
 import sys
 from typing import TYPE_CHECKING
@@ -8,17 +9,20 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..scene.quantities import bytes_text
+from ..session.client import ProcessState
 from . import renderer_process
 from .panels.base import paragraph, reading
 
 if TYPE_CHECKING:
     from ..gl.context import DeviceInformation
 
+_MODULES = ("numpy", "moderngl", "glcontext")
+"""What the renderer process imports besides this package."""
 _TEXTS = {
-    "STOPPED": "The renderer has not been needed yet",
-    "STARTING": "The renderer is starting",
-    "RUNNING": "The renderer is running",
-    "FAILED": "The renderer does not run",
+    ProcessState.STOPPED: "The renderer has not been needed yet",
+    ProcessState.STARTING: "The renderer is starting",
+    ProcessState.RUNNING: "The renderer is running",
+    ProcessState.FAILED: "The renderer does not run",
 }
 _LIMITS = {
     "GL_MAX_SHADER_STORAGE_BLOCK_SIZE": "Largest Buffer",
@@ -28,12 +32,18 @@ _LIMITS = {
 }
 
 
+def root_package() -> str:
+    """The name under which Blender knows the extension: bl_ext.REPOSITORY.rppm, or rppm_addon from source."""
+    return __package__.rpartition(".rppm_addon")[0] or "rppm_addon"
+
+
 def missing() -> list[str]:
     """What keeps RPPM from rendering here, a line each with the remedy."""
     problems = []
     if sys.platform == "darwin":
         problems.append("macOS stops at OpenGL 4.1 and RPPM needs 4.3: use Linux or Windows")
-    modules = renderer_process.missing_modules()
+    # Looked for without importing them: Windows cannot replace what Blender has loaded.
+    modules = [name for name in _MODULES if importlib.util.find_spec(name) is None]
     if modules:
         problems.append(
             f"Python does not find {', '.join(modules)}: install the extension's zip for this platform again"
@@ -42,7 +52,7 @@ def missing() -> list[str]:
 
 
 class RppmPreferences(bpy.types.AddonPreferences):
-    bl_idname = renderer_process.root_package()
+    bl_idname = root_package()
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -51,11 +61,11 @@ class RppmPreferences(bpy.types.AddonPreferences):
             paragraph(layout, problem, context, icon="ERROR")
         if problems:
             return
-        process = renderer_process.shared()
-        state = process.state.name
+        process = renderer_process.renderer_process()
+        state = process.state
         row = layout.row()
-        row.label(text=_TEXTS[state], icon="ERROR" if state == "FAILED" else "NONE")
-        row.operator("rppm.start_renderer", text="Check the Device" if state == "STOPPED" else "Restart")
+        row.label(text=_TEXTS[state], icon="ERROR" if state is ProcessState.FAILED else "NONE")
+        row.operator("rppm.start_renderer", text="Check the Device" if state is ProcessState.STOPPED else "Restart")
         if process.error:
             paragraph(layout, process.error, context, icon="INFO")
         device = process.device  # the process may end meanwhile

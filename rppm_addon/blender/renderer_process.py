@@ -1,67 +1,85 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one renderer process of this Blender."""
+"""The one renderer process of this Blender: its viewports, previews and renders share it."""
 
-import importlib.util
+import atexit
 import sys
+import threading
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import bpy
+from bpy.app.handlers import persistent
 
-if TYPE_CHECKING:
-    from ..session.client import RendererProcess
+from ..scene import Scene
+from ..session import remote_rendering
+from ..session.client import RendererProcess
+from ..session.render_job import RenderJob
+from ..session.results import RenderResult
+from ..session.sessions import SessionKind
 
-_MODULES = ("numpy", "moderngl", "glcontext")
-"""What the process imports besides this package."""
-_process: "RendererProcess | None" = None
+_EXTENSIONS = "bl_ext"
+_process: RendererProcess | None = None
+_lock = threading.Lock()
 
 
-def root_package() -> str:
-    """The name under which Blender knows the extension: bl_ext.REPOSITORY.rppm, or rppm_addon from source."""
-    return __package__.rpartition(".rppm_addon")[0] or "rppm_addon"
+def renderer_process() -> RendererProcess:
+    """The process, which is not started before a session is opened in it."""
+    global _process
+    with _lock:
+        if _process is None:
+            folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
+            _process = RendererProcess([python_program(), *bpy.app.python_args], folders, log_path())
+        return _process
 
 
-def missing_modules() -> list[str]:
-    """Modules that the process needs and Python does not find; nothing is imported."""
-    return [name for name in _MODULES if importlib.util.find_spec(name) is None]
+def is_used() -> bool:
+    """Whether renders go to the process: where there is a window, which must not freeze."""
+    return not bpy.app.background
+
+
+def render(scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
+    """Render in the process, as remote_rendering.render does."""
+    return remote_rendering.render(renderer_process(), scene, job, kind)
+
+
+def close() -> None:
+    """End the process and its sessions; waits a few seconds at the most."""
+    if _process is not None:
+        _process.close()
+
+
+def python_program() -> str:
+    """The Python that Blender brings or uses; sys.executable is Blender itself in some builds."""
+    if "python" in Path(sys.executable or "").name.lower():
+        return sys.executable
+    programs = sorted(Path(sys.prefix, "bin").glob("python*"))
+    return str(programs[-1]) if programs else "python"
 
 
 def log_path() -> Path:
-    """The file that the process logs to, in a folder that is the user's own."""
-    try:
-        folder = bpy.utils.extension_path_user(root_package(), create=True)
-    except ValueError:  # registered from source
-        folder = bpy.utils.user_resource("DATAFILES", path="rppm", create=True)
+    """The file that the process logs to."""
+    package = __package__.split(".")
+    if package[0] == _EXTENSIONS:
+        folder = bpy.utils.extension_path_user(".".join(package[:3]))
+    else:
+        folder = bpy.utils.user_resource("DATAFILES", path="rppm")
     return Path(folder) / "renderer.log"
 
 
-def shared() -> "RendererProcess":
-    """The process that all sessions share; made here, started by whoever needs it."""
-    global _process
-    if _process is None:
-        from ..session.client import RendererProcess
-
-        # Blender's Python is told with -I to ignore the environment, so folders are handed on.
-        specifications = [importlib.util.find_spec(name) for name in _MODULES]
-        folders = dict.fromkeys(
-            str(
-                Path(found.origin).parent if found.submodule_search_locations is None else Path(found.origin).parents[1]
-            )
-            for found in specifications
-            if found is not None
-        )
-        _process = RendererProcess([sys.executable, *bpy.app.python_args], list(folders), log_path())
-    return _process
+@persistent
+def _on_load(*_: object) -> None:
+    """Nothing of the file before is of use any more."""
+    close()
 
 
-def existing() -> "RendererProcess | None":
-    """The process, if anything has asked for it yet."""
-    return _process
+def register() -> None:
+    """Have the process end when another file is loaded."""
+    bpy.app.handlers.load_post.append(_on_load)
 
 
-def release() -> None:
-    """End the process, if there is one; shared() makes a new one."""
-    global _process
-    if _process is not None:
-        _process.close()
-        _process = None
+def unregister() -> None:
+    """End the process."""
+    bpy.app.handlers.load_post.remove(_on_load)
+    close()
+
+
+atexit.register(close)

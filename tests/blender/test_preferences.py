@@ -13,6 +13,7 @@ from drawing import drawn
 from rppm_addon.blender import operators, preferences, renderer_process
 from rppm_addon.blender.preferences import RppmPreferences
 from rppm_addon.gl.context import DeviceInformation
+from rppm_addon.session.client import ProcessState
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -21,15 +22,15 @@ class Process:
     """Stands in for the renderer process."""
 
     def __init__(self, log_path):
-        self.state, self.error, self.device, self.log_path = SimpleNamespace(name="STOPPED"), "", None, log_path
+        self.state, self.error, self.device, self.log_path = ProcessState.STOPPED, "", None, log_path
         self.restarted = 0
 
     def restart(self):
         self.restarted += 1
-        self.state, self.error = SimpleNamespace(name="STARTING"), ""
+        self.state, self.error = ProcessState.STARTING, ""
 
     def close(self):
-        self.state = SimpleNamespace(name="STOPPED")
+        self.state = ProcessState.STOPPED
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def test_before_the_renderer_was_needed(scene, process, context):
 def test_the_device_that_was_found(scene, process, context, monkeypatch):
     monkeypatch.setenv("RPPM_DEVICE", "1")
     limits = {"GL_MAX_SHADER_STORAGE_BLOCK_SIZE": 1 << 27, "GL_MAX_TEXTURE_SIZE": 16384, "GL_OTHER": 3}
-    process.state = SimpleNamespace(name="RUNNING")
+    process.state = ProcessState.RUNNING
     process.device = DeviceInformation("Some GPU", "Some driver 1.0", "4.6", limits, ["float atomics"])
     labels = drawn(RppmPreferences, context).labels
     assert {"Some GPU", "Some driver 1.0", "4.6", "128.0 MiB", "16,384", "float atomics"} <= set(labels)
@@ -68,14 +69,14 @@ def test_the_device_that_was_found(scene, process, context, monkeypatch):
 
 
 def test_why_the_renderer_does_not_run(scene, process, context):
-    process.state, process.error = SimpleNamespace(name="FAILED"), "The renderer process ended with code 1"
+    process.state, process.error = ProcessState.FAILED, "The renderer process ended with code 1"
     record = drawn(RppmPreferences, context)
     assert record.labels[:2] == ["The renderer does not run", process.error]
     assert bpy.ops.rppm.start_renderer() == {"FINISHED"} and process.restarted == 1
     assert "The renderer is starting" in drawn(RppmPreferences, context).labels
     assert bpy.app.timers.is_registered(operators._show_start)
     assert operators._show_start() == operators.START_SHOWN_EVERY
-    process.state = SimpleNamespace(name="RUNNING")
+    process.state = ProcessState.RUNNING
     assert operators._show_start() is None
     bpy.app.timers.unregister(operators._show_start)
 
@@ -104,7 +105,7 @@ def test_the_log_is_opened(scene, process, monkeypatch):
 
 
 def test_the_log_lies_in_a_folder_of_the_users(scene, monkeypatch, tmp_path):
-    assert renderer_process.root_package() == RppmPreferences.bl_idname == "rppm_addon"
+    assert preferences.root_package() == RppmPreferences.bl_idname == "rppm_addon"
     monkeypatch.setattr(bpy.utils, "user_resource", lambda kind, path="", create=False: str(tmp_path / path))
     assert renderer_process.log_path() == tmp_path / "rppm" / "renderer.log"
 
