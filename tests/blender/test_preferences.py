@@ -3,6 +3,7 @@
 
 import importlib.util
 import sys
+import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -130,3 +131,22 @@ def test_the_preferences_are_those_of_the_root_package(package):
             del sys.modules[name]
         for count in range(1, len(parents) + 1):
             del sys.modules[".".join(parents[:count])]
+
+
+def test_checking_the_device_starts_the_real_process(scene, context, monkeypatch, tmp_path):
+    monkeypatch.setattr(renderer_process, "_process", None)
+    monkeypatch.setattr(renderer_process, "log_path", lambda: tmp_path / "renderer.log")
+    process = renderer_process.renderer_process()
+    try:
+        assert bpy.ops.rppm.start_renderer() == {"FINISHED"}
+        end = time.monotonic() + 90.0
+        while process.state is ProcessState.STARTING and time.monotonic() < end:
+            time.sleep(0.05)
+        assert process.state is ProcessState.RUNNING, process.error
+        labels = drawn(RppmPreferences, context).labels
+        assert {process.device.name, process.device.driver, "Largest Buffer", "Texture Size"} <= set(labels)
+        assert "The renderer is running" in labels and (tmp_path / "renderer.log").is_file()
+    finally:
+        process.close()
+        bpy.app.timers.unregister(operators._show_start)
+    assert process.state is ProcessState.STOPPED and process.device is None
