@@ -144,7 +144,8 @@ class Viewport:
     def _state(self) -> tuple:
         """What a drawing depends on that comes from the renderer process."""
         process, status, frame = renderer_process(), self._session.status, self._session.newest()
-        return process.state, status.iteration, status.error, None if frame is None else (frame.generation, frame.sequence)
+        shown = None if frame is None else frame.sequence
+        return process.state, status.generation, status.iteration, status.error, shown
 
     def poll(self) -> None:
         """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""

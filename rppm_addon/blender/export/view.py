@@ -30,7 +30,8 @@ def export_view(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> C
     camera = None if camera_object is None else camera_object.data
     orthographic = not view.is_perspective
     edges = frame_edges(projection, orthographic)
-    clip_start, clip_end = (space.clip_start, space.clip_end) if camera is None else (camera.clip_start, camera.clip_end)
+    clipped = camera or space
+    clip_start, clip_end = clipped.clip_start, clipped.clip_end
     if orthographic and camera is None:
         # Blender sees what lies behind the point of view as well: step back until all of it lies ahead.
         nearest = (projection[2, 3] + 1.0) / projection[2, 2]
@@ -108,5 +109,5 @@ def _crop(
         min(height, int(np.ceil(y_max * height))),
     )
     if crop[0] >= crop[2] or crop[1] >= crop[3]:
-        raise SceneError("the render border lies outside of the view; draw another one or clear it (View > View Regions)")
+        raise SceneError("the render border lies outside of the view; draw another or clear it (View > View Regions)")
     return crop
