@@ -97,7 +97,10 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
     )
     radius_scale: FloatProperty(
         name="Initial Radius",
-        description="Radius of the first iteration in pixels of a 1 megapixel picture, scaled with the picture's size",
+        description=(
+            "The first iteration gathers photons over a disk as large as a square of this side, in pixels of a "
+            "1 megapixel picture; larger and smaller pictures scale it"
+        ),
         default=DEFAULTS.radius_scale,
         min=0.01,
         soft_min=1.0,

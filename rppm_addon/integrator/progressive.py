@@ -14,6 +14,7 @@ from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
+from .bands import bands_of
 from .bandwidth import (
     EXPECTED_BY_RAY,
     EXPECTED_PHOTONS,
@@ -32,7 +33,7 @@ from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
 from .final_gather import FinalGather
-from .gbuffer import GBuffer, bands_of, filter_offsets
+from .gbuffer import GBuffer, filter_offsets
 from .geometry import Geometry
 from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
@@ -106,7 +107,8 @@ class ProgressivePhotonMapper:
             self._emission.build(scene, self._geometry, self._materials, self._resolve, not changes.world)
         else:
             self._emission.begin()
-        moved = not keep_centre and not np.array_equal(next(cubemap_centres(scene, self._geometry)), self._wanted_centre)
+        wanted = next(cubemap_centres(scene, self._geometry))
+        moved = not keep_centre and not np.array_equal(wanted, self._wanted_centre)
         if changes.geometry or changes.cubemap or moved:
             with self.timers.stage("deep cubemap"):
                 self._build_deep_cubemap()
@@ -236,6 +238,16 @@ class ProgressivePhotonMapper:
     @property
     def photons_emitted(self) -> int:
         return self.iteration * self.scene.settings.photons
+
+    @property
+    def source_watts(self) -> dict[str, float]:
+        """Power by light source (Emission.source_watts)."""
+        return self._emission.source_watts
+
+    @property
+    def source_photons(self) -> dict[str, int]:
+        """Photons of the current iteration by light source."""
+        return self._emission.source_photons
 
     @property
     def triangle_count(self) -> int:

@@ -41,6 +41,7 @@ class ChildProcess:
         self._folders = list(folders)
         self._scenes = SceneSender()
         self._blocks: dict[tuple[int, int], SharedBlock] = {}
+        self._killed = False
         self._lock = threading.Lock()
 
     # In the writing thread.
@@ -70,12 +71,19 @@ class ChildProcess:
             self.send("forget", dead=self._scenes.close(session))
             raise MemoryError(f"there is not enough shared memory ({error})") from error
         if block is not None:
-            with self._lock:
-                self._blocks[session, number] = block
+            self._lend(block, session, number)
         self.send(
             "show", session=session, number=number, generation=generation, navigating=navigating,
             scene=document, arrays=description,
         )  # fmt: skip
+
+    def _lend(self, block: SharedBlock, session: int, number: int) -> None:
+        with self._lock:
+            if not self._killed:
+                self._blocks[session, number] = block
+                return
+        _discard(block)
+        raise ProcessEnded
 
     def close_session(self, session: int) -> None:
         self.send("close", session=session, dead=self._scenes.close(session))
@@ -91,8 +99,7 @@ class ChildProcess:
         with self._lock:
             block = self._blocks.pop((session, number), None)
         if block is not None:
-            block.unlink()
-            block.close()
+            _discard(block)
 
     # In any thread.
 
@@ -106,6 +113,8 @@ class ChildProcess:
         """End the process, whatever it does, and give its shared memory back."""
         self._process.kill()
         self.wait(2.0)
+        with self._lock:
+            self._killed = True
         for session, number in list(self._blocks):
             self.taken(session, number)
 
@@ -125,3 +134,8 @@ class ChildProcess:
             with contextlib.suppress(ValueError):
                 return f"was ended by {signal.Signals(-code).name}"
         return f"ended with code {code}"
+
+
+def _discard(block: SharedBlock) -> None:
+    block.unlink()
+    block.close()

@@ -125,6 +125,8 @@ class SlicedRender:
             stage_seconds=mapper.timers.seconds,
             memory_bytes=mapper.memory_bytes,
             flux_watts=balance,
+            source_watts=mapper.source_watts,
+            source_photons=mapper.source_photons,
             warnings=warnings,
         )
         return RenderResult(self.frame(), statistics, stopped)
