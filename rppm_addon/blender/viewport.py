@@ -109,7 +109,9 @@ class Viewport:
             self._engine.update_stats("RPPM", error)
         elif process.state is ProcessState.STARTING:
             self._engine.update_stats("RPPM", "Starting the renderer")
-        elif status.iterations:
+        elif not status.iterations:
+            self._engine.update_stats("RPPM", "Compiling shaders and building the scene")
+        else:
             self._engine.update_stats("", status_text(status, context.scene.rppm.viewport_paused))
         self._record(context, status)
 
@@ -149,6 +151,7 @@ class Viewport:
 
     def poll(self) -> None:
         """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""
+        _ = self._engine.is_preview  # any property tells; its __del__ is not called while it is held here
         if self._state() != self._seen:
             self._engine.tag_redraw()
 
