@@ -9,11 +9,11 @@ import bpy
 
 from ..scene import Camera, Scene
 from ..scene.errors import RppmError
-from ..scene.sharing import equal, share
+from ..scene.sharing import share
 from ..session.client import ProcessState
 from ..session.sessions import SessionKind, SessionStatus
 from . import reports
-from .export import SceneSync, export_view
+from .export import SceneSync, export_exposure, export_settings, export_view
 from .frame_texture import FrameTexture
 from .renderer_process import renderer_process
 
@@ -62,7 +62,7 @@ class Viewport:
         """Draw the newest frame, and follow the view."""
         if self._sync.scene is not None and not self._error:
             try:
-                self._follow(context, export_view(context, depsgraph))
+                self._follow(context, depsgraph)
             except RppmError as error:
                 self._engine.update_stats("RPPM", str(error))
         frame = self._session.newest()
@@ -76,9 +76,13 @@ class Viewport:
         self._session.pause(context.scene.rppm.viewport_paused)
         self._seen = self._state()
 
-    def _follow(self, context: bpy.types.Context, camera: Camera) -> None:
-        if not equal(camera, self._scene.camera):
-            self._show(context, share(self._scene, _seen_by(self._scene, camera)))
+    def _follow(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        """Take what Blender calls no update: the view, and changed settings of ours."""
+        source = depsgraph.scene_eval
+        settings = export_settings(source, viewport=True)
+        settings.validate()
+        members = {"camera": export_view(context, depsgraph), "settings": settings, "exposure": export_exposure(source)}
+        self._show(context, replace(self._sync.scene, **members))
 
     def _show(self, context: bpy.types.Context, scene: Scene) -> None:
         playing = context.screen is not None and context.screen.is_animation_playing
@@ -165,10 +169,6 @@ def _picture_by_picture(scene: Scene) -> Scene:
     if scene.settings.iterations_per_frame == 1:
         return scene
     return replace(scene, settings=replace(scene.settings, iterations_per_frame=1))
-
-
-def _seen_by(scene: Scene, camera: Camera) -> Scene:
-    return replace(scene, camera=camera)
 
 
 def _region_of(camera: Camera) -> tuple[float, float, float, float]:
