@@ -71,7 +71,7 @@ def test_of_many_scenes_the_last_is_shown(start):
         if (frame := session.newest()) is not None:
             shown.add(frame.generation)
     last = frame_of(session, 299)
-    assert np.array_equal(last.combined, expected(scene_of(last.progress * 1000, exposure=299)).combined)
+    assert np.array_equal(last.combined, expected(scene_of(round(last.progress * 1000), exposure=299)).combined)
     assert session._sent < 299
 
 
@@ -306,7 +306,7 @@ def test_a_viewport_goes_on_beside_a_render(start):
         def on_progress(self, progress):
             if progress.iteration in (5, 65):
                 counts[progress.iteration] = session.newest().sequence
-            return False
+            return super().on_progress(progress)
 
     render(process, dataclasses.replace(scene), Watch(stop_at=65), SessionKind.FINAL)
     assert 10 <= counts[65] - counts[5] <= 40, counts
