@@ -47,11 +47,16 @@ def unpack(description: dict) -> list[np.ndarray]:
             block = SharedBlock.open(description["block"], size)
             block.unlink()
         memory = base64.b64decode(description["bytes"]) if block is None else block.memory
-        return [
-            np.ndarray(shape, np.dtype(kind), memory, offset).copy() for kind, shape, offset in description["layout"]
-        ]
+        return [_copy(memory, *layout) for layout in description["layout"]]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ProtocolError(f"arrays cannot be read ({error})") from error
     finally:
         if block is not None:
             block.close()
+
+
+def _copy(memory: object, kind: str, shape: list[int], offset: int) -> np.ndarray:
+    dtype = np.dtype(kind)
+    if dtype.hasobject:  # bytes are not to be taken for addresses
+        raise ValueError(f"an array of {dtype}")
+    return np.ndarray(shape, dtype, memory, offset).copy()

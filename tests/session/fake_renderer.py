@@ -182,7 +182,9 @@ def sends_old_frames(pipes):
     pipes.announce(frames, shown, now, 1.0)
     pipes.announce(frames, shown, now - 1, 2.0)
     pipes.announce(frames, shown, now + 1, 3.0)
-    pipes.say("frame", session=shown["session"], slot=1, generation=now, sequence=4, width=SIZE, height=SIZE, progress=1)
+    pipes.say(
+        "frame", session=shown["session"], slot=1, generation=now, sequence=4, width=SIZE, height=SIZE, progress=1
+    )
     pipes.say("status", session=shown["session"], status={"generation": now, "settled": True})
     wait_for_leave(pipes)
 

@@ -81,7 +81,9 @@ def test_pause(start):
     session.show(scene_of(100000), 1, False)
     frame_of(session, 1)
     session.pause(True)
-    wait_until(lambda: (before := session.newest().sequence) and (time.sleep(0.5), session.newest().sequence == before)[1])
+    wait_until(
+        lambda: (before := session.newest().sequence) and (time.sleep(0.5), session.newest().sequence == before)[1]
+    )
     session.pause(False)
     before = session.newest().sequence
     wait_until(lambda: session.newest().sequence > before)
