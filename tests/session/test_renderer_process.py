@@ -32,6 +32,12 @@ def child_of(process):
     return child
 
 
+def next_frame(session):
+    """A frame that was not there yet."""
+    before = session.newest().sequence
+    return wait_until(lambda: (frame := session.newest()).sequence > before and frame)
+
+
 def frame_of(session, generation):
     return wait_until(lambda: (frame := session.newest()) and frame.generation == generation and frame)
 
@@ -85,8 +91,7 @@ def test_pause(start):
         lambda: (before := session.newest().sequence) and (time.sleep(0.5), session.newest().sequence == before)[1]
     )
     session.pause(False)
-    before = session.newest().sequence
-    wait_until(lambda: session.newest().sequence > before)
+    next_frame(session)
 
 
 def test_a_bad_scene_does_not_end_the_process(start):
@@ -112,17 +117,16 @@ def test_a_killed_process_is_started_anew_and_shows_the_scene_again(start):
         frame_of(session, 7)
         child = child_of(process)
         os.kill(child, signal.SIGKILL)
-        wait_until(lambda: process.restarts == restarts and process.state is ProcessState.RUNNING)
-        before = session.newest().sequence
-        wait_until(lambda: session.newest().sequence > before)
-        assert session.newest().generation == 7
+        wait_until(lambda: process.device is None)
+        wait_until(lambda: process.state is ProcessState.RUNNING)
+        assert process.restarts == restarts
+        assert next_frame(session).generation == 7
         assert not is_running(child) and not shared_blocks(child, os.getpid())
     assert "SIGKILL" in process.error
     os.kill(child_of(process), signal.SIGKILL)
     wait_until(lambda: process.state is ProcessState.FAILED)
     process.restart()
-    before = session.newest().sequence
-    wait_until(lambda: session.newest().sequence > before)
+    next_frame(session)
     assert process.state is ProcessState.RUNNING and not process.error
 
 
@@ -134,8 +138,7 @@ def test_restart_of_a_process_that_runs(start):
     child = child_of(process)
     process.restart()
     wait_until(lambda: process.state is ProcessState.RUNNING)
-    before = session.newest().sequence
-    wait_until(lambda: session.newest().sequence > before)
+    next_frame(session)
     assert process.restarts == 0 and not is_running(child) and child_of(process) != child
 
 
@@ -167,7 +170,7 @@ def start_parent(tmp_path, then):
     "then",
     [
         "time.sleep(1000)",
-        "generation = 1\nwhile True:\n    generation += 1\n    session.show(scene_of(size=200 + generation % 50), generation, True)",
+        "for generation in range(2, 10**6): session.show(scene_of(size=200 + generation % 50), generation, True)",
     ],
 )
 def test_when_blender_is_killed_the_process_leaves(tmp_path, then):
