@@ -15,9 +15,10 @@ from ..session.render_job import RenderJob
 from ..session.sessions import SessionKind
 from . import renderer_process, renderer_thread
 from .export import ExportStopped, export_scene
+from .reports import RenderKind, RenderReport, record, record_error
 
 if TYPE_CHECKING:
-    from ..session.results import Frame, Progress, RenderResult
+    from ..session.results import Frame, Progress, RenderResult, RenderStatistics
 
 logger = logging.getLogger(__name__)
 
@@ -40,11 +41,12 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
     except ExportStopped:
         logger.info("the render was stopped during the export")
     except RppmError as error:
-        _fail(engine, observer, str(error))
+        _fail(engine, depsgraph, observer, str(error))
     except Exception as error:
         logger.exception("RPPM failed")
         _fail(
             engine,
+            depsgraph,
             observer,
             f"RPPM failed unexpectedly ({type(error).__name__}: {error}); please report the system console's text",
         )
@@ -66,7 +68,31 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     job.end(cancel=False)
     # The statistics repeat the scene's warnings, which have been reported.
     _report_warnings(engine, [text for text in result.statistics.warnings if text not in scene.warnings])
+    if result.statistics.iterations and not engine.is_preview:
+        record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
+
+
+def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
+    """What the panels show of a render."""
+    width, height = scene.camera.resolution
+    return RenderReport(
+        RenderKind.FINAL,
+        width,
+        height,
+        scene.settings,
+        statistics.iterations,
+        statistics.photons,
+        statistics.seconds,
+        statistics.radius_metres,
+        sum(statistics.memory_bytes.values()),
+        statistics.build_seconds,
+        statistics.device,
+        statistics.triangles,
+        statistics.source_watts,
+        statistics.source_photons,
+        tuple(statistics.warnings),
+    )
 
 
 def _render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) -> "RenderResult":
@@ -76,9 +102,11 @@ def _render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) 
     return renderer_thread.render(scene, job)
 
 
-def _fail(engine: bpy.types.RenderEngine, observer: RenderObserver, text: str) -> None:
+def _fail(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver, text: str) -> None:
     engine.error_set(text)
     engine.report({"ERROR"}, text)
+    if not engine.is_preview:
+        record_error(depsgraph.scene.session_uid, text)
     observer.on_error(text)
 
 

@@ -56,6 +56,10 @@ class RenderStatistics:
     stage_seconds: dict[str, float] = field(default_factory=dict)
     memory_bytes: dict[str, int] = field(default_factory=dict)
     flux_watts: dict[str, float] = field(default_factory=dict)
+    source_watts: dict[str, float] = field(default_factory=dict)
+    """Power by light source, as integrator/sources.py names them; the channels' mean."""
+    source_photons: dict[str, int] = field(default_factory=dict)
+    """Photons of the last iteration by light source."""
     warnings: list[str] = field(default_factory=list)
 
     def as_dict(self) -> dict:
