@@ -6,6 +6,7 @@ import threading
 from dataclasses import dataclass, field, replace
 
 from ..scene import RenderSettings
+from ..session.sessions import SessionStatus
 
 FINALS_KEPT = 5
 """Final renders of a scene, to compare."""
@@ -60,6 +61,26 @@ class RenderReport:
     @property
     def photons_per_second(self) -> float:
         return self.photons / self.rendering_seconds
+
+
+def viewport_report(status: SessionStatus, settings: RenderSettings, width: int, height: int) -> RenderReport:
+    """What a viewport of so many pixels has to tell so far."""
+    rendering = status.iteration / status.iterations_per_second if status.iterations_per_second > 0.0 else 0.0
+    return RenderReport(
+        RenderKind.VIEWPORT,
+        width,
+        height,
+        settings,
+        status.iteration,
+        status.photons,
+        status.elapsed_seconds,
+        status.radius_metres,
+        status.memory_bytes,
+        build_seconds=max(0.0, status.elapsed_seconds - rendering),
+        source_watts=status.source_watts,
+        source_photons=status.source_photons,
+        warnings=tuple(status.warnings),
+    )
 
 
 @dataclass(frozen=True)

@@ -158,10 +158,17 @@ class Emission:
         """Values of LIGHT_PARAMETERS."""
         return {**self._parameters, "seed": seed, "iteration": iteration, "count": count}
 
-    def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
+    def build(
+        self,
+        scene: Scene,
+        geometry: Geometry,
+        materials: MaterialTables,
+        resolve: Resolve,
+        keep_world: bool = False,
+    ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        Raises SceneError when all lights have a photon share of 0.
+        keep_world: the world is that of the last call. Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
         names: list[str] = []
@@ -187,7 +194,8 @@ class Emission:
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = MESH, int(RayVisibility.ALL)
         add(SURFACES, entry, self.emitters.power)
-        self.environment.build(scene.world, scene.images, materials)
+        if not keep_world:
+            self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = WORLD, int(RayVisibility.ALL)
         add(SURROUNDINGS, entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
@@ -208,9 +216,7 @@ class Emission:
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
         self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
-        self._share_photons(self._weights)
-        self._guide.build(table, scene.settings.photons)
-        self._lights.upload(table)
+        self.begin()
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
@@ -226,6 +232,12 @@ class Emission:
             "mesh_selection": float(selection[table["kind"] == MESH].sum()),
             "world_selection": float(selection[table["kind"] == WORLD].sum()),
         }
+
+    def begin(self) -> None:
+        """Forget what photons were good for, as before the first iteration."""
+        self._share_photons(self._weights)
+        self._guide.build(self._table, self._photons)
+        self._lights.upload(self._table)
 
     def _share_photons(self, weights: np.ndarray) -> None:
         counts = share_out(weights, self._photons)

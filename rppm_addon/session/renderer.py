@@ -18,19 +18,18 @@ from .results import Frame, Progress, RenderResult, RenderStatistics, empty_resu
 log = logging.getLogger(__name__)
 
 
-def read_frame(film: Film, exposure: float, deep_cubemap: np.ndarray | None = None) -> Frame:
-    """The film's current picture."""
+def read_combined(film: Film, exposure: float) -> np.ndarray:
+    """The film's current picture, as Frame.combined."""
     combined = film.read_radiance()
     combined[..., :3] *= exposure
     combined[..., 3] = np.clip(combined[..., 3], 0.0, 1.0)
+    return combined
+
+
+def read_frame(film: Film, exposure: float, deep_cubemap: np.ndarray | None = None) -> Frame:
+    """The film's current picture and passes."""
     normal, depth = film.read_surface()
-    return Frame(combined, depth, normal, deep_cubemap)
-
-
-def slices_of_iteration(mapper: ProgressivePhotonMapper) -> Iterator[None]:
-    """One iteration of the mapper in pieces that the device does in a bounded while."""
-    mapper.iterate()
-    yield
+    return Frame(read_combined(film, exposure), depth, normal, deep_cubemap)
 
 
 class SlicedRender:
@@ -71,8 +70,7 @@ class SlicedRender:
         while True:
             yield
             self.between_iterations = False
-            for _ in slices_of_iteration(mapper):
-                yield
+            yield from mapper.steps()
             self._context.finish()
             self.iterations += 1
             self.between_iterations = True

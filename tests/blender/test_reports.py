@@ -2,19 +2,23 @@
 """What final renders leave for the panels, against what was rendered."""
 
 import math
+import sys
+import time
 
 import bpy
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
+from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
 from drawing import context_of, drawn
 
 from rppm_addon.blender import panels, reports
 from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.blender.readings import memory_reading, photon_shares, radius_reading
-from rppm_addon.blender.reports import RenderKind, RenderReport
+from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
 from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.scene import RenderSettings
+from rppm_addon.session.client import RendererProcess
+from rppm_addon.session.sessions import SessionKind, SessionStatus
 
 
 @pytest.fixture(autouse=True)
@@ -225,3 +229,37 @@ def test_a_hidden_object_is_said_to_be_hidden(facing):
     bpy.ops.object.mode_set(mode="EDIT")
     assert bpy.ops.rppm.select_subject(kind="OBJECT", name="Quad") == {"FINISHED"}
     assert bpy.context.mode == "OBJECT"
+
+
+def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
+    """Its status, as it comes from the renderer process, once it has settled."""
+    add_light(facing, "SUN", "Sun")
+    exported = export(facing)
+    process = RendererProcess([sys.executable], sys.path, tmp_path / "renderer.log")
+    try:
+        session = process.open(SessionKind.VIEWPORT)
+        session.show(exported, 1, False)
+        end = time.monotonic() + 90.0
+        while not session.status.settled and time.monotonic() < end:
+            time.sleep(0.02)
+        status = session.status
+    finally:
+        process.close()
+    assert status.settled and not status.error
+    told = viewport_report(status, exported.settings, 32, 32)
+    reports.record(facing.session_uid, told)
+    kept = reports.reports_of(facing.session_uid)
+    assert kept.viewport == kept.latest == told and kept.finals == ()
+    assert told.photons_per_second == pytest.approx(status.photons_per_second, rel=0.01)
+    assert told.iterations_per_second == pytest.approx(status.iterations_per_second, rel=0.01)
+    assert [(row.name, row.share, row.sent) for row in panels.lights.source_rows(facing)] == [("Sun", 1.0, 1.0)]
+    final = rendered(facing)
+    assert final.source_watts == told.source_watts and final.source_photons == told.source_photons
+    assert final.radius_metres == pytest.approx(told.radius_metres, rel=1e-6)
+    shown = drawn(panels.performance.RPPM_PT_status, context_of(facing)).labels
+    assert shown.index("Viewport") < shown.index("Final")
+
+
+def test_a_viewport_that_has_nothing_yet():
+    told = viewport_report(SessionStatus(), RenderSettings(), 4, 4)
+    assert told.iterations == 0 and told.photons_per_second == 0.0
