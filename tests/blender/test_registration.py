@@ -44,7 +44,11 @@ def test_unregister_leaves_nothing(scene):
     try:
         assert not any("RPPM" in panel.COMPAT_ENGINES for panel in panels_of_blender())
         assert not hasattr(bpy.types.Scene, "rppm") and not hasattr(bpy.types.Light, "rppm")
-        assert not [name for name in dir(bpy.types) if name.startswith("RPPM_")]
+        assert not [name for name in dir(bpy.types) if name.lower().startswith("rppm")]
+        assert not [name for name in dir(bpy.ops.rppm) if not name.startswith("_")]
+        assert not bpy.utils.preset_paths("rppm")
+        functions = [*bpy.types.VIEW3D_HT_header._dyn_ui_initialize(), *bpy.app.handlers.load_post]
+        assert not [function for function in functions if function.__module__.startswith("rppm_addon")]
         engines = bpy.types.RenderSettings.bl_rna.properties["engine"].enum_items
         assert "RPPM" not in engines or scene.render.engine != "RPPM"
     finally:

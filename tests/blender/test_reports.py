@@ -4,6 +4,7 @@
 import math
 import sys
 import time
+from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -12,6 +13,7 @@ from drawing import context_of, drawn
 
 from rppm_addon.blender import panels, reports
 from rppm_addon.blender.export.settings import export_settings
+from rppm_addon.blender.operators import RPPM_OT_select_subject
 from rppm_addon.blender.readings import memory_reading, photon_shares, radius_reading
 from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
@@ -229,6 +231,38 @@ def test_a_hidden_object_is_said_to_be_hidden(facing):
     bpy.ops.object.mode_set(mode="EDIT")
     assert bpy.ops.rppm.select_subject(kind="OBJECT", name="Quad") == {"FINISHED"}
     assert bpy.context.mode == "OBJECT"
+
+
+@pytest.mark.parametrize("kind", SubjectKind)
+def test_selecting_shows_the_tab_where_the_editor_lets_it(facing, kind):
+    """A Properties editor refuses a tab until it has been drawn with an object that has one."""
+    material, world = new_material("Odd"), set_world(facing)
+    bpy.data.objects["Quad"].data.materials.append(material)
+    names = {SubjectKind.OBJECT: "Quad", SubjectKind.MATERIAL: "Odd", SubjectKind.WORLD: world.name}
+
+    class Editor:
+        type = "PROPERTIES"
+        refuses, tab = False, "RENDER"
+
+        @property
+        def context(self):
+            return self.tab
+
+        @context.setter
+        def context(self, tab):
+            if self.refuses:
+                raise TypeError(f'enum "{tab}" not found')
+            self.tab = tab
+
+    editor = Editor()
+    bpy.context.view_layer.update()
+    context = SimpleNamespace(mode="OBJECT", view_layer=bpy.context.view_layer, space_data=editor)
+    said = []
+    button = SimpleNamespace(kind=kind.name, name=names[kind], node="", report=lambda *words: said.append(words))
+    assert RPPM_OT_select_subject.execute(button, context) == {"FINISHED"} and not said
+    assert editor.context == kind.name
+    editor.refuses, editor.tab = True, "RENDER"
+    assert RPPM_OT_select_subject.execute(button, context) == {"FINISHED"} and editor.context == "RENDER"
 
 
 def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
