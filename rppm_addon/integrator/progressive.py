@@ -107,7 +107,8 @@ class ProgressivePhotonMapper:
             self._emission.build(scene, self._geometry, self._materials, self._resolve, not changes.world)
         else:
             self._emission.begin()
-        moved = not keep_centre and not np.array_equal(next(cubemap_centres(scene, self._geometry)), self._wanted_centre)
+        wanted = next(cubemap_centres(scene, self._geometry))
+        moved = not keep_centre and not np.array_equal(wanted, self._wanted_centre)
         if changes.geometry or changes.cubemap or moved:
             with self.timers.stage("deep cubemap"):
                 self._build_deep_cubemap()

@@ -4,7 +4,6 @@
 import importlib.util
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -82,29 +81,3 @@ def test_the_root_package_hands_on_register():
     finally:
         for name in [name for name in sys.modules if name.split(".")[0] == "rppm_extension"]:
             del sys.modules[name]
-
-
-def test_manifest():
-    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text())
-    assert manifest["id"] == "rppm" and manifest["blender_version_min"] == "4.2.0"
-    assert manifest["platforms"] == ["linux-x64", "windows-x64"] and list(manifest["permissions"]) == ["files"]
-    assert "Blender" not in manifest["name"] and not manifest["tagline"].endswith(".")
-
-
-def test_blenders_own_tool_builds_and_validates_the_extension(tmp_path):
-    tool = Path(bpy.utils.system_resource("SCRIPTS")) / "addons_core" / "bl_pkg" / "cli" / "blender_ext.py"
-    archive = tmp_path / "rppm.zip"
-    for arguments in (
-        ["build", "--source-dir", str(ROOT), "--output-filepath", str(archive)],
-        ["validate", str(archive)],
-    ):
-        done = subprocess.run(
-            [sys.executable, str(tool), *arguments], capture_output=True, text=True, timeout=120, check=False
-        )
-        assert done.returncode == 0, done.stdout + done.stderr
-    import zipfile
-
-    names = set(zipfile.ZipFile(archive).namelist())
-    assert {"__init__.py", "blender_manifest.toml", "rppm_addon/blender/engine.py"} <= names
-    assert any(name.startswith("shaders/") for name in names)
-    assert not [name for name in names if name.startswith(("tests/", ".", "docs/")) or "__pycache__" in name]

@@ -21,6 +21,8 @@ class ImageTable:
 
     def __init__(self) -> None:
         self.images: list[Image] = []
+        self.frames = 0
+        """How often an image was asked for that depends on the frame."""
         self._indices: dict[tuple, int] = {}
 
     def of_node(self, node: bpy.types.Node, exporter: "GraphExporter") -> int:
@@ -31,6 +33,7 @@ class ImageTable:
             return MISSING
         if image.source != "SEQUENCE":
             return self._index((image.as_pointer(),), lambda: image, image, node, exporter)
+        self.frames += 1
         path = image.filepath_from_user(image_user=node.image_user)
         return self._index((image.as_pointer(), path), lambda: _load(path, image), image, node, exporter)
 

@@ -33,3 +33,8 @@ def export_cubemap_centre(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
     stored = getattr(depsgraph.scene, "rppm", None)
     chosen = None if stored is None else stored.cubemap_centre_object
     return None if chosen is None else np.array(chosen.evaluated_get(depsgraph).matrix_world.translation, float)
+
+
+def export_exposure(scene: bpy.types.Scene) -> float:
+    """Cycles' film exposure, a factor; 1 where Cycles is not enabled."""
+    return scene.cycles.film_exposure if hasattr(scene, "cycles") else 1.0
