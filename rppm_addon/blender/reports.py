@@ -5,7 +5,7 @@ import enum
 import threading
 from dataclasses import dataclass, field, replace
 
-from ..scene import RenderSettings
+from ..scene import RenderSettings, Scene
 from ..session.sessions import SessionStatus
 
 FINALS_KEPT = 5
@@ -63,20 +63,22 @@ class RenderReport:
         return self.photons / self.rendering_seconds
 
 
-def viewport_report(status: SessionStatus, settings: RenderSettings, width: int, height: int) -> RenderReport:
-    """What a viewport of so many pixels has to tell so far."""
+def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
+    """What a viewport that shows a scene has to tell so far."""
+    width, height = scene.camera.resolution
     rendering = status.iteration / status.iterations_per_second if status.iterations_per_second > 0.0 else 0.0
     return RenderReport(
         RenderKind.VIEWPORT,
         width,
         height,
-        settings,
+        scene.settings,
         status.iteration,
         status.photons,
         status.elapsed_seconds,
         status.radius_metres,
         status.memory_bytes,
         build_seconds=max(0.0, status.elapsed_seconds - rendering),
+        triangles=scene.triangle_count,
         source_watts=status.source_watts,
         source_photons=status.source_photons,
         warnings=tuple(status.warnings),

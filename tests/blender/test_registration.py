@@ -5,12 +5,10 @@ import importlib.util
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import bpy
 
 import rppm_addon
-from rppm_addon.blender.engine import RppmRenderEngine
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -53,14 +51,6 @@ def test_unregister_leaves_nothing(scene):
     finally:
         rppm_addon.register()
     assert bpy.context.scene.rppm.iterations > 0
-
-
-def test_the_viewport_says_that_it_is_not_there(scene):
-    shown = []
-    stand_in = SimpleNamespace(update_stats=lambda *texts: shown.append(texts))
-    RppmRenderEngine.view_update(stand_in, None, None)
-    RppmRenderEngine.view_draw(stand_in, None, None)
-    assert len(shown) == 1 and "F12" in shown[0][1]
 
 
 def test_the_package_is_importable_without_blender():

@@ -280,7 +280,7 @@ def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
     finally:
         process.close()
     assert status.settled and not status.error
-    told = viewport_report(status, exported.settings, 32, 32)
+    told = viewport_report(status, exported)
     reports.record(facing.session_uid, told)
     kept = reports.reports_of(facing.session_uid)
     assert kept.viewport == kept.latest == told and kept.finals == ()
@@ -294,6 +294,6 @@ def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
     assert shown.index("Viewport") < shown.index("Final")
 
 
-def test_a_viewport_that_has_nothing_yet():
-    told = viewport_report(SessionStatus(), RenderSettings(), 4, 4)
+def test_a_viewport_that_has_nothing_yet(facing):
+    told = viewport_report(SessionStatus(), export(facing))
     assert told.iterations == 0 and told.photons_per_second == 0.0
