@@ -16,7 +16,15 @@ from .sync import SceneSync
 from .view import export_view
 from .world import export_world
 
-__all__ = ["ExportStopped", "SceneError", "SceneSync", "export_scene", "export_view"]
+__all__ = [
+    "ExportStopped",
+    "SceneError",
+    "SceneSync",
+    "export_exposure",
+    "export_scene",
+    "export_settings",
+    "export_view",
+]
 
 
 def export_scene(
