@@ -12,7 +12,7 @@ from ..scene.errors import RppmError
 from ..scene.sharing import share
 from ..session.client import ProcessState
 from ..session.sessions import SessionKind, SessionStatus
-from . import reports
+from . import panels, reports
 from .export import SceneSync, export_exposure, export_settings, export_view
 from .frame_texture import FrameTexture
 from .renderer_process import renderer_process
@@ -21,6 +21,8 @@ logger = logging.getLogger(__name__)
 
 POLL_SECONDS = 1.0 / 30.0
 """How often the newest frames are asked for."""
+READ_OUT_SECONDS = 1.0
+"""Between two drawings of the panels' read-outs, which take Blender's time as well."""
 NAVIGATION_SECONDS = 0.4
 """Changes that follow each other faster are one movement."""
 
@@ -39,6 +41,7 @@ class Viewport:
         self._seen: tuple = ()
         self._error = ""
         self._recorded: SessionStatus | None = None
+        self._read_out_at = 0.0
         self._regions: dict[int, tuple[float, float, float, float]] = {}
         """By generation, the part of the region that its frames cover: x, y, width, height, 0 to 1."""
 
@@ -124,23 +127,11 @@ class Viewport:
         if self._scene is None or status.iteration == 0 or status == self._recorded:
             return
         self._recorded = status
-        width, height = self._scene.camera.resolution
-        reports.record(
-            context.scene.session_uid,
-            reports.RenderReport(
-                kind=reports.RenderKind.VIEWPORT,
-                width=width,
-                height=height,
-                settings=self._scene.settings,
-                iterations=status.iteration,
-                photons=status.photons,
-                seconds=status.elapsed_seconds,
-                radius_metres=status.radius_metres,
-                memory_bytes=status.memory_bytes,
-                triangles=self._scene.triangle_count,
-                warnings=tuple(status.warnings),
-            ),
-        )
+        reports.record(context.scene.session_uid, reports.viewport_report(status, self._scene))
+        now = time.monotonic()
+        if status.settled or now - self._read_out_at >= READ_OUT_SECONDS:
+            self._read_out_at = now
+            panels.redraw()
 
     def _fail(self, text: str) -> None:
         if text != self._error:

@@ -112,6 +112,8 @@ class Viewing:
                     memory_bytes=sum(mapper.memory_bytes.values()),
                     iterations_per_second=mapper.iteration / (now - built),
                     photons_per_second=mapper.photons_emitted / (now - built),
+                    source_watts=mapper.source_watts,
+                    source_photons=mapper.source_photons,
                     warnings=list(dict.fromkeys([*scene.warnings, *mapper.scene.warnings])),
                     settled=level == 1.0 and mapper.iteration >= settings.iterations,
                 )
