@@ -174,7 +174,7 @@ _calls: dict[str, list[float]] = {"view_update": [], "view_draw": []}
 
 def time_engine() -> None:
     """From now on note how long the engine's functions for viewports take."""
-    engine = next(cls for cls in bpy.types.RenderEngine.__subclasses__() if cls.bl_idname == "RPPM")
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
     for name, calls in _calls.items():
         calls.clear()
         original = getattr(engine, name)
