@@ -19,7 +19,7 @@ from viewport_window import (
     wait_for_rest,
 )
 
-ITERATIONS, PHOTONS = 12, 16384
+ITERATIONS, PHOTONS = 4, 16384
 
 
 @pytest.fixture
