@@ -100,18 +100,27 @@ def playing() -> bool:
 # Pixels on the screen.
 
 _drawn: list[tuple[float, int, float, float]] = []
-_watcher = 0
+_watching = False
 
 
 def watch() -> None:
     """From now on note what the window shows in the viewport's middle, each time it is drawn."""
-    global _watcher
+    global _watching
     _drawn.clear()
-    manager = bpy.context.window_manager.as_pointer()
-    if _watcher != manager:  # a file that is loaded brings another one
-        _watcher = manager
+    if not _watching:
+        _watching = True
         # The only callback that runs when the window's own buffer is complete; the mouse must be over the viewport.
         bpy.types.WindowManager.draw_cursor_add(_note, (), "VIEW_3D", "WINDOW")
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_: object) -> None:
+    """Loading a file takes cursors' callbacks away."""
+    global _watching
+    _watching = False
+
+
+bpy.app.handlers.load_post.append(_on_load)
 
 
 def _note(*_: object) -> None:
