@@ -34,7 +34,8 @@ def _shared_list(before: list, after: list, by_identity: bool) -> list:
         return before
     shared = after
     if not by_identity:
-        shared = [old if equal(old, new) else new for old, new in zip(before, after, strict=False)] + after[len(before) :]
+        shared = [old if equal(old, new) else new for old, new in zip(before, after, strict=False)]
+        shared += after[len(before) :]
     if _same(before, shared):
         return before
     return after if _same(after, shared) else shared

@@ -10,6 +10,7 @@ from .protocol import ProtocolError
 from .shared_memory import SharedBlock
 
 _ALIGNMENT = 64
+_SMALL = 1 << 10
 _MOST_INLINE = 1 << 15
 """Bytes that the message itself takes: a moved camera needs no shared memory."""
 
@@ -17,18 +18,17 @@ _MOST_INLINE = 1 << 15
 def pack(arrays: Sequence[np.ndarray]) -> tuple[dict, SharedBlock | None]:
     """What the message says of the arrays, and the block that they lie in, if any.
 
-    The block is the caller's to close and to unlink once the receiver has unpacked it, or has died. Raises OSError
-    when there is not enough shared memory.
+    The block is the caller's to close once the receiver has unpacked it, or has died. Raises OSError when there is
+    not enough shared memory.
     """
-    layout, size = [], 0
-    for array in arrays:
-        layout.append([array.dtype.str, array.shape, size])
-        size += -(-array.nbytes // _ALIGNMENT) * _ALIGNMENT
+    layout, size, runs = [], 0, _runs(arrays)
+    for run in runs:
+        layout.append([run[0].dtype.str, (len(run), *run[0].shape), size])
+        size += -(-len(run) * run[0].nbytes // _ALIGNMENT) * _ALIGNMENT
     block = SharedBlock.create(size) if size > _MOST_INLINE else None
     memory = bytearray(size) if block is None else block.memory
-    for array, (_, _, offset) in zip(arrays, layout, strict=True):
-        view = np.ndarray(array.shape, array.dtype, memory, offset)
-        view[...] = array
+    for run, (_, shape, offset) in zip(runs, layout, strict=True):
+        np.stack(run, out=np.ndarray(shape, run[0].dtype, memory, offset))
     description = {"layout": layout, "size": size}
     if block is None:
         return {**description, "bytes": base64.b64encode(memory).decode()}, None
@@ -36,7 +36,7 @@ def pack(arrays: Sequence[np.ndarray]) -> tuple[dict, SharedBlock | None]:
 
 
 def unpack(description: dict) -> list[np.ndarray]:
-    """The arrays, as copies of the receiver's own; the block's name is gone afterwards.
+    """The arrays, as copies of the receiver's own.
 
     Raises ProtocolError for a description that pack has not made.
     """
@@ -45,13 +45,31 @@ def unpack(description: dict) -> list[np.ndarray]:
         size = description["size"]
         if "block" in description:
             block = SharedBlock.open(description["block"], size)
-            block.unlink()
         memory = base64.b64decode(description["bytes"]) if block is None else block.memory
-        return [
-            np.ndarray(shape, np.dtype(kind), memory, offset).copy() for kind, shape, offset in description["layout"]
-        ]
+        runs = [_copy(memory, *layout) for layout in description["layout"]]
+        return [run[place, ...] for run in runs for place in range(len(run))]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ProtocolError(f"arrays cannot be read ({error})") from error
     finally:
         if block is not None:
             block.close()
+
+
+def _runs(arrays: Sequence[np.ndarray]) -> list[list[np.ndarray]]:
+    """The arrays in their order, those together that are small and alike: the matrices of thousands of instances."""
+    runs: list[list[np.ndarray]] = []
+    for array in arrays:
+        last = runs[-1][-1] if runs else None
+        if last is not None and array.nbytes <= _SMALL and (array.shape, array.dtype) == (last.shape, last.dtype):
+            runs[-1].append(array)
+        else:
+            runs.append([array])
+    return runs
+
+
+def _copy(memory: object, kind: str, shape: list[int], offset: int) -> np.ndarray:
+    """A run of arrays, as the rows of one."""
+    dtype = np.dtype(kind)
+    if dtype.hasobject:  # bytes are not to be taken for addresses
+        raise ValueError(f"an array of {dtype}")
+    return np.ndarray(shape, dtype, memory, offset).copy()

@@ -6,6 +6,7 @@ Inside Blender this package is a part of bl_ext, which does not exist here: it i
 
 import contextlib
 import ctypes
+import faulthandler
 import os
 import signal
 import sys
@@ -37,6 +38,7 @@ def _yield_to_blender() -> None:
 def main() -> int:
     """Answer Blender until it leaves."""
     reader, writer = _take_pipes()
+    faulthandler.enable()  # a crash in a driver leaves its traces in the log
     _yield_to_blender()
     here = Path(__file__).resolve()
     sys.path[:] = [str(here.parents[2]), *(folder for folder in sys.path if Path(folder or ".") != here.parent)]

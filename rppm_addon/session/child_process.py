@@ -13,7 +13,7 @@ from ..scene.scene import Scene
 from .arrays import pack
 from .protocol import VERSION, frame_message, read_message
 from .shared_memory import SharedBlock
-from .transfer import SceneSender
+from .transfer import Part, SceneSender
 
 _BOOTSTRAP = Path(__file__).with_name("bootstrap.py")
 _FLAGS = subprocess.CREATE_NO_WINDOW | subprocess.BELOW_NORMAL_PRIORITY_CLASS if sys.platform == "win32" else 0
@@ -40,7 +40,7 @@ class ChildProcess:
         self.pid = self._process.pid
         self._folders = list(folders)
         self._scenes = SceneSender()
-        self._blocks: dict[tuple[int, int], SharedBlock] = {}
+        self._blocks: dict[tuple[int, int], list[SharedBlock]] = {}
         self._killed = False
         self._lock = threading.Lock()
 
@@ -64,25 +64,28 @@ class ChildProcess:
         Raises ProcessEnded as send does, MemoryError when there is not enough shared memory, and TypeError for a
         scene that cannot be sent.
         """
-        document, arrays = self._scenes.send(session, scene)
+        parts, whole = self._scenes.send(session, scene)
         try:
-            description, block = pack(arrays)
+            for part in parts:
+                self._send_part("members", session, number, part)
+            self._send_part("show", session, number, whole, generation=generation, navigating=navigating)
         except OSError as error:
             self.send("forget", dead=self._scenes.close(session))
             raise MemoryError(f"there is not enough shared memory ({error})") from error
+
+    def _send_part(self, kind: str, session: int, number: int, part: Part, **content: object) -> None:
+        """Raises OSError when there is not enough shared memory."""
+        description, block = pack(part.arrays)
         if block is not None:
             self._lend(block, session, number)
-        self.send(
-            "show", session=session, number=number, generation=generation, navigating=navigating,
-            scene=document, arrays=description,
-        )  # fmt: skip
+        self.send(kind, session=session, number=number, document=part.document, arrays=description, **content)
 
     def _lend(self, block: SharedBlock, session: int, number: int) -> None:
         with self._lock:
             if not self._killed:
-                self._blocks[session, number] = block
+                self._blocks.setdefault((session, number), []).append(block)
                 return
-        _discard(block)
+        block.close()
         raise ProcessEnded
 
     def close_session(self, session: int) -> None:
@@ -97,9 +100,9 @@ class ChildProcess:
     def taken(self, session: int, number: int) -> None:
         """The process has copied a snapshot's arrays."""
         with self._lock:
-            block = self._blocks.pop((session, number), None)
-        if block is not None:
-            _discard(block)
+            blocks = self._blocks.pop((session, number), ())
+        for block in blocks:
+            block.close()
 
     # In any thread.
 
@@ -133,9 +136,4 @@ class ChildProcess:
         if code < 0:
             with contextlib.suppress(ValueError):
                 return f"was ended by {signal.Signals(-code).name}"
-        return f"ended with code {code}"
-
-
-def _discard(block: SharedBlock) -> None:
-    block.unlink()
-    block.close()
+        return f"ended with code {code if code < 256 else hex(code)}"

@@ -2,8 +2,10 @@
 """The renderer's process for whoever shows what it renders. No call waits for it but close()."""
 
 import collections
+import contextlib
 import enum
 import logging
+import os
 import threading
 import time
 from collections.abc import Sequence
@@ -15,10 +17,11 @@ from .child_process import ChildProcess
 from .client_session import RenderSession, Session, ViewportSession
 from .connection import Connection
 from .sessions import SessionKind
-from .shared_memory import remove_leftovers
 
 logger = logging.getLogger(__name__)
 
+LARGEST_LOG = 1 << 24
+"""Bytes; then the log begins anew."""
 MOST_RESTARTS = 2
 """Times that a process which died is started anew without being asked to."""
 
@@ -156,7 +159,6 @@ class RendererProcess:
     # In the keeper's thread.
 
     def _keep(self) -> None:
-        remove_leftovers()
         self._begin_log()
         while True:
             reason, again = self._run_process()
@@ -184,6 +186,12 @@ class RendererProcess:
             self.log_path.write_bytes(b"")
         except OSError as error:
             logger.warning("the log cannot be written: %s", error)
+
+    def _limit_log(self) -> None:
+        """A driver that complains all the time must not fill the disk; the process appends, so it can go on."""
+        with contextlib.suppress(OSError):
+            if self.log_path.stat().st_size > LARGEST_LOG:
+                os.truncate(self.log_path, 0)
 
     def _run_process(self) -> tuple[str, bool]:
         """Start a process and see to it until it ends: why it did, and whether another one may do better."""
@@ -231,6 +239,7 @@ class RendererProcess:
             else:
                 wait = connection.answered_at + patience.ping - now
                 if wait <= 0.0:
+                    self._limit_log()
                     connection.pinged_at = now
                     self.post("ping")
                     continue

@@ -113,7 +113,10 @@ class ViewportSession(Session):
         elif kind == "status":
             self.status = SessionStatus(**content["status"])
         elif kind == "slots":
-            self._reader = FrameReader(**content)
+            try:
+                self._reader = FrameReader(**content)
+            except FileNotFoundError:  # others are announced already
+                self._reader = None
         else:
             raise ProtocolError(f"a viewport has no message {kind!r}")
 
@@ -123,7 +126,7 @@ class ViewportSession(Session):
         """Take an announced frame, unless it is none of a scene to be seen."""
         reader, shown, newest = self._reader, self._snapshot, self._newest
         if reader is None or shown is None:
-            raise ProtocolError("a frame came before its slots or its scene")
+            return
         combined = reader.read(slot, generation, sequence, width, height)
         if combined is None or generation > shown[1] or (newest is not None and generation < newest.generation):
             return

@@ -87,28 +87,27 @@ class FrameWriter:
             "slot": slot, "generation": generation, "sequence": self._sequence, "width": width, "height": height,
         }  # fmt: skip
 
-    def unlink(self) -> None:
-        """Take the slots' name away, which the reader has done unless it never opened them."""
-        slots = self._slots
-        if slots is not None:
-            slots.block.unlink()
-
     def release(self) -> None:
         """Give the memory back; the reader keeps what it has open."""
-        self.unlink()
-        self._slots = None
+        if self._slots is not None:
+            self._slots.block.withdraw()
+            self._slots = None
 
 
 class FrameReader:
     """In Blender's process: reads the slots of one session."""
 
     def __init__(self, block: str, capacity: int) -> None:
-        """Open the slots that the writer has announced. Raises ProtocolError when there are none such."""
+        """Open the slots that the writer has announced.
+
+        Raises FileNotFoundError when it has others meanwhile, and ProtocolError when these are none.
+        """
         try:
             opened = SharedBlock.open(block, SLOTS * slot_bytes(capacity))
+        except FileNotFoundError:
+            raise
         except (OSError, ValueError, TypeError) as error:
             raise ProtocolError(f"a session's frames cannot be opened ({error})") from error
-        opened.unlink()
         self._slots = _Slots(opened, capacity)
 
     def read(self, slot: int, generation: int, sequence: int, width: int, height: int) -> np.ndarray | None:

@@ -7,8 +7,10 @@ imported here: the child reads its first message before it can find anything els
 To the child                          meaning
 hello version, path                   first; path are folders to find modules in
 open session, session_kind            a SessionKind's name
-show session, number, generation, navigating, scene, arrays
-                                      a snapshot (transfer.py)
+members session, number, document, arrays
+                                      new members of the snapshot of this number (transfer.py)
+show session, number, document, arrays, generation, navigating
+                                      a snapshot
 pause session, paused
 expect_snapshots session, seconds     a render is to send its picture at these times
 want_picture session                  a render is to send its picture once

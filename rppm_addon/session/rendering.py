@@ -52,9 +52,7 @@ class Rendering:
 
     def received(self) -> None:
         """Blender has copied the oldest frame that is in shared memory."""
-        block = self._blocks.popleft()
-        block.unlink()
-        block.close()
+        self._blocks.popleft().close()
 
     @property
     def busy(self) -> bool:
@@ -118,13 +116,8 @@ class Rendering:
             self._mapper.release()
             self._mapper = None
 
-    def unlink(self) -> None:
-        """Leave no shared memory behind; for a process that ends at once."""
-        for block in list(self._blocks):
-            block.unlink()
-
     def release(self) -> None:
         """Give memory and frames back."""
         self._release_mapper()
-        self.unlink()
-        self._blocks.clear()
+        while self._blocks:
+            self.received()

@@ -1,101 +1,81 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blocks of memory that two processes share.
+"""Blocks of memory that two processes share, without names that could outlive them.
 
-The standard library's shared_memory is not used: its resource tracker starts a process of its own beside Blender
-(below Python 3.13) and it does not reserve what it creates, so that a full /dev/shm ends in a bus error.
+The standard library's shared_memory is not used: it leaves files in /dev/shm when processes are killed, starts a
+process beside Blender to clear up after it (below Python 3.13), and takes what it needs from /dev/shm, which is small
+in containers and ends in a bus error where it is full.
 """
 
 import contextlib
 import mmap
 import os
+import re
 import secrets
 import sys
-import tempfile
-from pathlib import Path
 
-PREFIX = "rppm-"
-_FOLDERS = (Path("/dev/shm"), Path(tempfile.gettempdir()))
+_LABEL = "rppm"
+_NAME = re.compile(r"(/proc/\d+/fd/\d+):(\d+)")
 
 
 class SharedBlock:
-    """Bytes in ``memory`` that whoever opens the block by ``name`` sees as well.
+    """Bytes in ``memory`` that the other process sees as well once it has opened the block by its ``name``.
 
-    On Linux a block is a file. It is unlinked as soon as both sides have it open, so that no end of a process leaves
-    anything behind; the memory lives until the last array in it is gone. On Windows names vanish by themselves.
+    On Linux the block is a file without a path, which the other process opens by the creator's number for it; the
+    memory goes with the last process or array that has it. On Windows the system keeps the names.
     """
 
-    def __init__(self, name: str, memory: mmap.mmap) -> None:
+    def __init__(self, name: str, memory: mmap.mmap, file: int | None = None) -> None:
         self.name = name
         self.memory = memory
+        self._file = file
 
     @classmethod
     def create(cls, size: int) -> "SharedBlock":
-        """A new block of zeros. Raises OSError when there is not so much memory."""
-        name = f"{PREFIX}{os.getpid()}-{secrets.token_hex(8)}"
+        """A new block of zeros, to be withdrawn or closed. Raises OSError when there is not so much memory."""
         if sys.platform == "win32":
+            name = f"{_LABEL}-{secrets.token_hex(16)}"
             return cls(name, mmap.mmap(-1, size, tagname=name))
-        for last, folder in enumerate(_FOLDERS, 1 - len(_FOLDERS)):
-            path = folder / name
-            try:
-                return cls(str(path), _map_new_file(path, size))
-            except OSError:  # a container's /dev/shm is often small
-                path.unlink(missing_ok=True)
-                if last == 0:
-                    raise
-        raise AssertionError
+        file = os.memfd_create(_LABEL)
+        try:
+            os.ftruncate(file, size)
+            return cls(f"/proc/{os.getpid()}/fd/{file}:{os.fstat(file).st_ino}", mmap.mmap(file, size), file)
+        except BaseException:
+            os.close(file)
+            raise
 
     @classmethod
     def open(cls, name: str, size: int) -> "SharedBlock":
-        """A block that the other process has created. Raises OSError or ValueError when there is none such."""
+        """A block that the other process has created.
+
+        Raises FileNotFoundError when it has been withdrawn, and ValueError or OSError when it is none.
+        """
         if sys.platform == "win32":
             return cls(name, mmap.mmap(-1, size, tagname=name))
-        path = Path(name)
-        if not path.name.startswith(PREFIX) or path.parent not in _FOLDERS:
-            raise ValueError(f"{name} is no block of shared memory")
-        file = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
+        match = _NAME.fullmatch(name)
+        if match is None:
+            raise ValueError(f"{name} names no shared memory")
+        path, identity = match.groups()
+        if not os.readlink(path).startswith(f"/memfd:{_LABEL} "):
+            raise FileNotFoundError(f"{name} is something else now")
+        file = os.open(path, os.O_RDWR | os.O_CLOEXEC)
         try:
-            if os.fstat(file).st_size < size:
+            status = os.fstat(file)
+            if status.st_ino != int(identity):
+                raise FileNotFoundError(f"{name} is another block now")
+            if status.st_size < size:
                 raise ValueError(f"{name} has less than {size} bytes")
             return cls(name, mmap.mmap(file, size))
         finally:
             os.close(file)
 
-    def unlink(self) -> None:
-        """Take the name away; who has the block open keeps it. May be called on both sides and more than once."""
-        if sys.platform != "win32":
-            Path(self.name).unlink(missing_ok=True)
+    def withdraw(self) -> None:
+        """Let nobody open the block any more; who has it open keeps it. May be called more than once."""
+        file, self._file = self._file, None
+        if file is not None:
+            os.close(file)
 
     def close(self) -> None:
-        """Give the memory back now, unless arrays still lie in it: then it goes with the last of them."""
+        """Withdraw it, and give the memory back now, unless arrays still lie in it: then it goes with the last."""
+        self.withdraw()
         with contextlib.suppress(BufferError):
             self.memory.close()
-
-
-def _map_new_file(path: Path, size: int) -> mmap.mmap:
-    file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600)
-    try:
-        os.posix_fallocate(file, 0, size)
-        return mmap.mmap(file, size)
-    finally:
-        os.close(file)
-
-
-def remove_leftovers() -> None:
-    """Unlink blocks whose creator was killed before the other side had opened them."""
-    if sys.platform == "win32":
-        return
-    for path in (path for folder in _FOLDERS for path in folder.glob(f"{PREFIX}*")):
-        creator = path.name.removeprefix(PREFIX).partition("-")[0]
-        if creator.isdigit() and not _is_running(int(creator)):
-            with contextlib.suppress(OSError):
-                path.unlink()
-
-
-def _is_running(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:  # another user's
-        pass
-    return True

@@ -155,10 +155,6 @@ class Viewing:
             self._mapper.release()
             self._mapper = None
 
-    def unlink(self) -> None:
-        """Leave no shared memory behind; for a process that ends at once."""
-        self._frames.unlink()
-
     def release(self) -> None:
         """Give memory and frames back."""
         self._release_mapper()

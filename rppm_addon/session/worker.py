@@ -60,6 +60,8 @@ class Worker:
         self._inbox: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
         self._sessions: dict[int, tuple[SessionKind, Viewing | Rendering]] = {}
         self._share = FairShare()
+        self._decoding = threading.Lock()
+        """Held by the reading thread while it takes a scene in: the drivers leave it little of the interpreter."""
         self._left = threading.Event()
 
     def run(self) -> None:
@@ -67,6 +69,8 @@ class Worker:
         threading.Thread(target=self._read, name="RPPM messages", daemon=True).start()
         try:
             while self._handle_messages():
+                with self._decoding:
+                    pass
                 self._run_slice()
         finally:
             for number in list(self._sessions):
@@ -83,11 +87,10 @@ class Worker:
         code = 0
         try:
             while (message := read_message(self._reader)) is not None and message["kind"] != "leave":
-                if message["kind"] == "show":
-                    message["scene"] = self._receiver.receive(message["scene"], unpack(message.pop("arrays")))
-                    self._send("taken", session=message["session"], number=message.pop("number"))
-                self._receiver.forget(message.pop("dead", ()))
-                self._inbox.put(message)
+                with self._decoding:
+                    self._decode(message)
+                if message["kind"] != "members":
+                    self._inbox.put(message)
         except BrokenPipeError:
             pass
         except Exception:
@@ -95,9 +98,17 @@ class Worker:
             code = 1
         self._inbox.put(None)
         if not self._left.wait(LEAVE_SECONDS):
-            for _, session in list(self._sessions.values()):
-                session.unlink()
             os._exit(code)
+
+    def _decode(self, message: dict) -> None:
+        """Put the scene in place of the documents and arrays that tell of it."""
+        kind = message["kind"]
+        if kind == "members":
+            self._receiver.learn(message["document"], unpack(message["arrays"]))
+        elif kind == "show":
+            message["scene"] = self._receiver.receive(message.pop("document"), unpack(message.pop("arrays")))
+            self._send("taken", session=message["session"], number=message.pop("number"))
+        self._receiver.forget(message.pop("dead", ()))
 
     # In the main thread.
 

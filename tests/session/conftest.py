@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renderer processes, real and faked, that leave nothing behind."""
 
+import contextlib
 import dataclasses
+import gc
 import os
 import sys
 import time
@@ -11,10 +13,8 @@ import pytest
 from floor import floor_scene
 
 from rppm_addon.session.client import Patience, RendererProcess
-from rppm_addon.session.shared_memory import PREFIX
 
 FAKE = Path(__file__).with_name("fake_renderer.py")
-SHARED = Path("/dev/shm")
 
 
 def wait_until(condition, seconds=60.0):
@@ -34,10 +34,19 @@ def is_running(process):
         return False
 
 
-def shared_blocks(*processes):
-    """The names of what the processes have left in shared memory."""
-    starts = tuple(f"{PREFIX}{process}-" for process in processes)
-    return [path.name for path in SHARED.iterdir() if path.name.startswith(starts)]
+def shared_files():
+    """What there is in the folder of named shared memory that Python and this package could have put there."""
+    return {path.name for path in Path("/dev/shm").iterdir() if path.name.startswith(("psm_", "rppm"))}
+
+
+def open_blocks(process="self"):
+    """How many blocks a process has open or mapped."""
+    links = []
+    for entry in Path(f"/proc/{process}/fd").iterdir():
+        with contextlib.suppress(FileNotFoundError):
+            links.append(os.readlink(entry))
+    maps = Path(f"/proc/{process}/maps").read_text()
+    return sum(link.startswith("/memfd:rppm") for link in links) + maps.count("/memfd:rppm")
 
 
 def children():
@@ -57,7 +66,7 @@ def scene_of(iterations=1000, size=16, **changes):
 @pytest.fixture
 def start(tmp_path):
     """start(fault, **patience): a renderer process that is faked, or real when no fault is given."""
-    before = children()
+    before = children(), open_blocks()
     processes = []
 
     def start(fault=None, **patience):
@@ -71,5 +80,7 @@ def start(tmp_path):
         began = time.monotonic()
         process.close()
         assert time.monotonic() - began < 8.0
-    assert children() == before
-    assert not shared_blocks(os.getpid())
+    processes.clear()
+    gc.collect()
+    assert children() == before[0] and open_blocks() <= before[1]
+    assert not shared_files()

@@ -3,6 +3,7 @@
 
 import dataclasses
 import os
+import select
 import signal
 import sys
 import time
@@ -35,8 +36,8 @@ class Pipes:
 
     def take(self):
         """A snapshot of a scene, and its arrays."""
-        shown = self.hear("show")
-        unpack(shown["arrays"])
+        while (shown := self.hear("members", "show"))["kind"] == "members":
+            unpack(shown["arrays"])
         self.say("taken", session=shown["session"], number=shown["number"])
         return shown
 
@@ -182,7 +183,9 @@ def sends_old_frames(pipes):
     pipes.announce(frames, shown, now, 1.0)
     pipes.announce(frames, shown, now - 1, 2.0)
     pipes.announce(frames, shown, now + 1, 3.0)
-    pipes.say("frame", session=shown["session"], slot=1, generation=now, sequence=4, width=SIZE, height=SIZE, progress=1)
+    pipes.say(
+        "frame", session=shown["session"], slot=1, generation=now, sequence=4, width=SIZE, height=SIZE, progress=1
+    )
     pipes.say("status", session=shown["session"], status={"generation": now, "settled": True})
     wait_for_leave(pipes)
 
@@ -194,6 +197,16 @@ def floods(pipes):
     message = frame_message("status", **status)
     while True:
         pipes.output.write(message)
+
+
+def fills_the_log(pipes):
+    pipes.greet()
+    while True:
+        sys.stderr.write("the driver complains\n" * 1000)
+        sys.stderr.flush()
+        if select.select([pipes.input], [], [], 0.0)[0]:
+            pipes.hear("ping", "leave")
+            pipes.say("pong")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whatever the renderer's process does, Blender goes on and can say what happened. Here the process is faked."""
 
+import os
+import re
 import statistics
+import threading
 import time
 
 import numpy as np
 import pytest
 
+from rppm_addon.scene import Image
+from rppm_addon.session import client
 from rppm_addon.session.client import MOST_RESTARTS, ProcessState
 from rppm_addon.session.sessions import SessionKind
 
@@ -50,8 +55,6 @@ def test_what_happens_again_and_again_ends_in_failure(start, fault, text):
     process = start(fault)
     session = viewport(process)
     error = failed(process)
-    import re
-
     assert re.search(text, error)
     assert process.restarts == MOST_RESTARTS == 2
     assert session.status.error == error and session.status.settled
@@ -95,6 +98,33 @@ def test_the_log_has_what_the_process_printed(start):
     viewport(process)
     failed(process)
     assert process.log_path.read_text().count("ImportError: no module that draws") == 1 + MOST_RESTARTS
+
+
+def test_the_log_does_not_grow_without_end(start, monkeypatch):
+    monkeypatch.setattr(client, "LARGEST_LOG", 1 << 20)
+    process = start("fills_the_log", ping=0.01, leave=0.1)
+    viewport(process)
+    wait_until(process.log_path.exists)
+    sizes = [0]
+    wait_until(lambda: sizes.append(process.log_path.stat().st_size) or sizes[-1] < sizes[-2])
+    assert process.state is ProcessState.RUNNING
+
+
+def test_nothing_is_left_open(start):
+    """No files, no threads, however often a process dies and is restarted."""
+
+    def left():
+        return len(os.listdir("/proc/self/fd")), threading.active_count()
+
+    before = left()
+    process = start("dies_with_each_scene")
+    session = viewport(process)
+    for _ in range(3):
+        failed(process)
+        process.restart()
+    failed(process)
+    session.close()
+    assert left() == before
 
 
 def test_restart_tries_again(start):
@@ -141,8 +171,6 @@ def test_calls_return_at_once(start, fault):
         result = function(*arguments)
         calls.append(time.perf_counter() - began)
         return result
-
-    from rppm_addon.scene import Image
 
     session = timed(process.open, SessionKind.VIEWPORT)
     ends = time.monotonic() + 1.5
