@@ -116,6 +116,7 @@ class RendererProcess:
         with self.changed:
             for session in self.sessions.values():
                 session.fail("The renderer process was closed")
+                session.release()
             self.sessions.clear()
             keeper = self._keeper
             self._leaving = True
@@ -148,6 +149,7 @@ class RendererProcess:
         """Forget a session."""
         with self.changed:
             if self.sessions.pop(session.number, None) is not None:
+                session.release()
                 self.post("close", session=session.number)
 
     def _start(self) -> None:
