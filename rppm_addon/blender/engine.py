@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The render engine that Blender lists as RPPM."""
 
-import contextlib
-
 import bpy
 
 from . import viewport
@@ -39,11 +37,6 @@ class RppmRenderEngine(bpy.types.RenderEngine):
 
     def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         viewport.of_engine(self).draw(context, depsgraph)
-
-    def __del__(self) -> None:
-        # Blender may have freed what the object stands for.
-        with contextlib.suppress(ReferenceError):
-            viewport.close(self.as_pointer())
 
 
 def register() -> None:

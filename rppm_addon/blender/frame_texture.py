@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame as a texture in Blender's window."""
 
-import numpy as np
-
 from ..session.frames import SharedFrame
-
-_BRIGHTEST = 65000.0
-"""Half floats end there; what is infinite would be drawn black."""
 
 
 class FrameTexture:
@@ -22,10 +17,10 @@ class FrameTexture:
         from gpu_extras.presets import draw_texture_2d
 
         if self._texture is None or frame.sequence != self._sequence:
-            pixels = np.nan_to_num(frame.combined, nan=0.0, posinf=_BRIGHTEST, neginf=0.0)
-            pixels = np.ascontiguousarray(np.minimum(pixels, _BRIGHTEST), np.float32)
-            data = gpu.types.Buffer("FLOAT", pixels.size, pixels.reshape(-1))
+            data = gpu.types.Buffer("FLOAT", frame.combined.size, frame.combined.reshape(-1))
             self._texture = gpu.types.GPUTexture((frame.width, frame.height), format="RGBA16F", data=data)
+            if hasattr(self._texture, "filter_mode"):  # Blender 5.0 and later: coarse frames are drawn smoothly
+                self._texture.filter_mode(True)
             self._sequence = frame.sequence
         gpu.state.blend_set("ALPHA_PREMULT")
         draw_texture_2d(self._texture, (x, y), width, height)

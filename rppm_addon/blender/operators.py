@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators behind the buttons of panels and preferences."""
 
+import contextlib
+
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
@@ -37,7 +39,9 @@ class RPPM_OT_select_subject(bpy.types.Operator):
             self.report({"WARNING"}, problem[0].upper() + problem[1:])
         space = context.space_data
         if space is not None and space.type == "PROPERTIES" and not problem:
-            space.context = _TABS[kind]
+            # Refused where the editor has not yet seen that the active object has such a tab.
+            with contextlib.suppress(TypeError):
+                space.context = _TABS[kind]
         return {"FINISHED"}
 
 

@@ -5,7 +5,8 @@ import enum
 import threading
 from dataclasses import dataclass, field, replace
 
-from ..scene import RenderSettings
+from ..scene import RenderSettings, Scene
+from ..session.sessions import SessionStatus
 
 FINALS_KEPT = 5
 """Final renders of a scene, to compare."""
@@ -60,6 +61,28 @@ class RenderReport:
     @property
     def photons_per_second(self) -> float:
         return self.photons / self.rendering_seconds
+
+
+def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
+    """What a viewport that shows a scene has to tell so far."""
+    width, height = scene.camera.resolution
+    rendering = status.iteration / status.iterations_per_second if status.iterations_per_second > 0.0 else 0.0
+    return RenderReport(
+        RenderKind.VIEWPORT,
+        width,
+        height,
+        scene.settings,
+        status.iteration,
+        status.photons,
+        status.elapsed_seconds,
+        status.radius_metres,
+        status.memory_bytes,
+        build_seconds=max(0.0, status.elapsed_seconds - rendering),
+        triangles=scene.triangle_count,
+        source_watts=status.source_watts,
+        source_photons=status.source_photons,
+        warnings=tuple(status.warnings),
+    )
 
 
 @dataclass(frozen=True)

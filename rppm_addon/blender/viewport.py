@@ -9,11 +9,11 @@ import bpy
 
 from ..scene import Camera, Scene
 from ..scene.errors import RppmError
-from ..scene.sharing import equal, share
+from ..scene.sharing import share
 from ..session.client import ProcessState
 from ..session.sessions import SessionKind, SessionStatus
-from . import reports
-from .export import SceneSync, export_view
+from . import panels, reports
+from .export import SceneSync, export_exposure, export_settings, export_view
 from .frame_texture import FrameTexture
 from .renderer_process import renderer_process
 
@@ -21,6 +21,8 @@ logger = logging.getLogger(__name__)
 
 POLL_SECONDS = 1.0 / 30.0
 """How often the newest frames are asked for."""
+READ_OUT_SECONDS = 1.0
+"""Between two drawings of the panels' read-outs, which take Blender's time as well."""
 NAVIGATION_SECONDS = 0.4
 """Changes that follow each other faster are one movement."""
 
@@ -39,6 +41,7 @@ class Viewport:
         self._seen: tuple = ()
         self._error = ""
         self._recorded: SessionStatus | None = None
+        self._read_out_at = 0.0
         self._regions: dict[int, tuple[float, float, float, float]] = {}
         """By generation, the part of the region that its frames cover: x, y, width, height, 0 to 1."""
 
@@ -62,7 +65,7 @@ class Viewport:
         """Draw the newest frame, and follow the view."""
         if self._sync.scene is not None and not self._error:
             try:
-                self._follow(context, export_view(context, depsgraph))
+                self._follow(context, depsgraph)
             except RppmError as error:
                 self._engine.update_stats("RPPM", str(error))
         frame = self._session.newest()
@@ -76,9 +79,13 @@ class Viewport:
         self._session.pause(context.scene.rppm.viewport_paused)
         self._seen = self._state()
 
-    def _follow(self, context: bpy.types.Context, camera: Camera) -> None:
-        if not equal(camera, self._scene.camera):
-            self._show(context, share(self._scene, _seen_by(self._scene, camera)))
+    def _follow(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        """Take what Blender calls no update: the view, and changed settings of ours."""
+        source = depsgraph.scene_eval
+        settings = export_settings(source, viewport=True)
+        settings.validate()
+        members = {"camera": export_view(context, depsgraph), "settings": settings, "exposure": export_exposure(source)}
+        self._show(context, replace(self._sync.scene, **members))
 
     def _show(self, context: bpy.types.Context, scene: Scene) -> None:
         playing = context.screen is not None and context.screen.is_animation_playing
@@ -109,7 +116,9 @@ class Viewport:
             self._engine.update_stats("RPPM", error)
         elif process.state is ProcessState.STARTING:
             self._engine.update_stats("RPPM", "Starting the renderer")
-        elif status.iterations:
+        elif not status.iterations:
+            self._engine.update_stats("RPPM", "Compiling shaders and building the scene")
+        else:
             self._engine.update_stats("", status_text(status, context.scene.rppm.viewport_paused))
         self._record(context, status)
 
@@ -118,23 +127,11 @@ class Viewport:
         if self._scene is None or status.iteration == 0 or status == self._recorded:
             return
         self._recorded = status
-        width, height = self._scene.camera.resolution
-        reports.record(
-            context.scene.session_uid,
-            reports.RenderReport(
-                kind=reports.RenderKind.VIEWPORT,
-                width=width,
-                height=height,
-                settings=self._scene.settings,
-                iterations=status.iteration,
-                photons=status.photons,
-                seconds=status.elapsed_seconds,
-                radius_metres=status.radius_metres,
-                memory_bytes=status.memory_bytes,
-                triangles=self._scene.triangle_count,
-                warnings=tuple(status.warnings),
-            ),
-        )
+        reports.record(context.scene.session_uid, reports.viewport_report(status, self._scene))
+        now = time.monotonic()
+        if status.settled or now - self._read_out_at >= READ_OUT_SECONDS:
+            self._read_out_at = now
+            panels.redraw()
 
     def _fail(self, text: str) -> None:
         if text != self._error:
@@ -149,6 +146,7 @@ class Viewport:
 
     def poll(self) -> None:
         """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""
+        _ = self._engine.is_preview  # any property tells; its __del__ is not called while it is held here
         if self._state() != self._seen:
             self._engine.tag_redraw()
 
@@ -162,10 +160,6 @@ def _picture_by_picture(scene: Scene) -> Scene:
     if scene.settings.iterations_per_frame == 1:
         return scene
     return replace(scene, settings=replace(scene.settings, iterations_per_frame=1))
-
-
-def _seen_by(scene: Scene, camera: Camera) -> Scene:
-    return replace(scene, camera=camera)
 
 
 def _region_of(camera: Camera) -> tuple[float, float, float, float]:

@@ -8,6 +8,7 @@ import numpy as np
 from .scene import Scene
 
 _LISTS = ("meshes", "instances", "materials", "lights", "images")
+_LARGE = {"meshes", "images"}
 _MEMBERS = ("camera", "world", "settings")
 
 
@@ -28,6 +29,22 @@ def equal(a: object, b: object) -> bool:
     return a == b
 
 
+def _shared_list(before: list, after: list, by_identity: bool) -> list:
+    if after is before:
+        return before
+    shared = after
+    if not by_identity:
+        shared = [old if equal(old, new) else new for old, new in zip(before, after, strict=False)]
+        shared += after[len(before) :]
+    if _same(before, shared):
+        return before
+    return after if _same(after, shared) else shared
+
+
+def _same(a: list, b: list) -> bool:
+    return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
+
+
 def share(before: Scene | None, after: Scene) -> Scene:
     """The scene after a change, with the very objects of the scene before wherever they are equal.
 
@@ -38,11 +55,7 @@ def share(before: Scene | None, after: Scene) -> Scene:
         return after
     values: dict[str, object] = {}
     for name in _LISTS:
-        old, new = getattr(before, name), getattr(after, name)
-        if name not in {"meshes", "images"}:
-            new = [a if i < len(old) and equal(a := old[i], b) else b for i, b in enumerate(new)]
-        same = len(old) == len(new) and all(a is b for a, b in zip(old, new, strict=True))
-        values[name] = old if same else new
+        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE)
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)
         values[name] = old if equal(old, new) else new

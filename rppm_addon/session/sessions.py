@@ -29,6 +29,9 @@ class SessionStatus:
     memory_bytes: int = 0
     iterations_per_second: float = 0.0
     photons_per_second: float = 0.0
+    source_watts: dict[str, float] = field(default_factory=dict)
+    """As RenderStatistics has it."""
+    source_photons: dict[str, int] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     error: str = ""
     """One line with the remedy; empty while all is well."""

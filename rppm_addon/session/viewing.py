@@ -5,6 +5,8 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..integrator.progressive import ProgressivePhotonMapper
@@ -21,6 +23,9 @@ FIRST_SECONDS = 0.15
 """Time for the first picture after a single change."""
 REST_SECONDS = 0.25
 """Without a change for so long, the view is at rest and pictures become sharper."""
+
+BRIGHTEST = 65000.0
+"""Windows draw half floats, which end there; what is infinite would be drawn black."""
 
 Send = Callable[..., None]
 """send(kind, **content): a message to Blender about this session."""
@@ -107,6 +112,8 @@ class Viewing:
                     memory_bytes=sum(mapper.memory_bytes.values()),
                     iterations_per_second=mapper.iteration / (now - built),
                     photons_per_second=mapper.photons_emitted / (now - built),
+                    source_watts=mapper.source_watts,
+                    source_photons=mapper.source_photons,
                     warnings=list(dict.fromkeys([*scene.warnings, *mapper.scene.warnings])),
                     settled=level == 1.0 and mapper.iteration >= settings.iterations,
                 )
@@ -119,6 +126,9 @@ class Viewing:
     def _give_out(self, scene: Scene, generation: int) -> None:
         """Write the picture so far to a slot."""
         combined = read_combined(self._mapper.film, scene.exposure)
+        # Done here, where no window waits for it.
+        np.nan_to_num(combined, copy=False, nan=0.0, posinf=BRIGHTEST, neginf=0.0)
+        np.minimum(combined, BRIGHTEST, out=combined)
         height, width = combined.shape[:2]
         slots = self._frames.reserve(width * height)
         if slots is not None:

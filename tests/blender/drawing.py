@@ -17,7 +17,7 @@ class RecordingLayout:
     def _part(self, **_):
         return RecordingLayout(self.record)
 
-    row = column = box = split = _part
+    row = column = box = split = grid_flow = _part
 
     def separator(self, **_):
         pass

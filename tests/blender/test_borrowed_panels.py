@@ -48,10 +48,10 @@ COUNTERPARTS = {
     "CYCLES_RENDER_PT_sampling_lights": "RPPM_PT_light_shares",
     "CYCLES_RENDER_PT_sampling_render": "RPPM_PT_sampling_final",
     "CYCLES_RENDER_PT_sampling_viewport": "RPPM_PT_sampling_viewport",
-    "CYCLES_RENDER_PT_simplify": "RENDER_PT_simplify",
-    "CYCLES_RENDER_PT_simplify_render": "RENDER_PT_simplify_render",
-    "CYCLES_RENDER_PT_simplify_viewport": "RENDER_PT_simplify_viewport",
-    "CYCLES_VIEW3D_PT_simplify_greasepencil": "RENDER_PT_simplify_greasepencil",
+    "CYCLES_RENDER_PT_simplify": "RPPM_PT_simplify",
+    "CYCLES_RENDER_PT_simplify_render": "RPPM_PT_simplify_render",
+    "CYCLES_RENDER_PT_simplify_viewport": "RPPM_PT_simplify_viewport",
+    "CYCLES_VIEW3D_PT_simplify_greasepencil": "RPPM_PT_simplify_greasepencil",
     # output and view layer
     "CYCLES_PT_post_processing": "RENDER_PT_post_processing",
     "CYCLES_RENDER_PT_passes": "RPPM_PT_passes",
@@ -97,6 +97,14 @@ EXCLUDED = {
     "VIEWLAYER_PT_override": f"overrides of materials: {NOT_RENDERED}",
 }
 """Panels of Cycles that RPPM has nothing for, and why."""
+OLDER = {
+    "CYCLES_OBJECT_PT_light_linking": f"light linking: {NOT_RENDERED}",
+    "CYCLES_OBJECT_PT_shading": "is empty without the panels in it",
+    "CYCLES_OBJECT_PT_shading_shadow_terminator": OF_CYCLES,
+    "CYCLES_OBJECT_PT_shadow_linking": f"light linking: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_override": f"overrides of materials: {NOT_RENDERED}",
+}
+"""Panels that Cycles had before Blender 5, and why RPPM has nothing for them."""
 EXCLUDED_BEGINNINGS = {
     "CYCLES_RENDER_PT_bake": "textures are not baked",
     "CYCLES_RENDER_PT_motion_blur": f"motion blur: {NOT_RENDERED}",
@@ -126,7 +134,7 @@ def test_every_panel_of_cycles_has_a_counterpart_or_a_reason(scene):
     ours = shown("RPPM")
     missing = {
         name
-        for name in shown("CYCLES") - ours - set(borrowed.UNFIT) - set(COUNTERPARTS) - set(EXCLUDED)
+        for name in shown("CYCLES") - ours - set(borrowed.UNFIT) - set(COUNTERPARTS) - set(EXCLUDED) - set(OLDER)
         if not name.startswith((*EXCLUDED_BEGINNINGS, *borrowed.UNFIT_BEGINNINGS))
     }
     assert not missing
@@ -156,7 +164,7 @@ def test_the_lists_name_nothing_that_is_not_there(scene):
         "texture": {"TEXTURE_PT_image", "TEXTURE_PT_context"},
         "output": {"RENDER_PT_format", "RENDER_PT_frame_range", "RENDER_PT_output", "RENDER_PT_encoding",
                    "RENDER_PT_stamp", "RENDER_PT_post_processing"},
-        "render": {"RENDER_PT_color_management", "RENDER_PT_simplify", "RENDER_PT_gpencil"},
+        "render": {"RENDER_PT_color_management", "RENDER_PT_gpencil"},
         "mesh": {"DATA_PT_uv_texture", "DATA_PT_vertex_colors", "DATA_PT_customdata", "DATA_PT_mesh_attributes"},
         "world": {"WORLD_PT_context_world"},
         "view_layer": {"VIEWLAYER_PT_layer"},
@@ -188,7 +196,7 @@ def test_borrowed_panels_poll(scene):
     """Blender's own poll functions let them show."""
     cube = add_mesh(scene, "Quad")
     context = context_of(scene, object=cube, mesh=cube.data, camera=scene.camera.data, world=None)
-    for name in ("OBJECT_PT_visibility", "DATA_PT_uv_texture", "DATA_PT_camera_dof", "RENDER_PT_simplify"):
+    for name in ("OBJECT_PT_visibility", "DATA_PT_uv_texture", "DATA_PT_camera_dof", "RENDER_PT_format"):
         assert getattr(bpy.types, name).poll(context), name
     context.engine = "NO ENGINE"
     assert not bpy.types.OBJECT_PT_visibility.poll(context)

@@ -2,19 +2,25 @@
 """What final renders leave for the panels, against what was rendered."""
 
 import math
+import sys
+import time
+from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
+from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
 from drawing import context_of, drawn
 
 from rppm_addon.blender import panels, reports
 from rppm_addon.blender.export.settings import export_settings
+from rppm_addon.blender.operators import RPPM_OT_select_subject
 from rppm_addon.blender.readings import memory_reading, photon_shares, radius_reading
-from rppm_addon.blender.reports import RenderKind, RenderReport
+from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
 from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.scene import RenderSettings
+from rppm_addon.session.client import RendererProcess
+from rppm_addon.session.sessions import SessionKind, SessionStatus
 
 
 @pytest.fixture(autouse=True)
@@ -225,3 +231,69 @@ def test_a_hidden_object_is_said_to_be_hidden(facing):
     bpy.ops.object.mode_set(mode="EDIT")
     assert bpy.ops.rppm.select_subject(kind="OBJECT", name="Quad") == {"FINISHED"}
     assert bpy.context.mode == "OBJECT"
+
+
+@pytest.mark.parametrize("kind", SubjectKind)
+def test_selecting_shows_the_tab_where_the_editor_lets_it(facing, kind):
+    """A Properties editor refuses a tab until it has been drawn with an object that has one."""
+    material, world = new_material("Odd"), set_world(facing)
+    bpy.data.objects["Quad"].data.materials.append(material)
+    names = {SubjectKind.OBJECT: "Quad", SubjectKind.MATERIAL: "Odd", SubjectKind.WORLD: world.name}
+
+    class Editor:
+        type = "PROPERTIES"
+        refuses, tab = False, "RENDER"
+
+        @property
+        def context(self):
+            return self.tab
+
+        @context.setter
+        def context(self, tab):
+            if self.refuses:
+                raise TypeError(f'enum "{tab}" not found')
+            self.tab = tab
+
+    editor = Editor()
+    bpy.context.view_layer.update()
+    context = SimpleNamespace(mode="OBJECT", view_layer=bpy.context.view_layer, space_data=editor)
+    said = []
+    button = SimpleNamespace(kind=kind.name, name=names[kind], node="", report=lambda *words: said.append(words))
+    assert RPPM_OT_select_subject.execute(button, context) == {"FINISHED"} and not said
+    assert editor.context == kind.name
+    editor.refuses, editor.tab = True, "RENDER"
+    assert RPPM_OT_select_subject.execute(button, context) == {"FINISHED"} and editor.context == "RENDER"
+
+
+def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
+    """Its status, as it comes from the renderer process, once it has settled."""
+    add_light(facing, "SUN", "Sun")
+    exported = export(facing)
+    process = RendererProcess([sys.executable], sys.path, tmp_path / "renderer.log")
+    try:
+        session = process.open(SessionKind.VIEWPORT)
+        session.show(exported, 1, False)
+        end = time.monotonic() + 90.0
+        while not session.status.settled and time.monotonic() < end:
+            time.sleep(0.02)
+        status = session.status
+    finally:
+        process.close()
+    assert status.settled and not status.error
+    told = viewport_report(status, exported)
+    reports.record(facing.session_uid, told)
+    kept = reports.reports_of(facing.session_uid)
+    assert kept.viewport == kept.latest == told and kept.finals == ()
+    assert told.photons_per_second == pytest.approx(status.photons_per_second, rel=0.01)
+    assert told.iterations_per_second == pytest.approx(status.iterations_per_second, rel=0.01)
+    assert [(row.name, row.share, row.sent) for row in panels.lights.source_rows(facing)] == [("Sun", 1.0, 1.0)]
+    final = rendered(facing)
+    assert final.source_watts == told.source_watts and final.source_photons == told.source_photons
+    assert final.radius_metres == pytest.approx(told.radius_metres, rel=1e-6)
+    shown = drawn(panels.performance.RPPM_PT_status, context_of(facing)).labels
+    assert shown.index("Viewport") < shown.index("Final")
+
+
+def test_a_viewport_that_has_nothing_yet(facing):
+    told = viewport_report(SessionStatus(), export(facing))
+    assert told.iterations == 0 and told.photons_per_second == 0.0

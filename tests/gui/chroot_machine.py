@@ -88,6 +88,11 @@ class ChrootMachine:
         """Names of the shared memory that exists inside."""
         return self._ask("shared_memory")["names"]
 
+    def cpu_seconds(self, pid: int) -> tuple[float, float]:
+        """Processor time that a process has used, and the clock it goes by."""
+        answer = self._ask("cpu_seconds", pid=pid)
+        return answer["seconds"], answer["at"]
+
     def start_display(self, width: int, height: int) -> None:
         """An X server whose screen has this size; programs find it by ``DISPLAY``."""
         screen = f"{width}x{height}x24"

@@ -11,12 +11,20 @@ from .camera import export_camera
 from .images import ImageTable
 from .objects import ObjectExporter
 from .report import ExportStopped, Report
-from .settings import export_cubemap_centre, export_exposure, export_settings
+from .settings import export_cubemap_centre, export_exposure, export_settings, preview_settings
 from .sync import SceneSync
 from .view import export_view
 from .world import export_world
 
-__all__ = ["ExportStopped", "SceneError", "SceneSync", "export_scene", "export_view"]
+__all__ = [
+    "ExportStopped",
+    "SceneError",
+    "SceneSync",
+    "export_exposure",
+    "export_scene",
+    "export_settings",
+    "export_view",
+]
 
 
 def export_scene(
@@ -43,6 +51,8 @@ def export_scene(
     images = ImageTable()
     scene = Scene(camera=export_camera(source, depsgraph, report))
     scene.settings = export_settings(source)
+    if engine is not None and engine.is_preview:
+        scene.settings = preview_settings(scene.settings)
     scene.settings.validate()
     scene.cubemap_centre = export_cubemap_centre(depsgraph)
     scene.exposure = export_exposure(source)

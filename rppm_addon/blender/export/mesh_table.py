@@ -30,6 +30,7 @@ class MeshTable:
         self._owners: dict[int, set[int]] = {}
         self._seen: set[int] = set()
         self._tried: dict[int, set[str]] = {}
+        self._keys: dict[int, int] = {}
 
     def begin_pass(self) -> None:
         """All uses of meshes follow."""
@@ -39,6 +40,10 @@ class MeshTable:
         """Meshes that were not used since begin_pass are forgotten."""
         for key in self._places.keys() - self._seen:
             self._drop(key)
+
+    def keep(self, place: int) -> None:
+        """A mesh is used as before."""
+        self._seen.add(self._keys[place])
 
     def forget(self, owners: set[int]) -> None:
         """What these objects showed has changed."""
@@ -52,6 +57,7 @@ class MeshTable:
         if place is not None:
             self.meshes[place] = _NOTHING
             self._tried.pop(place)
+            self._keys.pop(place)
 
     def index(
         self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str], owner: int
@@ -71,6 +77,8 @@ class MeshTable:
         self._seen.add(key)
         self._owners[key].add(owner)
         place = self._places[key]
+        if place is not None:
+            self._keys[place] = key
         if place is not None and not attributes <= self._tried[place]:
             with _mesh_of(source, mesh) as evaluated:
                 self._complete(place, evaluated, attributes)

@@ -35,16 +35,20 @@ class ObjectExporter:
         self._frame = 0.0
 
     def export(
-        self, depsgraph: bpy.types.Depsgraph, shown: Callable[[bpy.types.Object], bool] | None = None
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        shown: Callable[[bpy.types.Object], bool] | None = None,
+        unchanged: dict[int, Instance] | None = None,
     ) -> "Placed":
-        """All instances and lights. shown: which of the original objects are to be seen, all if None.
+        """All instances and lights.
 
-        Raises ExportStopped when the user wants no more.
+        shown: which of the original objects are to be seen, all if None. unchanged: by session_uid, the instances of
+        objects that stand for themselves and are as they were. Raises ExportStopped when the user wants no more.
         """
         self._frame = depsgraph.scene_eval.frame_current_final
         self.meshes.begin_pass()
         with self._report.about("objects"):
-            placed = _Pass(self, depsgraph, shown).run()
+            placed = _Pass(self, depsgraph, shown, unchanged or {}).run()
         self.meshes.end_pass()
         return placed
 
@@ -135,11 +139,13 @@ class _Pass:
         exporter: ObjectExporter,
         depsgraph: bpy.types.Depsgraph,
         shown: Callable[[bpy.types.Object], bool] | None,
+        unchanged: dict[int, Instance],
     ) -> None:
         self._exporter = exporter
         self._report = exporter._report
         self._depsgraph = depsgraph
         self._shown = shown
+        self._unchanged = unchanged
         self._placed: list[tuple[Instance, np.ndarray, int]] = []
         self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object]]] = []
         self._converted: set[tuple[int, bytes]] = set()
@@ -153,11 +159,18 @@ class _Pass:
                 self._report.progress(f"Exporting objects ({number})")
             # Only valid inside the loop: Blender reuses the memory for the next instance.
             source = instance.object
-            stands_for = instance.parent if instance.is_instance else source
+            stands_for = (instance.parent if instance.is_instance else source).original
             if instance.is_instance:
-                self._multiple |= {source.original.session_uid, stands_for.original.session_uid}
-            if instance.show_self and (self._shown is None or self._shown(stands_for.original)):
-                self._export_instance(instance, source, stands_for, np.array(instance.matrix_world, np.float64))
+                self._multiple |= {source.original.session_uid, stands_for.session_uid}
+            if not instance.show_self or not (self._shown is None or self._shown(stands_for)):
+                continue
+            kept = None if instance.is_instance else self._unchanged.get(stands_for.session_uid)
+            if kept is not None:
+                self._exporter.meshes.keep(kept.mesh)
+                self._placed.append((kept, kept.matrix, stands_for.session_uid))
+            else:
+                matrix = np.array(instance.matrix_world, np.float64)
+                self._export_instance(instance, source, stands_for, matrix)
         self._convert()
         self._keep_usable()
         return self._result
@@ -193,7 +206,7 @@ class _Pass:
         original = source.original
         if original.type in CONVERTED_TYPES:
             self._converted.add((original.as_pointer(), matrix.tobytes()))
-        self._place(source, source.data, matrix, shading, owner.original.session_uid)
+        self._place(source, source.data, matrix, shading, owner.session_uid)
 
     def _place(
         self,
@@ -228,7 +241,8 @@ class _Pass:
         lost: dict[str, int] = {}
         for (instance, _, uid), matrix, good in zip(self._placed, matrices, usable, strict=True):
             if good:
-                instance.matrix = matrix
+                if instance.matrix is not matrix and not np.array_equal(instance.matrix, matrix):
+                    instance.matrix = matrix
                 self._result.alone[uid] = len(self._result.instances)
                 self._result.instances.append(instance)
             else:

@@ -28,6 +28,17 @@ def export_settings(scene: bpy.types.Scene, viewport: bool = False) -> RenderSet
     return settings
 
 
+PREVIEW_ITERATIONS, PREVIEW_PHOTONS, PREVIEW_SECONDS = 64, 8192, 1.0
+"""Thumbnails are small and many: what a second gives is good enough."""
+
+
+def preview_settings(settings: RenderSettings) -> RenderSettings:
+    """Those of Blender's previews of materials, worlds and lights, whose scenes have nobody's settings."""
+    return dataclasses.replace(
+        settings, iterations=PREVIEW_ITERATIONS, photons=PREVIEW_PHOTONS, time_limit=PREVIEW_SECONDS
+    )
+
+
 def export_cubemap_centre(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
     """(3,) metres where the chosen object is in this frame; None where none is chosen."""
     stored = getattr(depsgraph.scene, "rppm", None)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ...scene import Camera, Scene, World
+from ...scene import Camera, Instance, Scene, World
 from ...scene.lights import Light
 from ...scene.sharing import share
 from .images import ImageTable
@@ -105,7 +105,7 @@ class SceneSync:
             self._world_shows_frames = self._images.frames > frames
         self._objects.meshes.forget(edits.shapes)
         if self._placed is None or edits.others or any(asked) or not self._patch(edits):
-            self._placed = self._objects.export(depsgraph, shown)
+            self._placed = self._objects.export(depsgraph, shown, {} if any(asked) else self._unchanged(edits))
         world, suns = self._world
         settings = export_settings(source, viewport=True)
         settings.validate()
@@ -140,6 +140,13 @@ class SceneSync:
             ]
             edits.world |= self._world_shows_frames
         self._frame = frame
+
+    def _unchanged(self, edits: Edits) -> dict[int, Instance]:
+        """Instances of the objects that the depsgraph does not name."""
+        if self._placed is None:
+            return {}
+        instances, alone = self._placed.instances, self._placed.alone
+        return {uid: instances[place] for uid, place in alone.items() if uid not in edits.objects}
 
     def _patch(self, edits: Edits) -> bool:
         """Put changed objects in their places; False when that is not enough."""

@@ -10,7 +10,9 @@ from . import (
     performance,
     presets,
     render,
+    sampling,
     shading,
+    simplify,
     view_layer,
     viewport_header,
     warnings,
@@ -19,17 +21,22 @@ from . import (
 CLASSES = (
     *presets.CLASSES,
     *warnings.CLASSES,
+    *sampling.CLASSES,
+    *performance.STATUS,
     *render.CLASSES,
     *lights.CLASSES,
+    *simplify.CLASSES,
     *performance.CLASSES,
+    *render.ADVANCED,
     *view_layer.CLASSES,
     *data.CLASSES,
     *shading.CLASSES,
 )
+"""In the order in which their tabs show them."""
 
 
 def register() -> None:
-    """Add the panels, in the order in which their tabs show them."""
+    """Add the panels, and let Blender's own show."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     presets.register()

@@ -18,6 +18,10 @@ UNFIT = {
     "MATERIAL_PT_freestyle_line": "as RENDER_PT_freestyle",
     "OBJECT_PT_shading": "is empty without Cycles' panels in it",
     "RENDER_PT_freestyle": "the strokes, which Blender has the engine render, come out too wide",
+    "RENDER_PT_simplify": "would stand before all other panels; RPPM_PT_simplify stands in its place",
+    "RENDER_PT_simplify_greasepencil": "as RENDER_PT_simplify",
+    "RENDER_PT_simplify_render": "as RENDER_PT_simplify",
+    "RENDER_PT_simplify_viewport": "as RENDER_PT_simplify",
     "RENDER_PT_stereoscopy": "one eye is rendered",
     "VIEWLAYER_PT_layer_passes": "is empty without the panels of other engines",
 }

@@ -103,4 +103,5 @@ _COMPARED = (
 """Lines of the table and what they say of a render, the newest on the left."""
 
 
-CLASSES = (RPPM_PT_status, RPPM_PT_performance, RPPM_PT_last_renders)
+STATUS = (RPPM_PT_status,)
+CLASSES = (RPPM_PT_performance, RPPM_PT_last_renders)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Inside a background Blender: saves what the tests open, small versions of the sample scene, in /mnt."""
+"""Inside a background Blender: saves what the tests open, versions of the sample scene, in /mnt."""
 
 import bpy
 
@@ -18,6 +18,8 @@ render = scene.render
 render.resolution_x, render.resolution_y, render.resolution_percentage = *SIZE, 100
 render.image_settings.file_format, render.dither_intensity = "PNG", 0.0
 scene.rppm.iterations, scene.rppm.photons, scene.rppm.time_limit = 4, 4096, 0.0
+scene.rppm.viewport_iterations = scene.rppm.iterations
+scene.rppm.viewport_photons = scene.rppm.photons
 save("small")
-scene.rppm.iterations = 1000000
+scene.rppm.iterations = scene.rppm.viewport_iterations = 1000000
 save("endless")

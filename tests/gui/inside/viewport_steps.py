@@ -7,7 +7,7 @@ import zlib
 import bpy
 import gpu
 import numpy as np
-from mathutils import Quaternion
+from mathutils import Quaternion, Vector
 from window_steps import area, override, region, window
 
 PATCH = (160, 90)
@@ -31,7 +31,7 @@ def plain_viewport() -> None:
 
 
 def camera_view() -> list[int]:
-    """Look through the camera, its frame filling the region; sets the picture's size to the region's, and returns it."""
+    """Look through the camera, its frame filling the region, which is the picture's size from now on; returns that."""
     view = space().region_3d
     view.view_perspective = "CAMERA"
     view.view_camera_zoom, view.view_camera_offset = FULL_FRAME_ZOOM, (0.0, 0.0)
@@ -42,18 +42,11 @@ def camera_view() -> list[int]:
 
 def free_view() -> None:
     """Look from where the camera is, without it."""
-    camera = window().scene.camera
+    camera = window().scene.camera.matrix_world
     view = space().region_3d
-    view.view_perspective = "PERSP"
-    view.view_distance = 5.0
-    view.view_rotation = camera.matrix_world.to_quaternion()
-    view.view_location = camera.matrix_world @ (camera.location * 0.0 + _ahead(view.view_distance))
-
-
-def _ahead(distance: float):
-    from mathutils import Vector
-
-    return Vector((0.0, 0.0, -distance))
+    view.view_perspective, view.view_distance = "PERSP", 5.0
+    view.view_rotation = camera.to_quaternion()
+    view.view_location = camera @ Vector((0.0, 0.0, -view.view_distance))
 
 
 def shading(kind: str) -> None:
@@ -94,6 +87,10 @@ def play() -> None:
         bpy.ops.screen.animation_play()
 
 
+def set_frame(frame: int) -> None:
+    window().scene.frame_set(frame)
+
+
 def playing() -> bool:
     return window().screen.is_animation_playing
 
@@ -127,16 +124,18 @@ def seen() -> dict:
     return {"times": times, "sums": sums, "means": means, "now": time.perf_counter()}
 
 
+def drawn() -> bool:
+    """Whether the window was drawn since watch(); asks for it."""
+    region("VIEW_3D").tag_redraw()
+    return bool(_drawn)
+
+
 def changed() -> float | None:
     """When the watched pixels first were not what they were at first; None while they are the same."""
     for when, value, _ in _drawn:
         if value != _drawn[0][1]:
             return when
     return None
-
-
-def redraw() -> None:
-    region("VIEW_3D").tag_redraw()
 
 
 # Gaps between timers.
@@ -171,7 +170,7 @@ _calls: dict[str, list[float]] = {"view_update": [], "view_draw": []}
 
 def time_engine() -> None:
     """From now on note how long the engine's functions for viewports take."""
-    engine = bpy.types.RenderEngine.bl_rna_get_subclass_py("RppmRenderEngine")
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
     for name, calls in _calls.items():
         calls.clear()
         original = getattr(engine, name)

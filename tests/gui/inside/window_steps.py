@@ -66,6 +66,7 @@ def keep_smallest(kind: str) -> None:
     for other in found[1:]:
         other.type = "TEXT_EDITOR"
 
+
 def evaluate(text: str) -> object:
     """Value of an expression over bpy and the scene."""
     return eval(text, {"bpy": bpy, "scene": window().scene})  # noqa: S307 - tests only

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A viewport's scene follows every edit: it equals one exported anew, and shares what did not change."""
+
+import random
+
+import bpy
+import numpy as np
+import pytest
+
+from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.scene import Camera, Scene
+from rppm_addon.scene.sharing import equal
+
+CAMERA = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8)
+
+
+@pytest.fixture
+def synced(scene):
+    """A SceneSync that is told of all updates, and the scene's objects."""
+    sync = SceneSync()
+
+    def follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        sync.update(depsgraph, CAMERA)
+
+    cube = _add("Cube", _box("Cube"))
+    _add("Twin", cube.data).location = (3.0, 0.0, 0.0)
+    _add("Other", _box("Other", 0.5)).location = (0.0, 3.0, 0.0)
+    for name in ("Red", "Blue"):
+        material = bpy.data.materials.new(name)
+        if bpy.app.version < (5, 0, 0):
+            material.use_nodes = True
+    cube.data.materials.append(bpy.data.materials["Red"])
+    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+    bpy.context.collection.objects.link(lamp)
+    world = scene.world = bpy.data.worlds.new("World")
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = True
+    bpy.app.handlers.depsgraph_update_post.append(follow)
+    bpy.app.handlers.frame_change_post.append(follow)
+    bpy.context.view_layer.update()
+    yield sync
+    bpy.app.handlers.depsgraph_update_post.remove(follow)
+    bpy.app.handlers.frame_change_post.remove(follow)
+
+
+def _box(name: str, size: float = 1.0) -> bpy.types.Mesh:
+    mesh = bpy.data.meshes.new(name)
+    points = [(size * x, size * y, size * z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    mesh.from_pydata(points, [], faces)
+    return mesh
+
+
+def _add(name: str, data: bpy.types.ID) -> bpy.types.Object:
+    added = bpy.data.objects.new(name, data)
+    bpy.context.collection.objects.link(added)
+    return added
+
+
+def move():
+    bpy.data.objects["Cube"].location.x += 0.25
+
+
+def move_twin():
+    bpy.data.objects["Twin"].rotation_euler.z += 0.5
+
+
+def edit_mesh():
+    mesh = bpy.data.meshes["Cube"]
+    mesh.vertices[0].co.x -= 0.3
+    mesh.update()
+
+
+def edit_other_mesh():
+    mesh = bpy.data.meshes["Other"]
+    mesh.vertices[3].co.z += 0.3
+    mesh.update()
+
+
+def paint():
+    shader = bpy.data.materials["Red"].node_tree.nodes["Principled BSDF"]
+    shader.inputs["Base Color"].default_value[0] += 0.1
+
+
+def paint_unused():
+    bpy.data.materials["Blue"].node_tree.nodes["Principled BSDF"].inputs["Roughness"].default_value *= 0.9
+
+
+def use_blue():
+    bpy.data.objects["Other"].data.materials.append(bpy.data.materials["Blue"])
+
+
+def swap_slot():
+    bpy.data.objects["Cube"].material_slots[0].material = bpy.data.materials["Blue"]
+
+
+def ask_for_generated():
+    tree = bpy.data.materials["Red"].node_tree
+    texture = tree.nodes.new("ShaderNodeTexNoise")
+    tree.links.new(texture.outputs[0], tree.nodes["Principled BSDF"].inputs["Base Color"])
+
+
+def brighten():
+    bpy.data.lights["Lamp"].energy += 50.0
+
+
+def move_lamp():
+    bpy.data.objects["Lamp"].location.z += 1.0
+
+
+def recolor_world():
+    bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value += 0.3
+
+
+def hide():
+    twin = bpy.data.objects["Twin"]
+    twin.hide_viewport = not twin.hide_viewport
+
+
+def hide_from_camera():
+    bpy.data.objects["Other"].visible_camera ^= True
+
+
+def subdivide():
+    bpy.data.objects["Cube"].modifiers.new("Bevel", "BEVEL").segments = 2
+
+
+def remove():
+    twin = bpy.data.objects.get("Twin")
+    if twin is not None:
+        bpy.data.objects.remove(twin)
+
+
+def add():
+    _add("Added", _box("Added", 0.3))
+
+
+def exchange_data():
+    bpy.data.objects["Other"].data = bpy.data.meshes["Cube"]
+
+
+def instance_collection():
+    empty = _add("Empty", None)
+    group = bpy.data.collections.new("Group")
+    group.objects.link(bpy.data.objects["Other"])
+    empty.instance_type, empty.instance_collection = "COLLECTION", group
+    empty.location = (0.0, 0.0, 4.0)
+
+
+def parent():
+    bpy.data.objects["Other"].parent = bpy.data.objects["Cube"]
+
+
+def other_settings():
+    bpy.context.scene.rppm.alpha = 0.6
+    bpy.context.scene.update_tag()
+
+
+def next_frame():
+    bpy.context.scene.frame_set(bpy.context.scene.frame_current + 1)
+
+
+EDITS = (
+    move, move_twin, edit_mesh, edit_other_mesh, paint, paint_unused, use_blue, swap_slot, ask_for_generated, brighten,
+    move_lamp, recolor_world, hide, hide_from_camera, subdivide, remove, add, exchange_data, instance_collection,
+    parent, other_settings, next_frame,
+)  # fmt: skip
+
+
+def fresh() -> Scene:
+    return SceneSync().update(bpy.context.evaluated_depsgraph_get(), CAMERA)
+
+
+def same(a: Scene, b: Scene) -> bool:
+    """Whether two scenes say the same, however their meshes and materials are numbered."""
+
+    def told(scene: Scene) -> list:
+        instances = [
+            (
+                scene.meshes[instance.mesh],
+                [scene.materials[material] for material in instance.materials],
+                *(value for name, value in vars(instance).items() if name not in {"mesh", "materials"}),
+            )
+            for instance in scene.instances
+        ]
+        return [instances, scene.lights, scene.world, scene.settings, scene.exposure, sorted(scene.warnings)]
+
+    return equal(told(a), told(b))
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_each_edit_is_followed(synced, edit):
+    before = synced.scene
+    edit()
+    bpy.context.view_layer.update()
+    assert same(synced.scene, fresh())
+    changes = edit not in {paint_unused, next_frame, parent}  # the parent stands at the origin
+    assert (synced.scene is not before) == changes
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_edits_one_after_the_other(synced, seed):
+    generator = random.Random(seed)
+    for _ in range(30):
+        edit = generator.choice([e for e in EDITS if e is not instance_collection or "Empty" not in bpy.data.objects])
+        if edit is move_twin and "Twin" not in bpy.data.objects or edit is hide and "Twin" not in bpy.data.objects:
+            continue
+        edit()
+        bpy.context.view_layer.update()
+        assert same(synced.scene, fresh()), edit.__name__
+
+
+def test_what_stays_is_the_same_object(synced):
+    before = synced.scene
+    move()
+    bpy.context.view_layer.update()
+    after = synced.scene
+    assert [a is b for a, b in zip(before.instances, after.instances, strict=True)].count(False) == 1
+    assert after.meshes is before.meshes and after.materials is before.materials and after.lights is before.lights
+    paint()
+    bpy.context.view_layer.update()
+    assert synced.scene.instances is after.instances and synced.scene.materials is not after.materials
+
+
+def test_scenes_that_were_handed_out_stay_as_they_were(synced):
+    before = synced.scene
+    matrices = [instance.matrix.copy() for instance in before.instances]
+    positions = [mesh.positions.copy() for mesh in before.meshes]
+    for edit in (move, edit_mesh, ask_for_generated, remove, add):
+        edit()
+        bpy.context.view_layer.update()
+    for instance, matrix in zip(before.instances, matrices, strict=True):
+        np.testing.assert_array_equal(instance.matrix, matrix)
+    for mesh, known in zip(before.meshes, positions, strict=True):
+        np.testing.assert_array_equal(mesh.positions, known)
+    assert not any(mesh.attributes for mesh in before.meshes)
+
+
+def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
+    """What an edit costs does not grow with the scene: the depsgraph's instances are not listed again."""
+    passes = []
+    monkeypatch.setattr(synced._objects, "export", lambda *a: passes.append(a))
+    for edit in (move, edit_mesh, paint, brighten, move_lamp, recolor_world):
+        edit()
+        bpy.context.view_layer.update()
+        assert same(synced.scene, fresh()), edit.__name__
+    assert not passes

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels and preferences in a real Blender window, drawn without an error; the pictures are to be looked at."""
+
+import numpy as np
+
+
+def shot(blender, name, kind="PROPERTIES"):
+    """The area once it has been drawn; something must be there, and Blender must not have complained."""
+    blender.step("draw_window")
+    picture = blender.screenshot(name, kind)
+    assert picture.std() > 5.0
+    assert "Traceback" not in blender.log() and "rna_uiItem" not in blender.log(), blender.log()[-4000:]
+    return picture
+
+
+def test_panels_are_drawn(open_blender):
+    blender = open_blender("small.blend", 1000, 1500)
+    blender.step("assign", path="bpy.context.preferences.view.render_display_type", value="NONE")
+    blender.point_at("VIEW_3D")
+    blender.press("F12")
+    blender.wait_until("render_counts", 120.0, lambda counts: counts["completed"] == 1)
+    assert blender.step("open_all_panels") > 20
+    blender.step("replace_area", kind="VIEW_3D", by="PROPERTIES")
+    blender.step("properties_tab", name="RENDER")
+    pages = [(blender.step("scroll_to", page=page), shot(blender, f"render_{page}"))[1] for page in range(2)]
+    assert np.abs(pages[0].astype(float) - pages[1]).mean() > 1.0  # the tab is longer than a page
+    for tab in ("VIEW_LAYER", "OUTPUT", "WORLD"):
+        blender.step("properties_tab", name=tab)
+        shot(blender, tab.lower())
+    mesh, light, camera = (
+        blender.step("evaluate", text=f"next(o.name for o in scene.objects if o.type == {kind!r})")
+        for kind in ("MESH", "LIGHT", "CAMERA")
+    )
+    for name, tabs in ((mesh, ("OBJECT", "MATERIAL")), (light, ("DATA", "OBJECT")), (camera, ("DATA",))):
+        blender.step("make_active", name=name)
+        blender.step("draw_window")  # the editor learns of the tabs when it is drawn
+        for tab in tabs:
+            blender.step("properties_tab", name=tab)
+            shot(blender, f"{name}_{tab.lower()}")
+    # A warning's button shows the object's tab.
+    blender.step("press_button", operator="rppm.select_subject", kind="OBJECT", name=mesh)
+    assert blender.step("evaluate", text="bpy.context.view_layer.objects.active.name") == mesh
+    blender.quit()
+
+
+def test_preferences_show_the_device(open_blender):
+    blender = open_blender("small.blend", 1000, 900)
+    blender.step("replace_area", kind="VIEW_3D", by="PROPERTIES")
+    blender.step("press_button", operator="rppm.start_renderer")
+    state, device, error = blender.wait_until("renderer_state", 90.0, lambda found: found[0] != "STARTING")
+    assert state == "RUNNING" and device and not error
+    blender.step("show_preferences")
+    shot(blender, "preferences", "PREFERENCES")
+    blender.quit()
