@@ -114,10 +114,7 @@ class RendererProcess:
     def close(self) -> None:
         """End the process and all sessions. Waits for it, but a few seconds at the most."""
         with self.changed:
-            for session in self.sessions.values():
-                session.fail("The renderer process was closed")
-                session.release()
-            self.sessions.clear()
+            self._end_sessions()
             keeper = self._keeper
             self._leaving = True
             self.changed.notify_all()
@@ -152,6 +149,12 @@ class RendererProcess:
                 session.release()
                 self.post("close", session=session.number)
 
+    def _end_sessions(self) -> None:
+        for session in self.sessions.values():
+            session.fail("The renderer process was closed")
+            session.release()
+        self.sessions.clear()
+
     def _start(self) -> None:
         self.state = ProcessState.STARTING
         # A daemon: a Blender that ends without unregistering must not wait for it.
@@ -167,6 +170,7 @@ class RendererProcess:
             with self.changed:
                 self.device = None
                 if self._leaving:
+                    self._end_sessions()
                     self.state, self._keeper = ProcessState.STOPPED, None
                     return
                 self.state = ProcessState.STARTING
@@ -201,6 +205,8 @@ class RendererProcess:
             child = ChildProcess(self._python, self._folders, self.log_path)
         except OSError as error:
             return f"The renderer process cannot be started ({error})", False
+        with self.changed:
+            self.outbox.clear()
         connection = Connection(self, child)
         try:
             with self.changed:

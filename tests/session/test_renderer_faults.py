@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import Image
-from rppm_addon.session import client
+from rppm_addon.session import client, remote_rendering
 from rppm_addon.session.client import MOST_RESTARTS, ProcessState
+from rppm_addon.session.render_job import RenderJob
 from rppm_addon.session.sessions import SessionKind
 
 from .conftest import children, scene_of, wait_until
@@ -213,3 +214,17 @@ def test_close_of_what_has_failed(start):
     failed(process)
     process.close()
     assert process.state is ProcessState.STOPPED and not process.error
+
+
+def test_a_render_can_be_stopped_though_the_process_hangs(start, monkeypatch):
+    monkeypatch.setattr(remote_rendering, "STOP_SECONDS", 0.3)
+    for fault in ("hangs_in_the_greeting", "hangs_and_stops_reading"):
+        asked = []
+
+        class Job(RenderJob):
+            def should_stop(self, asked=asked):
+                asked.append(True)
+                return len(asked) > 20
+
+        result = remote_rendering.render(start(fault), scene_of(), Job(), SessionKind.FINAL)
+        assert result.stopped and not result.frame.combined.any()
