@@ -64,7 +64,7 @@ def test_direct_splats_are_all_pairs(mapper):
     np.testing.assert_allclose(got - light, expected, rtol=2e-3, atol=2e-4 * expected.max())
 
 
-@pytest.mark.parametrize("resolution", [16, 64])
+@pytest.mark.parametrize("resolution", [16, 32, 128])
 @pytest.mark.parametrize("centre", [None, (0.1, 0.999, 0.02), (0.0, 0.0, 0.0), (-0.99999, 0.2, -0.99999)])
 def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
     """Also with the cubemap's centre on a wall, in a corner and on the planes between its faces."""
