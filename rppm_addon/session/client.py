@@ -167,6 +167,8 @@ class RendererProcess:
         self._begin_log()
         while True:
             reason, again = self._run_process()
+            if reason:
+                logger.warning("%s", reason)  # not where Blender could wait for it
             with self.changed:
                 self.device = None
                 if self._leaving:
@@ -177,7 +179,6 @@ class RendererProcess:
                 if self._restarting:
                     self._restarting = False
                     continue
-                logger.warning("%s", reason)
                 self.error = f"{reason}; its log is {self.log_path}"
                 if not again or self.restarts >= MOST_RESTARTS:
                     self.state, self._keeper = ProcessState.FAILED, None
