@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes of the surface, the object and images that are more than their sockets and options."""
 
+import functools
+
 import bpy
 import numpy as np
 
@@ -122,11 +124,17 @@ def _other_geometry(exporter: GraphExporter, node, output, path: Path):
 @handles("TEX_SKY")
 def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
     sky = sky_of(node)
-    image = exporter.images.add(Image(node.name, sky_picture(sky)))
+    image = exporter.images.add(_sky_image(node.name, sky))
     vector = exporter.coordinates_of(node, path)
     link = exporter.graph.add("tex_environment", "color", name=node.name, image=image, vector=vector)
     exporter.skies[link.node] = sky
     return link
+
+
+@functools.lru_cache(maxsize=8)
+def _sky_image(name: str, sky: Sky) -> Image:
+    """Simulating an atmosphere takes up to a second: frames whose sky stays the same share its picture."""
+    return Image(name, sky_picture(sky))
 
 
 def sky_of(node: bpy.types.Node) -> Sky:
