@@ -244,6 +244,15 @@ def test_stopped_renders(start):
     assert not process.sessions
 
 
+def test_a_render_is_stopped_amid_an_iteration(start):
+    scene = scene_of(size=256)
+    scene.settings = dataclasses.replace(scene.settings, photons=1 << 17)
+    job = Job()
+    job.should_stop = lambda: ("progress", 0) in job.told
+    result = render(start(), scene, job, SessionKind.FINAL)
+    assert result.stopped and result.statistics.iterations == 0 and ("progress", 1) not in job.told
+
+
 def test_errors_of_renders(start):
     process = start()
     scene = scene_of()
