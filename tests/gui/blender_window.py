@@ -48,7 +48,9 @@ class BlenderWindow:
         answer = self._folder / "answer.json"
         end = time.monotonic() + seconds
         while not answer.exists():
-            if time.monotonic() > end or self.machine.wait("blender", 0.0) is not None:
+            if (status := self.machine.wait("blender", 0.0)) is not None:
+                raise StepError(f"Blender ended with {status} at {step} {arguments}:\n{self.log()[-8000:]}")
+            if time.monotonic() > end:
                 raise StepError(f"Blender does not answer to {step} {arguments}:\n{self.log()[-8000:]}")
             time.sleep(0.005)
         result = json.loads(answer.read_text())

@@ -88,10 +88,9 @@ class ChrootMachine:
         """Names of the shared memory that exists inside."""
         return self._ask("shared_memory")["names"]
 
-    def cpu_seconds(self, pid: int) -> tuple[float, float]:
-        """Processor time that a process has used, and the clock it goes by."""
-        answer = self._ask("cpu_seconds", pid=pid)
-        return answer["seconds"], answer["at"]
+    def busy_share(self, pid: int, seconds: float) -> float:
+        """Share of moments, in the next seconds, at which a thread of a process runs or waits for a processor."""
+        return self._ask("busy_share", seconds + START_SECONDS, pid=pid, seconds=seconds)["share"]
 
     def start_display(self, width: int, height: int) -> None:
         """An X server whose screen has this size; programs find it by ``DISPLAY``."""

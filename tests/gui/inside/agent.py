@@ -37,4 +37,5 @@ def poll() -> float:
     return POLL_SECONDS
 
 
+bpy.context.preferences.use_preferences_save = False
 bpy.app.timers.register(poll, persistent=True)

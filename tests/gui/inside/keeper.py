@@ -4,6 +4,7 @@
 Requests are lines of JSON on stdin, answers lines of JSON on stdout; it leaves when stdin ends.
 """
 
+import contextlib
 import json
 import os
 import signal
@@ -69,10 +70,18 @@ def shared_memory() -> dict:
     return {"names": sorted(os.listdir("/dev/shm")) + [path.name for path in Path("/tmp").glob("rppm*")]}
 
 
-def cpu_seconds(pid: int) -> dict:
-    """Processor time that a process has used."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return {"seconds": (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), "at": time.monotonic()}
+def busy_share(pid: int, seconds: float) -> dict:
+    """Share of moments at which a thread of a process runs or waits for a processor."""
+    samples = 50
+    busy = 0
+    for _ in range(samples):
+        states = []
+        for stat in Path(f"/proc/{pid}/task").glob("*/stat"):
+            with contextlib.suppress(OSError):  # the thread has just ended
+                states.append(stat.read_text().rpartition(")")[2].split()[0])
+        busy += any(state in "RD" for state in states)
+        time.sleep(seconds / samples)
+    return {"share": busy / samples}
 
 
 def _text(data: bytes | None) -> str:
@@ -80,7 +89,7 @@ def _text(data: bytes | None) -> str:
 
 
 def main() -> None:
-    requests = {f.__name__: f for f in (start, run, wait, kill, processes, shared_memory, cpu_seconds)}
+    requests = {f.__name__: f for f in (start, run, wait, kill, processes, shared_memory, busy_share)}
     for line in sys.stdin:
         name, arguments = json.loads(line)
         try:

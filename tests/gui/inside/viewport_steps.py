@@ -14,6 +14,8 @@ PATCH = (160, 90)
 """Pixels in the middle of the viewport that are watched."""
 FULL_FRAME_ZOOM = 50.0 * (2.0 - 2.0**0.5)
 """view_camera_zoom at which the camera's frame is as large as the region."""
+ONE_COLOR = 2.0
+"""Standard deviation of pixels, 0 to 255, below which there is no picture yet."""
 GAP_SECONDS = 0.004
 """How soon the timer that measures gaps asks to be called again."""
 
@@ -97,17 +99,19 @@ def playing() -> bool:
 
 # Pixels on the screen.
 
-_drawn: list[tuple[float, int, float]] = []
-_watcher = None
+_drawn: list[tuple[float, int, float, float]] = []
+_watcher = 0
 
 
 def watch() -> None:
     """From now on note what the window shows in the viewport's middle, each time it is drawn."""
     global _watcher
     _drawn.clear()
-    if _watcher is None:
+    manager = bpy.context.window_manager.as_pointer()
+    if _watcher != manager:  # a file that is loaded brings another one
+        _watcher = manager
         # The only callback that runs when the window's own buffer is complete; the mouse must be over the viewport.
-        _watcher = bpy.types.WindowManager.draw_cursor_add(_note, (), "VIEW_3D", "WINDOW")
+        bpy.types.WindowManager.draw_cursor_add(_note, (), "VIEW_3D", "WINDOW")
 
 
 def _note(*_: object) -> None:
@@ -115,12 +119,12 @@ def _note(*_: object) -> None:
     corner = found.x + (found.width - PATCH[0]) // 2, found.y + (found.height - PATCH[1]) // 2
     buffer = gpu.state.active_framebuffer_get().read_color(*corner, *PATCH, 3, 0, "UBYTE")
     pixels = np.array(buffer, np.uint8)
-    _drawn.append((time.perf_counter(), zlib.crc32(pixels.tobytes()), float(pixels.mean())))
+    _drawn.append((time.perf_counter(), zlib.crc32(pixels.tobytes()), float(pixels.mean()), float(pixels.std())))
 
 
 def seen() -> dict:
     """What was noted since watch(): times, checksums and mean values (0 to 255); and the time now."""
-    times, sums, means = zip(*_drawn) if _drawn else ((), (), ())
+    times, sums, means, _ = zip(*_drawn) if _drawn else ((), (), (), ())
     return {"times": times, "sums": sums, "means": means, "now": time.perf_counter()}
 
 
@@ -131,9 +135,9 @@ def drawn() -> bool:
 
 
 def changed() -> float | None:
-    """When the watched pixels first were not what they were at first; None while they are the same."""
-    for when, value, _ in _drawn:
-        if value != _drawn[0][1]:
+    """When the watched pixels first were others than at first, and not of one colour; None while they are not."""
+    for when, value, _, spread in _drawn:
+        if value != _drawn[0][1] and spread > ONE_COLOR:
             return when
     return None
 
