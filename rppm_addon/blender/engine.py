@@ -41,8 +41,9 @@ class RppmRenderEngine(bpy.types.RenderEngine):
 
 def register() -> None:
     bpy.utils.register_class(RppmRenderEngine)
+    viewport.register()
 
 
 def unregister() -> None:
-    viewport.close_all()
+    viewport.unregister()
     bpy.utils.unregister_class(RppmRenderEngine)

@@ -1,10 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """scene.rppm and light.rppm; the scene's names and defaults are those of RenderSettings."""
 
+import functools
+
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy import props
 
 from ..scene import RenderSettings
+
+
+def _edited(owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Does nothing, but that there is it makes Blender take what scripts and presets set for edits, as it takes what
+    users set: the data block is evaluated again and the window is drawn."""
+
+
+BoolProperty = functools.partial(props.BoolProperty, update=_edited)
+EnumProperty = functools.partial(props.EnumProperty, update=_edited)
+FloatProperty = functools.partial(props.FloatProperty, update=_edited)
+IntProperty = functools.partial(props.IntProperty, update=_edited)
+PointerProperty = functools.partial(props.PointerProperty, update=_edited)
 
 DEFAULTS = RenderSettings()
 _MOST_PHOTONS = 1 << 22
@@ -235,8 +249,8 @@ _CLASSES = (RppmSceneProperties, RppmLightProperties)
 def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
-    bpy.types.Scene.rppm = PointerProperty(type=RppmSceneProperties, name="RPPM")
-    bpy.types.Light.rppm = PointerProperty(type=RppmLightProperties, name="RPPM")
+    bpy.types.Scene.rppm = props.PointerProperty(type=RppmSceneProperties, name="RPPM")
+    bpy.types.Light.rppm = props.PointerProperty(type=RppmLightProperties, name="RPPM")
 
 
 def unregister() -> None:

@@ -51,8 +51,10 @@ def python_program() -> str:
     """The Python that Blender brings or uses; sys.executable is Blender itself in some builds."""
     if "python" in Path(sys.executable or "").name.lower():
         return sys.executable
-    programs = sorted(Path(sys.prefix, "bin").glob("python*"))
-    return str(programs[-1]) if programs else "python"
+    version = f"{sys.version_info.major}.{sys.version_info.minor}"
+    names = (f"bin/python{version}", "bin/python3", "bin/python.exe", "python.exe")
+    programs = [program for name in names if (program := Path(sys.prefix, name)).is_file()]
+    return str(programs[0]) if programs else "python"
 
 
 def log_path() -> Path:

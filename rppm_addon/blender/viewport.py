@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 
 import bpy
+from bpy.app.handlers import persistent
 
 from ..scene import Camera, Scene
 from ..scene.errors import RppmError
@@ -207,6 +208,23 @@ def close_all() -> None:
         close(key)
     if bpy.app.timers.is_registered(_poll):
         bpy.app.timers.unregister(_poll)
+
+
+@persistent
+def _on_load(*_: object) -> None:
+    """The viewports of the file before are gone."""
+    close_all()
+
+
+def register() -> None:
+    """Have viewports end with their file."""
+    bpy.app.handlers.load_pre.append(_on_load)
+
+
+def unregister() -> None:
+    """End all viewports."""
+    bpy.app.handlers.load_pre.remove(_on_load)
+    close_all()
 
 
 def poll_soon() -> None:

@@ -2,12 +2,14 @@
 """The renderer's process as the process that starts it sees it: pipes, shared memory, and its end."""
 
 import contextlib
+import os
 import signal
 import subprocess
 import sys
 import threading
 from collections.abc import Sequence
 from pathlib import Path
+from typing import BinaryIO
 
 from ..scene.scene import Scene
 from .arrays import pack
@@ -28,8 +30,7 @@ class ChildProcess:
 
     def __init__(self, python: Sequence[str], folders: Sequence[str], log_path: Path) -> None:
         """Start ``python`` (a program and its options) and greet it. Raises OSError when it cannot be started."""
-        log_path.parent.mkdir(parents=True, exist_ok=True)
-        with open(log_path, "ab") as log:
+        with _opened(log_path) as log:
             self._process = subprocess.Popen(
                 [*python, str(_BOOTSTRAP)],
                 stdin=subprocess.PIPE,
@@ -137,3 +138,12 @@ class ChildProcess:
             with contextlib.suppress(ValueError):
                 return f"was ended by {signal.Signals(-code).name}"
         return f"ended with code {code if code < 256 else hex(code)}"
+
+
+def _opened(log_path: Path) -> BinaryIO:
+    """The log, to be appended to, or nothing where it cannot be written: that keeps nobody from rendering."""
+    try:
+        log_path.parent.mkdir(parents=True, exist_ok=True)
+        return open(log_path, "ab")
+    except OSError:
+        return open(os.devnull, "ab")

@@ -114,9 +114,7 @@ class RendererProcess:
     def close(self) -> None:
         """End the process and all sessions. Waits for it, but a few seconds at the most."""
         with self.changed:
-            for session in self.sessions.values():
-                session.fail("The renderer process was closed")
-            self.sessions.clear()
+            self._end_sessions()
             keeper = self._keeper
             self._leaving = True
             self.changed.notify_all()
@@ -148,7 +146,14 @@ class RendererProcess:
         """Forget a session."""
         with self.changed:
             if self.sessions.pop(session.number, None) is not None:
+                session.release()
                 self.post("close", session=session.number)
+
+    def _end_sessions(self) -> None:
+        for session in self.sessions.values():
+            session.fail("The renderer process was closed")
+            session.release()
+        self.sessions.clear()
 
     def _start(self) -> None:
         self.state = ProcessState.STARTING
@@ -162,16 +167,18 @@ class RendererProcess:
         self._begin_log()
         while True:
             reason, again = self._run_process()
+            if reason:
+                logger.warning("%s", reason)  # not where Blender could wait for it
             with self.changed:
                 self.device = None
                 if self._leaving:
+                    self._end_sessions()
                     self.state, self._keeper = ProcessState.STOPPED, None
                     return
                 self.state = ProcessState.STARTING
                 if self._restarting:
                     self._restarting = False
                     continue
-                logger.warning("%s", reason)
                 self.error = f"{reason}; its log is {self.log_path}"
                 if not again or self.restarts >= MOST_RESTARTS:
                     self.state, self._keeper = ProcessState.FAILED, None
@@ -199,6 +206,8 @@ class RendererProcess:
             child = ChildProcess(self._python, self._folders, self.log_path)
         except OSError as error:
             return f"The renderer process cannot be started ({error})", False
+        with self.changed:
+            self.outbox.clear()
         connection = Connection(self, child)
         try:
             with self.changed:

@@ -65,6 +65,11 @@ class Session:
         if number == self._on_its_way:
             self._on_its_way = 0
 
+    def release(self) -> None:
+        """The session is closed: keep nothing that is large."""
+        self._snapshot = None
+        self._due = False
+
     def fail(self, text: str) -> None:
         """Nothing more will come until another scene is shown, or another process is started."""
         raise NotImplementedError
@@ -103,6 +108,10 @@ class ViewportSession(Session):
         self._reader = None
         if self._paused:
             self.process.post("pause", session=self.number, paused=True)
+
+    def release(self) -> None:
+        super().release()
+        self._reader = None
 
     def fail(self, text: str) -> None:
         self.status = dataclasses.replace(self.status, error=text, settled=True)

@@ -2,6 +2,7 @@
 """Renders in the renderer's process, for a caller that waits for them."""
 
 import queue
+import time
 
 from ..scene import errors
 from ..scene.scene import Scene
@@ -10,6 +11,9 @@ from .client_session import RenderSession
 from .render_job import POLL_SECONDS, RenderJob
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
 from .sessions import SessionKind
+
+STOP_SECONDS = 10.0
+"""How long the process may take to stop; then the render ends without a picture."""
 
 
 def render(process: RendererProcess, scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
@@ -27,12 +31,13 @@ def render(process: RendererProcess, scene: Scene, job: RenderJob, kind: Session
 
 def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job: RenderJob) -> RenderResult:
     shown = False
+    stopped_at: float | None = None
     while True:
-        stopping = job.should_stop()
-        if stopping and not shown:
-            return empty_result(scene, process.device.name if process.device else "")
-        if stopping:
+        if stopped_at is None and job.should_stop():
+            stopped_at = time.monotonic()
             session.stop()
+        if stopped_at is not None and not (shown and time.monotonic() - stopped_at < STOP_SECONDS):
+            return empty_result(scene, process.device.name if process.device else "")
         try:
             event, content = session.events.get(timeout=POLL_SECONDS)
         except queue.Empty:

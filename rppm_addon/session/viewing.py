@@ -27,6 +27,9 @@ REST_SECONDS = 0.25
 BRIGHTEST = 65000.0
 """Windows draw half floats, which end there; what is infinite would be drawn black."""
 
+FRAME_SECONDS = 1.0 / 60.0
+"""Pictures that follow each other faster are not given out: nobody would see them, and reading them costs time."""
+
 Send = Callable[..., None]
 """send(kind, **content): a message to Blender about this session."""
 
@@ -44,6 +47,7 @@ class Viewing:
         self._shown: tuple[Scene, int, bool] | None = None
         self._shown_at = 0.0
         self._first_picture_pending = False
+        self._given_out_at = 0.0
         self._sharpness = Sharpness()
         self._paused = False
         self._status = SessionStatus()
@@ -96,7 +100,10 @@ class Viewing:
         while mapper.iteration < settings.iterations:
             yield from mapper.steps()
             now = time.perf_counter()
-            if mapper.iteration % settings.iterations_per_frame == 0 or mapper.iteration == settings.iterations:
+            last = mapper.iteration == settings.iterations
+            at_once = last or self._first_picture_pending or now - self._given_out_at >= FRAME_SECONDS
+            if last or (at_once and mapper.iteration % settings.iterations_per_frame == 0):
+                self._given_out_at = now
                 self._give_out(scene, generation)
                 if self._first_picture_pending:
                     self._sharpness.measure(mapper.film.width * mapper.film.height, now - started)

@@ -60,8 +60,9 @@ class Worker:
         self._inbox: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
         self._sessions: dict[int, tuple[SessionKind, Viewing | Rendering]] = {}
         self._share = FairShare()
-        self._decoding = threading.Lock()
-        """Held by the reading thread while it takes a scene in: the drivers leave it little of the interpreter."""
+        self._whole = threading.Event()
+        """Not set while a scene is coming in: the drivers leave the reading thread little of the interpreter."""
+        self._whole.set()
         self._left = threading.Event()
 
     def run(self) -> None:
@@ -69,8 +70,7 @@ class Worker:
         threading.Thread(target=self._read, name="RPPM messages", daemon=True).start()
         try:
             while self._handle_messages():
-                with self._decoding:
-                    pass
+                self._whole.wait()
                 self._run_slice()
         finally:
             for number in list(self._sessions):
@@ -87,8 +87,7 @@ class Worker:
         code = 0
         try:
             while (message := read_message(self._reader)) is not None and message["kind"] != "leave":
-                with self._decoding:
-                    self._decode(message)
+                self._decode(message)
                 if message["kind"] != "members":
                     self._inbox.put(message)
         except BrokenPipeError:
@@ -97,6 +96,7 @@ class Worker:
             log.exception("Blender sent what cannot be understood")
             code = 1
         self._inbox.put(None)
+        self._whole.set()
         if not self._left.wait(LEAVE_SECONDS):
             os._exit(code)
 
@@ -104,10 +104,12 @@ class Worker:
         """Put the scene in place of the documents and arrays that tell of it."""
         kind = message["kind"]
         if kind == "members":
+            self._whole.clear()
             self._receiver.learn(message["document"], unpack(message["arrays"]))
         elif kind == "show":
             message["scene"] = self._receiver.receive(message.pop("document"), unpack(message.pop("arrays")))
             self._send("taken", session=message["session"], number=message.pop("number"))
+            self._whole.set()
         self._receiver.forget(message.pop("dead", ()))
 
     # In the main thread.
@@ -135,7 +137,8 @@ class Worker:
         elif kind == "close":
             self._close(number)
         elif kind in _FOR_SESSIONS:
-            getattr(self._sessions[number][1], kind)(**message)
+            if number in self._sessions:  # else it was closed meanwhile
+                getattr(self._sessions[number][1], kind)(**message)
         elif kind != "forget":
             raise ProtocolError(f"there is no message {kind}")
 
@@ -150,4 +153,5 @@ class Worker:
         self._share.took(number, time.perf_counter() - started, kind.value)
 
     def _close(self, number: int) -> None:
-        self._sessions.pop(number)[1].release()
+        if number in self._sessions:
+            self._sessions.pop(number)[1].release()

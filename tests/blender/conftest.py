@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender as a module, with RPPM registered."""
 
+import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="the tests of the Blender floor need the bpy wheel")
@@ -22,6 +23,22 @@ def scene(registered):
     camera.location = (0.0, 0.0, 5.0)
     scene.collection.objects.link(camera)
     scene.camera = camera
+    return scene
+
+
+@pytest.fixture
+def lit(scene):
+    """A white quad that fills the middle of the picture, under a sun: its radiance is 1 there."""
+    from blender_scenes import add_light, add_mesh, add_node, new_material, set_world, to_surface
+
+    material = new_material("White")
+    to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfDiffuse", Color=(1.0, 1.0, 1.0, 1.0)))
+    add_mesh(scene, "Quad").data.materials.append(material)
+    add_light(scene, "SUN", energy=np.pi, angle=0.0)
+    set_world(scene)
+    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 4.0  # the quad takes the middle half
+    scene.rppm.iterations, scene.rppm.photons, scene.rppm.cubemap_resolution = 2, 256, 16
+    scene.rppm.filter_width = 0.0
     return scene
 
 

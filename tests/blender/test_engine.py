@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import OpenEXR
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, new_material, set_world, to_surface
+from blender_scenes import set_world
 from PIL import Image as Picture
 
 from rppm_addon.blender import engine as engine_module
@@ -15,20 +15,6 @@ from rppm_addon.blender import final, renderer_thread
 from rppm_addon.scene.errors import DeviceError
 from rppm_addon.session import renderer as session_renderer
 from rppm_addon.session.observers import RenderObserver, observing
-
-
-@pytest.fixture
-def lit(scene):
-    """A white quad that fills the middle of the picture, under a sun: its radiance is 1 there."""
-    material = new_material("White")
-    to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfDiffuse", Color=(1.0, 1.0, 1.0, 1.0)))
-    add_mesh(scene, "Quad").data.materials.append(material)
-    add_light(scene, "SUN", energy=np.pi, angle=0.0)
-    set_world(scene)
-    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 4.0  # the quad takes the middle half
-    scene.rppm.iterations, scene.rppm.photons, scene.rppm.cubemap_resolution = 2, 256, 16
-    scene.rppm.filter_width = 0.0
-    return scene
 
 
 def render_exr(scene, folder, **arguments):

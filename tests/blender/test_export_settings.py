@@ -5,7 +5,7 @@ import dataclasses
 
 import bpy
 import pytest
-from blender_scenes import export
+from blender_scenes import add_light, export
 
 from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.scene import DirectLight, RenderSettings
@@ -63,6 +63,23 @@ def test_a_viewport_has_settings_of_its_own(scene):
     assert (final.iterations, final.photons, final.time_limit) == (default.iterations, default.photons, 5.0)
     differing = {f.name for f in dataclasses.fields(final) if getattr(final, f.name) != getattr(viewport, f.name)}
     assert differing == {"iterations", "photons", "time_limit", "deep_cubemap_pass"}
+
+
+def test_what_scripts_and_presets_set_is_exported(scene):
+    """Blender evaluates a scene anew for what users set, and not by itself for what Python sets."""
+    lamp = add_light(scene, "POINT")
+    before = export(scene)
+    for item in scene.rppm.bl_rna.properties:  # one at a time: each is an edit by itself
+        if item.type in {"INT", "FLOAT", "BOOLEAN"} and item.identifier not in BESIDES | {"cubemap_resolution"}:
+            others = {"INT": item.default + 1, "FLOAT": 0.25, "BOOLEAN": not item.default}
+            setattr(scene.rppm, item.identifier, others[item.type])
+            assert getattr(export(scene).settings, item.identifier) == others[item.type], item.identifier
+    scene.rppm.direct_light = "PHOTONS"
+    assert export(scene).settings.direct_light is DirectLight.PHOTONS
+    scene.rppm.cubemap_centre_object = lamp
+    assert export(scene).cubemap_centre == pytest.approx([0.0, 0.0, 3.0])
+    lamp.data.rppm.photon_share = 3.0
+    assert (before.lights[0].photon_share, export(scene).lights[0].photon_share) == (1.0, 3.0)
 
 
 def test_the_ranges_of_the_properties_are_valid_settings(scene):

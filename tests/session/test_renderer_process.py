@@ -244,6 +244,15 @@ def test_stopped_renders(start):
     assert not process.sessions
 
 
+def test_a_render_is_stopped_amid_an_iteration(start):
+    scene = scene_of(size=256)
+    scene.settings = dataclasses.replace(scene.settings, photons=1 << 17)
+    job = Job()
+    job.should_stop = lambda: ("progress", 0) in job.told
+    result = render(start(), scene, job, SessionKind.FINAL)
+    assert result.stopped and result.statistics.iterations == 0 and ("progress", 1) not in job.told
+
+
 def test_errors_of_renders(start):
     process = start()
     scene = scene_of()
@@ -291,14 +300,46 @@ def test_a_viewport_goes_on_beside_a_render(start):
     scene = scene_of(10**6)
     session = process.open(SessionKind.VIEWPORT)
     session.show(scene, 1, False)
-    frame_of(session, 1)
+    wait_until(lambda: (frame := session.newest()) and frame.width == 16)
     counts = {}
 
     class Watch(Job):
         def on_progress(self, progress):
             if progress.iteration in (5, 65):
-                counts[progress.iteration] = session.newest().sequence
+                counts[progress.iteration] = session.status.iteration
             return super().on_progress(progress)
 
     render(process, dataclasses.replace(scene), Watch(stop_at=65), SessionKind.FINAL)
     assert 10 <= counts[65] - counts[5] <= 40, counts
+
+
+def test_messages_for_a_session_that_was_closed(start):
+    """Whoever draws may not know of it yet, and pictures are still on their way."""
+    process = start()
+    for _ in range(10):
+        viewport, final = process.open(SessionKind.VIEWPORT), process.open(SessionKind.FINAL)
+        viewport.show(scene_of(), 1, False)
+        final.show(scene_of(size=200), 1, False)
+        final.want_picture()
+        wait_until(viewport.newest)
+        viewport.close()
+        final.close()
+        viewport.show(scene_of(), 2, False)
+        viewport.pause(True)
+        viewport.close()
+        final.stop()
+        with process.changed:
+            process.post("received", session=final.number)
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene_of(), 1, False)
+    frame_of(session, 1)
+    assert process.restarts == 0
+    assert list(process.sessions.values()) == [session]
+
+
+def test_a_log_that_cannot_be_written(start):
+    process = start()
+    process.log_path = Path("/proc/renderer/renderer.log")
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene_of(), 1, False)
+    frame_of(session, 1)

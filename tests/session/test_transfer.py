@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 from floor import floor_scene
-from unit.test_scene import assert_same, full_scene
+from full_scene import assert_same, full_scene
 
 from rppm_addon.scene import Image, Instance
 from rppm_addon.session.arrays import pack, unpack

@@ -71,3 +71,11 @@ def draw_window() -> None:
     """Draw all of the window, as it is now."""
     with bpy.context.temp_override(window=window()):
         bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+
+
+def readings() -> dict[str, object]:
+    """What the viewport has last reported of the scene."""
+    scene = window().scene
+    reports = importlib.import_module(f"{_addon()}.rppm_addon.blender.reports").reports_of(scene.session_uid)
+    found = reports.viewport
+    return {} if found is None else {"iterations": found.iterations, "watts": found.source_watts}

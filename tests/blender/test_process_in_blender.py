@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The renderer process as Blender with a window uses it."""
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+
+import rppm_addon
+from rppm_addon.blender import renderer_process, renderer_thread
+from rppm_addon.session.client import ProcessState
+from rppm_addon.session.observers import RenderObserver, observing
+from rppm_addon.session.sessions import SessionKind
+
+
+@pytest.fixture
+def windowed(monkeypatch, tmp_path):
+    """Renders go to the process, as where Blender has a window."""
+    monkeypatch.setattr(renderer_process, "_process", None)
+    monkeypatch.setattr(renderer_process, "log_path", lambda: tmp_path / "renderer.log")
+    monkeypatch.setattr(renderer_process, "is_used", lambda: True)
+    yield renderer_process.renderer_process()
+    renderer_process.close()
+
+
+class Observer(RenderObserver):
+    """Keeps the frames, and runs something at the first progress."""
+
+    snapshots = (0.0,)
+
+    def __init__(self, at_first=None):
+        self.frames, self.iterations, self.errors, self.at_first = [], [], [], at_first
+
+    def on_progress(self, progress):
+        if progress.iteration == 1 and self.at_first is not None:
+            self.at_first()
+        self.iterations.append(progress.iteration)
+
+    def on_snapshot(self, seconds, frame, scene):
+        self.frames.append(frame)
+
+    def on_finish(self, result, scene):
+        self.frames.append(result.frame)
+
+    def on_error(self, text):
+        self.errors.append(text)
+
+
+def rendered(at_first=None):
+    observer = Observer(at_first)
+    with observing(observer):
+        bpy.ops.render.render()
+    return observer
+
+
+def test_the_process_renders_what_the_thread_does(lit, windowed, monkeypatch):
+    with monkeypatch.context() as patched:
+        patched.setattr(renderer_process, "is_used", lambda: False)
+        expected = rendered()
+    renderer_thread.release()
+    monkeypatch.setattr(renderer_thread, "render", lambda *_: pytest.fail("the process was to render"))
+    for _ in range(2):
+        observer = rendered()
+        assert windowed.state is ProcessState.RUNNING and not windowed.sessions
+        assert observer.iterations == expected.iterations == [0, 1, 2]
+        for before, after in zip(expected.frames, observer.frames, strict=True):
+            for name in ("combined", "depth", "normal"):
+                np.testing.assert_array_equal(getattr(before, name), getattr(after, name))
+    assert rendered().frames[-1].combined[16, 16, 0] == pytest.approx(1.0, rel=1e-3)
+
+
+def test_errors_reach_the_user(lit, windowed):
+    """That of a scene, and that of a process which dies with it again and again."""
+
+    def kill():
+        task = Path(f"/proc/{os.getpid()}/task")
+        for child in {int(pid) for thread in task.iterdir() for pid in (thread / "children").read_text().split()}:
+            os.kill(child, signal.SIGKILL)
+
+    lit.rppm.iterations = 1000
+    observer = Observer(kill)
+    with observing(observer), pytest.raises(RuntimeError, match="SIGKILL"):
+        bpy.ops.render.render()
+    assert len(observer.errors) == 1 and str(windowed.log_path) in observer.errors[0]
+    assert windowed.state is ProcessState.FAILED and windowed.restarts == 2
+    windowed.restart()
+    lit.rppm.iterations = 2
+    assert rendered().frames
+
+
+def test_the_process_ends_with_the_file_and_with_the_extension(windowed):
+    windowed.open(SessionKind.VIEWPORT)
+    assert windowed.state is ProcessState.STARTING
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert windowed.state is ProcessState.STOPPED
+    windowed.open(SessionKind.VIEWPORT)
+    assert windowed.state is ProcessState.STARTING
+    rppm_addon.unregister()
+    try:
+        assert windowed.state is ProcessState.STOPPED
+        assert renderer_process._on_load not in bpy.app.handlers.load_post
+    finally:
+        rppm_addon.register()
+
+
+def test_nothing_is_started_before_it_is_needed(windowed):
+    assert windowed.state is ProcessState.STOPPED
+    assert not windowed.log_path.exists()
+
+
+def test_the_python_that_blender_brings(monkeypatch, tmp_path):
+    assert renderer_process.python_program() == sys.executable
+    monkeypatch.setattr(sys, "executable", "/opt/blender/blender")
+    assert Path(renderer_process.python_program()).name.startswith("python")
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    assert renderer_process.python_program() == "python"
+    (tmp_path / "bin").mkdir()
+    for name in ("python3-config", "python3"):
+        (tmp_path / "bin" / name).touch()
+    assert renderer_process.python_program() == str(tmp_path / "bin" / "python3")
+
+
+def test_the_log_lies_in_the_users_folders(monkeypatch):
+    assert renderer_process.log_path() == Path(bpy.utils.user_resource("DATAFILES")) / "rppm" / "renderer.log"
+    asked = []
+    monkeypatch.setattr(bpy.utils, "extension_path_user", lambda package: asked.append(package) or "/folder")
+    monkeypatch.setattr(renderer_process, "__package__", "bl_ext.user_default.rppm.rppm_addon.blender")
+    assert renderer_process.log_path() == Path("/folder/renderer.log")
+    assert asked == ["bl_ext.user_default.rppm"]
