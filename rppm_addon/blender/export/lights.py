@@ -6,8 +6,7 @@ import math
 import bpy
 import numpy as np
 
-from ...materials.emitted import Emits, emits, reachable
-from ...materials.nodes import KINDS
+from ...materials.emitted import Emits, emits, lamp_variation
 from ...scene import Light, LightKind, NodeGraph
 from .graphs import GraphExporter
 from .images import ImageTable
@@ -100,7 +99,12 @@ def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable)
     exporter = GraphExporter(f'Light "{name}"', report, images)
     if output is not None:
         exporter.graph.surface = exporter.surface(output)
-    kinds = {exporter.graph.nodes[index].kind for index in reachable(exporter.graph, exporter.graph.surface)}
-    if any(KINDS[kind].surface for kind in kinds - {"light_path"}):
-        report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; their mean is used')
+    if exporter.graph.surface is None:
+        return exporter.graph
+    varies = lamp_variation(exporter.graph)
+    sphere = data.type in {"POINT", "SPOT"} and data.shadow_soft_size > 0.0 and not data.use_soft_falloff
+    by_place = varies.place or (varies.uv and data.type != "SPOT")
+    by_direction = varies.direction or (varies.uv and data.type == "SPOT")
+    if by_place and by_direction and (sphere or data.type == "AREA"):
+        report.warn(f'Light "{name}": its nodes vary by place and by direction; they are rendered by place only')
     return exporter.graph

@@ -56,7 +56,7 @@ def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:
     matrix = np.eye(4)
     matrix[:3, :3] = np.array(Vector(backward).to_track_quat("Z", "Y").to_matrix())
     return Light(f"{owner} sun", LightKind.SUN, matrix, np.ones(3), sun_angle=disc.angle,
-                 graph=NodeGraph(nodes, graph.surface))  # fmt: skip
+                 graph=NodeGraph(nodes, graph.surface), of_world=True)  # fmt: skip
 
 
 def _finite(radiance: np.ndarray) -> np.ndarray:
