@@ -66,8 +66,10 @@ class LampVariation:
         return self.place or self.direction or self.uv
 
 
-_SAME_EVERYWHERE = {"light_path", "object_info", "particle_info", "attribute", "uvmap", "random_per_island"}
-"""Nodes that tell the same of all places of a lamp."""
+_SAME_EVERYWHERE = {
+    "light_path", "object_info", "particle_info", "attribute", "uvmap", "random_per_island", "vector_transform",
+}  # fmt: skip
+"""Nodes that tell the same of all places of a lamp, but for what feeds them."""
 _BY_DIRECTION = {("new_geometry", "incoming"), ("tex_coord", "reflection")}
 _BY_UV = {("tex_coord", "uv"), ("new_geometry", "parametric")}
 _BY_BOTH = {"fresnel", "layer_weight"}

@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 
+from ...materials.ies import FLAT_PROFILE, ProfileError, profile_table
 from ...materials.sky import sky_picture
 from ...scene import Image, Link
 from ...scene.sky import Sky
@@ -12,7 +13,7 @@ from .graphs import STAND_INS, GraphExporter, handles, snake_case
 from .images import is_associated
 from .links import Path
 
-STAND_INS |= {"SHADERTORGB": "", "TEX_IES": "Strength", "RADIAL_TILING": "Vector"}
+STAND_INS |= {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
 
 
 @handles("TEX_COORD")
@@ -112,6 +113,33 @@ def _image_texture(exporter: GraphExporter, node, output, path: Path):
 @handles("TEX_ENVIRONMENT")
 def _environment_texture(exporter: GraphExporter, node, output, path: Path):
     return exporter.add("tex_environment", node, path, "color", image=exporter.images.of_node(node, exporter))
+
+
+@handles("TEX_IES")
+def _ies_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path):
+    vector = next(socket for socket in node.inputs if socket.identifier == "Vector")
+    inputs = {}
+    if not exporter.is_linked(vector, path):
+        incoming = exporter.shared("new_geometry", "incoming")
+        inputs["vector"] = exporter.graph.add(
+            "vector_transform", "vector", name=node.name, vector=incoming,
+            options={"vector_type": "NORMAL", "convert_from": "WORLD", "convert_to": "OBJECT"},
+        )  # fmt: skip
+    try:
+        table = profile_table(_profile(node))
+    except (ProfileError, OSError) as error:
+        exporter.warn(node, f"has no IES profile that can be read ({error}); its value is 100, as in Cycles")
+        table = FLAT_PROFILE
+    return exporter.add("tex_ies", node, path, "fac", table=table, inputs=inputs)
+
+
+def _profile(node: bpy.types.Node) -> str:
+    """The text of a node's IES profile. Raises OSError."""
+    if node.mode == "INTERNAL":
+        return "" if node.ies is None else node.ies.as_string()
+    file = bpy.path.abspath(node.filepath, library=node.id_data.library)
+    with open(file, encoding="latin-1") as profile:
+        return profile.read()
 
 
 @handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")

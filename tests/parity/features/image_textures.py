@@ -19,10 +19,11 @@ GROUP = "Image Texture"
 
 
 @cache
-def _folder() -> Path:
-    folder = Path(tempfile.mkdtemp(prefix="rppm_parity_"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
+def folder() -> Path:
+    """Where the pictures are until the program ends."""
+    made = Path(tempfile.mkdtemp(prefix="rppm_parity_"))
+    atexit.register(shutil.rmtree, made, ignore_errors=True)
+    return made
 
 
 def _pixels(width: int, height: int, seed: int) -> np.ndarray:
@@ -35,7 +36,7 @@ def _pixels(width: int, height: int, seed: int) -> np.ndarray:
 @cache
 def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
     """A small picture file: png, opaque (png without alpha), grey (png), deep (png with 16 bits), exr."""
-    path = _folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
+    path = folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
     pixels = _pixels(width, height, 5)
     if kind == "premultiplied":
         pixels[..., :3] *= pixels[..., 3:]
@@ -170,12 +171,12 @@ value(GROUP, "packed", _packed_image)
 
 
 def _tiles(net):
-    folder = _folder()
+    tiles = folder()
     for number, seed in ((1001, 1), (1002, 2), (1011, 3)):
-        Image.fromarray(np.uint8(255 * _pixels(8, 8, seed)[..., :3])).save(folder / f"tiled.{number}.png")
-    made = bpy.data.images.load(str(folder / "tiled.1001.png"))
+        Image.fromarray(np.uint8(255 * _pixels(8, 8, seed)[..., :3])).save(tiles / f"tiled.{number}.png")
+    made = bpy.data.images.load(str(tiles / "tiled.1001.png"))
     made.source = "TILED"
-    made.filepath = str(folder / "tiled.<UDIM>.png")
+    made.filepath = str(tiles / "tiled.<UDIM>.png")
     for number in (1002, 1011):
         if number not in {tile.number for tile in made.tiles}:
             made.tiles.new(number)

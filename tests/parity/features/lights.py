@@ -64,7 +64,7 @@ for _group, _rows in LAMPS.items():
         lamps(_group, _name, _lamp(_kind, **_properties), effort=2 if "spread" in _properties else 1)
 
 
-def _with_nodes(kind, feed, where=None, **properties):
+def lamp_with_nodes(kind, feed, where=None, **properties):
     """A lamp whose emission is fed by ``feed(net)``: colour and strength; the camera sees it where a place is given."""
 
     def make() -> None:
@@ -81,14 +81,16 @@ def _with_nodes(kind, feed, where=None, **properties):
     return make
 
 
-lamps("Light nodes", "constant", _with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
+lamps("Light nodes", "constant", lamp_with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
 lamps(
-    "Light nodes", "blackbody", _with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8)
+    "Light nodes",
+    "blackbody",
+    lamp_with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8),
 )
 lamps(
     "Light nodes",
     "quadratic falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0})),
         shadow_soft_size=0.1,
@@ -97,7 +99,7 @@ lamps(
 lamps(
     "Light nodes",
     "smooth quadratic falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0, "Smooth": 1.0})),
         shadow_soft_size=0.1,
@@ -106,7 +108,7 @@ lamps(
 lamps(
     "Light nodes",
     "linear falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Linear", {"Strength": 0.4})),
         shadow_soft_size=0.1,
@@ -115,7 +117,7 @@ lamps(
 lamps(
     "Light nodes",
     "constant falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "AREA", lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Constant", {"Strength": 0.2})), size=0.8
     ),
 )
@@ -164,13 +166,13 @@ BY_DIRECTION = {
     "sun, image": ("SUN", _image, {"angle": 0.8}),
 }  # fmt: skip
 for _name, (_kind, _feed, _properties) in BY_DIRECTION.items():
-    lamps("Light nodes", _name, _with_nodes(_kind, _feed, **_properties), effort=2)
+    lamps("Light nodes", _name, lamp_with_nodes(_kind, _feed, **_properties), effort=2)
 for _name in ("spot, image", "spot, sphere, colour by normal", "point, colour by normal", "area, incoming"):
     _kind, _feed, _properties = BY_DIRECTION[_name]
     lamps(
         "Light nodes",
         f"{_name}, by photons",
-        _with_nodes(_kind, _feed, **_properties),
+        lamp_with_nodes(_kind, _feed, **_properties),
         settings={"direct_light": DirectLight.PHOTONS, "photons": 16384},
         effort=4,
     )
@@ -182,7 +184,7 @@ for _name, _where in {
 }.items():
     _kind, _feed, _properties = BY_DIRECTION[_name]
     _size = {"AREA": {"size": 0.8}, "SUN": {}}.get(_kind, {"shadow_soft_size": 0.4})
-    lamps("Light nodes", f"{_name}, in view", _with_nodes(_kind, _feed, _where, **(_properties | _size)), effort=3)
+    lamps("Light nodes", f"{_name}, in view", lamp_with_nodes(_kind, _feed, _where, **(_properties | _size)), effort=3)
 
 
 def _two() -> None:
