@@ -19,7 +19,9 @@ def parts(text):
 
 
 def test_factors_multiply():
-    around, down, candela = parts(HEAD + "2 500 3.0 2 2 1 1 0 0 0\r\n0.5 0.25, 60\r\n0 180\r\n0 360\r\n100 200\r\n100 200")
+    around, down, candela = parts(
+        HEAD + "2 500 3.0 2 2 1 1 0 0 0\r\n0.5 0.25, 60\r\n0 180\r\n0 360\r\n100 200\r\n100 200"
+    )
     np.testing.assert_allclose(around, [0, 360])
     np.testing.assert_allclose(down, [0, 180])
     np.testing.assert_allclose(candela, 3.0 * 0.5 * 0.25 * np.array([[100, 200]] * 2), rtol=1e-6)

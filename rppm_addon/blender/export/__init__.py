@@ -38,7 +38,7 @@ def export_scene(
     report = Report(stop, show)
     report.progress("Exporting the scene")
     source = depsgraph.scene_eval
-    images = ImageTable()
+    images = ImageTable(source.frame_current)
     scene = Scene(camera=export_camera(source, depsgraph, report))
     scene.settings = export_settings(source)
     scene.settings.validate()

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender images to pixels, each exported once."""
 
+import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
@@ -17,10 +19,11 @@ _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"
 
 
 class ImageTable:
-    """The images of a scene under export."""
+    """The images of a scene under export, at a frame of the scene."""
 
-    def __init__(self) -> None:
+    def __init__(self, frame: int) -> None:
         self.images: list[Image] = []
+        self._frame = frame
         self._indices: dict[tuple, int] = {}
 
     def of_node(self, node: bpy.types.Node, exporter: "GraphExporter") -> int:
@@ -29,10 +32,11 @@ class ImageTable:
         if image is None:
             exporter.warn(node, "has no image and counts as magenta; choose one")
             return MISSING
-        if image.source != "SEQUENCE":
+        if image.source not in {"SEQUENCE", "MOVIE"}:
             return self._index((image.as_pointer(),), lambda: image, image, node, exporter)
-        path = image.filepath_from_user(image_user=node.image_user)
-        return self._index((image.as_pointer(), path), lambda: _load(path, image), image, node, exporter)
+        frame = frame_of(node.image_user, self._frame)
+        load = _of_movie if image.source == "MOVIE" else _of_sequence
+        return self._index((image.as_pointer(), frame), lambda: load(image, frame), image, node, exporter)
 
     def add(self, image: Image) -> int:
         """Index of an image that belongs to no datablock."""
@@ -83,6 +87,39 @@ class ImageTable:
 
 MISSING = -1
 """Stands for an image without pixels; it is magenta."""
+
+
+def frame_of(user: bpy.types.ImageUser, scene_frame: int) -> int:
+    """The number of the file of a sequence, or of the picture of a movie, that is shown at a frame of the scene. As in
+    Cycles, whether the user refreshes by itself makes no difference."""
+    number = scene_frame - user.frame_start + 1
+    if user.use_cyclic:
+        number = (number - 1) % max(user.frame_duration, 1) + 1
+    return min(max(number, 0), user.frame_duration) + user.frame_offset
+
+
+def _of_sequence(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
+    """A file of a sequence: the last number in its name counts."""
+    path = Path(bpy.path.abspath(image.filepath, library=image.library))
+    digits = re.search(r"\d+(?=\D*$)", path.stem)
+    if digits is None or number < 0:
+        return _load(str(path), image) if digits is None else None
+    name = path.stem[: digits.start()] + f"{number:0{len(digits[0])}d}" + path.stem[digits.end() :]
+    return _load(str(path.with_name(name + path.suffix)), image)
+
+
+def _of_movie(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
+    """A picture of a movie, the first or last one beyond its ends, as a copy whose pixels are of that picture.
+
+    Blender's Python gives the pixels of the picture that was asked for last: scaling a copy to its own size changes
+    nothing else, and is what can name a picture without a window.
+    """
+    width, height = image.size
+    if width < 1 or height < 1:
+        return None
+    copied = image.copy()
+    copied.scale(width, height, frame=max(number, 1))
+    return copied
 
 
 def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:

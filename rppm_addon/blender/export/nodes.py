@@ -97,6 +97,8 @@ def _object_info(exporter: GraphExporter, node, output, path: Path):
 @handles("TEX_IMAGE")
 def _image_texture(exporter: GraphExporter, node, output, path: Path):
     tiles = exporter.images.tiles(node, exporter)
+    image = exporter.images.of_node(node, exporter) if tiles is None else -1
+    # Only now is the image loaded: before, a movie has no colour space.
     unassociate = is_associated(node.image) and any(
         socket.identifier == "Alpha" and socket.is_linked for socket in node.outputs
     )
@@ -105,7 +107,6 @@ def _image_texture(exporter: GraphExporter, node, output, path: Path):
     if tiles is not None:
         return exporter.add("tex_image_tiles", node, path, name, options=options, table=tiles,
                             inputs={"tiles": float(len(tiles))})  # fmt: skip
-    image = exporter.images.of_node(node, exporter)
     blend = {"projection_blend": node.projection_blend}
     return exporter.add("tex_image", node, path, name, options=options, image=image, inputs=blend)
 

@@ -188,6 +188,33 @@ def _tiles(net):
 value(GROUP, "UDIM tiles", _tiles)
 
 
+def _animated(movie: bool, frame: int, **user):
+    """A sequence of files, or a movie, at a frame of the scene; ``user`` of the node's image user."""
+
+    def give(net):
+        pictures = [Image.fromarray(np.uint8(255 * _pixels(8, 8, seed)[..., :3])) for seed in range(1, 7)]
+        for number, shown in enumerate(pictures, 1):
+            shown.save(folder() / f"shot_{number:03d}.png")
+        pictures[0].save(folder() / "shot.gif", save_all=True, append_images=pictures[1:], duration=40)
+        made = bpy.data.images.load(str(folder() / ("shot.gif" if movie else "shot_001.png")))
+        made.source = "MOVIE" if movie else "SEQUENCE"
+        node = net.node("TexImage", image=made)
+        for name, setting in ({"frame_duration": 6} | user).items():
+            setattr(node.image_user, name, setting)
+        bpy.context.scene.frame_set(frame)
+        return node.outputs["Color"]
+
+    return give
+
+
+for _movie, _what in ((False, "sequence"), (True, "movie")):
+    value(GROUP, f"{_what}, frame 3", _animated(_movie, 3, use_auto_refresh=True))
+    value(GROUP, f"{_what}, without auto refresh", _animated(_movie, 4))
+    value(GROUP, f"{_what}, start and offset", _animated(_movie, 5, frame_start=3, frame_offset=2))
+    value(GROUP, f"{_what}, cyclic", _animated(_movie, 12, frame_duration=4, use_cyclic=True, frame_offset=1))
+    value(GROUP, f"{_what}, after its end", _animated(_movie, 50))
+
+
 def _image_bump(net):
     height = texture(kind="grey", interpolation="Cubic")(net)
     return net.out("Bump", inputs={"Height": height, "Distance": 0.1})
