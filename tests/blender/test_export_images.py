@@ -7,6 +7,7 @@ import pytest
 from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, shaders, source, to_surface
 from test_export_lights import cycles_radiance
 
+from rppm_addon.blender.export.color_spaces import scene_linear, to_srgb
 from rppm_addon.blender.export.images import MISSING
 
 
@@ -199,3 +200,19 @@ def test_movies(scene, tmp_path):
     np.testing.assert_array_equal(image.pixels[0, 0], (100, 20, 0, 255))
     movie.filepath = str(tmp_path / "gone.gif")
     assert any('"Picture"' in text and "gone.gif" in text for text in export(scene).warnings)
+
+
+SPACES = ["Linear Rec.2020", "ACEScg", "ACES2065-1", "Display P3", "Rec.1886", "Khronos PBR Neutral sRGB"]
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_grey_is_grey_in_all_spaces(scene, space):
+    grey = scene_linear(np.full((2, 3, 3), 0.4), space)
+    assert grey == pytest.approx(np.broadcast_to(grey[0, 0, 0], (2, 3, 3)), rel=1e-3)
+
+
+def test_places_of_colours_stay(scene):
+    """From bytes as from floats: Blender decodes both alike."""
+    colors = np.random.default_rng(3).random((3, 4, 3))
+    assert to_srgb(scene_linear(colors, "sRGB")) == pytest.approx(colors, abs=1e-5)
+    assert len(bpy.data.images) == 0

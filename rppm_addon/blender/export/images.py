@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ...scene import Image
-from .color_spaces import linear_rec709, to_srgb
+from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 
 if TYPE_CHECKING:
     from .graphs import GraphExporter
@@ -78,7 +78,7 @@ class ImageTable:
                 self._indices[key] = MISSING
             else:
                 self._indices[key] = len(self.images)
-                self.images.append(_encoded(image, pixels, node, exporter))
+                self.images.append(_encoded(image, pixels))
         if self._indices[key] == MISSING:
             place = image.filepath or "no file"
             exporter.warn(node, f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
@@ -133,22 +133,21 @@ def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
     return image
 
 
-def _encoded(image: bpy.types.Image, pixels: np.ndarray, node: bpy.types.Node, exporter: "GraphExporter") -> Image:
+def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
     """Pixels as they are to be filtered: encoded where Cycles does it, and colours times alpha."""
     space = image.colorspace_settings.name
     if image.alpha_mode == "NONE":
         pixels[..., 3] = 1.0
     if image.is_float:
         # Blender has made them linear.
+        pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
         if space == "sRGB":
             pixels[..., :3] = to_srgb(pixels[..., :3])
         return Image(image.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
     if space != "sRGB" and space not in _LINEAR_SPACES:
-        linear = linear_rec709(pixels[..., :3].astype(np.float64), space)
-        if linear is not None:
-            pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
-            return Image(image.name, pixels, "LINEAR")
-        exporter.warn(node, f'has an image in the colour space "{space}", which is read as sRGB')
+        linear = scene_linear(pixels[..., :3], space) * WHITE_IN_CYCLES.get(space, 1.0)
+        pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
+        return Image(image.name, pixels, "LINEAR")
     encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
     pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
     if is_associated(image):

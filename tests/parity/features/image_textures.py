@@ -115,14 +115,22 @@ for _space in ("sRGB", "Non-Color", "Linear Rec.709"):
     value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"))
 for _space in ("ACEScg", "Linear Rec.2020", "Linear CIE-XYZ E", "Display P3", "Rec.1886"):
     value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.5, 0.8)
+for _space in (
+    "Filmic sRGB",
+    "Filmic Log",
+    "AgX Base sRGB",
+    "Khronos PBR Neutral sRGB",
+    "ACES 2.0 sRGB",
+    "Rec.2100-HLG",
+):
+    value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.05, 0.5)
 value(
     GROUP,
-    "colour space Filmic sRGB",
-    texture(space="Filmic sRGB", kind="opaque"),
-    warns=True,
-    mean=0.8,
-    block=1.0,
-    reason="read as sRGB",
+    "colour space Filmic sRGB, alpha",
+    texture(space="Filmic sRGB"),
+    0.1,
+    0.5,
+    reason="Cycles rounds to half floats before it multiplies by alpha",
 )
 for _space in ("Linear Rec.709", "Non-Color", "sRGB", "ACEScg"):
     value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3, 0.5)
