@@ -1,19 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RPPM inside Blender: the only floor that imports bpy."""
 
-from . import engine, panels, properties, renderer_thread
+from . import engine, operators, panels, preferences, properties, renderer_process, renderer_thread, reports
 
 
 def register() -> None:
-    """Add the properties, the engine and the panels to Blender."""
+    """Add the properties, the engine, the operators, the panels and the preferences to Blender."""
     properties.register()
     engine.register()
+    operators.register()
     panels.register()
+    preferences.register()
+    renderer_process.register()
 
 
 def unregister() -> None:
-    """Undo register and release the graphics device."""
+    """Undo register, end the renderer process and release the graphics device."""
+    renderer_process.unregister()
+    preferences.unregister()
     panels.unregister()
+    operators.unregister()
     engine.unregister()
     properties.unregister()
+    reports.forget()
     renderer_thread.release()

@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The render engine that Blender lists as RPPM."""
 
-import logging
+import contextlib
 
 import bpy
 
+from . import viewport
 from .final import DEEP_CUBEMAP_PASS, render_final
-
-logger = logging.getLogger(__name__)
-
-VIEWPORT_TEXT = "The viewport is not rendered in this version; press F12 for a render"
 
 
 class RppmRenderEngine(bpy.types.RenderEngine):
     bl_idname = "RPPM"
     bl_label = "RPPM"
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_eevee_viewport = True  # Material Preview is drawn by EEVEE
     bl_use_shading_nodes_custom = False  # Cycles' nodes are ours
     bl_use_postprocess = True
@@ -38,10 +35,15 @@ class RppmRenderEngine(bpy.types.RenderEngine):
         render_final(self, depsgraph)
 
     def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
-        logger.info(VIEWPORT_TEXT)
+        viewport.of_engine(self).update(context, depsgraph)
 
     def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
-        self.update_stats("RPPM", VIEWPORT_TEXT)
+        viewport.of_engine(self).draw(context, depsgraph)
+
+    def __del__(self) -> None:
+        # Blender may have freed what the object stands for.
+        with contextlib.suppress(ReferenceError):
+            viewport.close(self.as_pointer())
 
 
 def register() -> None:
@@ -49,4 +51,5 @@ def register() -> None:
 
 
 def unregister() -> None:
+    viewport.close_all()
     bpy.utils.unregister_class(RppmRenderEngine)

@@ -11,11 +11,14 @@ import numpy as np
 from ..scene import Scene
 from ..scene.errors import RppmError
 from ..session.observers import RenderObserver, current_observer
-from . import renderer_thread
+from ..session.render_job import RenderJob
+from ..session.sessions import SessionKind
+from . import renderer_process, renderer_thread
 from .export import ExportStopped, export_scene
+from .reports import RenderKind, RenderReport, record, record_error
 
 if TYPE_CHECKING:
-    from ..session.renderer import Frame, Progress
+    from ..session.results import Frame, Progress, RenderResult, RenderStatistics
 
 logger = logging.getLogger(__name__)
 
@@ -38,11 +41,12 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
     except ExportStopped:
         logger.info("the render was stopped during the export")
     except RppmError as error:
-        _fail(engine, observer, str(error))
+        _fail(engine, depsgraph, observer, str(error))
     except Exception as error:
         logger.exception("RPPM failed")
         _fail(
             engine,
+            depsgraph,
             observer,
             f"RPPM failed unexpectedly ({type(error).__name__}: {error}); please report the system console's text",
         )
@@ -56,7 +60,7 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     engine.update_stats("", "Preparing the graphics device")
     job = _FinalJob(engine, scene, depsgraph.view_layer_eval.name, observer)
     try:
-        result = renderer_thread.render(scene, job)
+        result = _render_scene(engine, scene, job)
         job.show(result.frame)
     except BaseException:
         job.end(cancel=True)
@@ -64,12 +68,45 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     job.end(cancel=False)
     # The statistics repeat the scene's warnings, which have been reported.
     _report_warnings(engine, [text for text in result.statistics.warnings if text not in scene.warnings])
+    if result.statistics.iterations and not engine.is_preview:
+        record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
 
 
-def _fail(engine: bpy.types.RenderEngine, observer: RenderObserver, text: str) -> None:
+def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
+    """What the panels show of a render."""
+    width, height = scene.camera.resolution
+    return RenderReport(
+        RenderKind.FINAL,
+        width,
+        height,
+        scene.settings,
+        statistics.iterations,
+        statistics.photons,
+        statistics.seconds,
+        statistics.radius_metres,
+        sum(statistics.memory_bytes.values()),
+        statistics.build_seconds,
+        statistics.device,
+        statistics.triangles,
+        statistics.source_watts,
+        statistics.source_photons,
+        tuple(statistics.warnings),
+    )
+
+
+def _render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) -> "RenderResult":
+    if renderer_process.is_used():
+        kind = SessionKind.PREVIEW if engine.is_preview else SessionKind.FINAL
+        return renderer_process.render(scene, job, kind)
+    return renderer_thread.render(scene, job)
+
+
+def _fail(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver, text: str) -> None:
     engine.error_set(text)
     engine.report({"ERROR"}, text)
+    if not engine.is_preview:
+        record_error(depsgraph.scene.session_uid, text)
     observer.on_error(text)
 
 
@@ -84,7 +121,7 @@ def _report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> Non
 DEEP_CUBEMAP_PASS = "Deep Cubemap"
 
 
-class _FinalJob(renderer_thread.RenderJob):
+class _FinalJob(RenderJob):
     """Shows a render in the engine's result and tells the observer."""
 
     def __init__(self, engine: bpy.types.RenderEngine, scene: Scene, layer: str, observer: RenderObserver) -> None:

@@ -7,10 +7,16 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 from ..scene import RenderSettings
 
 DEFAULTS = RenderSettings()
+_MOST_PHOTONS = 1 << 22
+
+VIEWPORT_PHOTONS = DEFAULTS.photons // 4
+"""In the viewport a quick first picture counts for more than how good it is."""
+VIEWPORT_ITERATIONS = DEFAULTS.iterations * DEFAULTS.photons // VIEWPORT_PHOTONS
+"""Until a viewport at rest has seen as many photons as a final render does."""
 
 
 class RppmSceneProperties(bpy.types.PropertyGroup):
-    """Settings of the photon mapper."""
+    """Settings of the photon mapper: those of RenderSettings and, from ``viewport_``, what the viewport has apart."""
 
     iterations: IntProperty(
         name="Iterations",
@@ -34,9 +40,33 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         description="Photons emitted in each iteration, shared among the lights by their power and photon share",
         default=DEFAULTS.photons,
         min=1,
-        max=1 << 22,
+        max=_MOST_PHOTONS,
         soft_min=1024,
         step=1024,
+    )
+    viewport_iterations: IntProperty(
+        name="Viewport Iterations",
+        description="Iterations after which a viewport at rest is finished and leaves the graphics device alone",
+        default=VIEWPORT_ITERATIONS,
+        min=1,
+        soft_max=4096,
+    )
+    viewport_photons: IntProperty(
+        name="Viewport Photons",
+        description=(
+            "Photons emitted in each iteration of the viewport: fewer show a changed view sooner, "
+            "more make its first pictures smoother"
+        ),
+        default=VIEWPORT_PHOTONS,
+        min=1,
+        max=_MOST_PHOTONS,
+        soft_min=1024,
+        step=1024,
+    )
+    viewport_paused: BoolProperty(
+        name="Pause Viewport",
+        description="Hold the picture of all rendered viewports and leave the graphics device alone",
+        default=False,
     )
     camera_path_length: IntProperty(
         name="Camera Paths",
@@ -67,7 +97,10 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
     )
     radius_scale: FloatProperty(
         name="Initial Radius",
-        description="Radius of the first iteration in pixels of a 1 megapixel picture, scaled with the picture's size",
+        description=(
+            "The first iteration gathers photons over a disk as large as a square of this side, in pixels of a "
+            "1 megapixel picture; larger and smaller pictures scale it"
+        ),
         default=DEFAULTS.radius_scale,
         min=0.01,
         soft_min=1.0,
@@ -137,8 +170,11 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         subtype="PIXEL",
     )
     iterations_per_frame: IntProperty(
-        name="Iterations per Picture",
-        description="Iterations between two pictures shown while rendering",
+        name="Iterations per Frame",
+        description=(
+            "Iterations before a picture is shown: while an animation plays in the viewport more make each "
+            "frame smoother and the playback slower; final renders show their progress as often"
+        ),
         default=DEFAULTS.iterations_per_frame,
         min=1,
         soft_max=64,

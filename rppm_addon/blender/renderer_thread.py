@@ -17,40 +17,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ..scene import Scene
+from ..session.render_job import POLL_SECONDS, RenderJob
 
 if TYPE_CHECKING:
     from ..session.renderer import Frame, Progress, RenderResult
 
 logger = logging.getLogger(__name__)
-
-POLL_SECONDS = 0.05
-"""How often a waiting caller asks whether to stop, beside every iteration."""
-
-
-class RenderJob:
-    """One render, as its caller sees it; all methods run in the caller's thread.
-
-    A render with nothing to show overrides none of them.
-    """
-
-    snapshots: tuple[float, ...] = ()
-
-    def should_stop(self) -> bool:
-        """Whether the render is to end with what it has."""
-        return False
-
-    def on_start(self) -> None:
-        """The renderer exists and is about to be given the scene."""
-
-    def on_progress(self, progress: "Progress") -> bool:
-        """After each iteration. Returns whether on_frame is to be given the picture."""
-        return False
-
-    def on_frame(self, progress: "Progress", frame: "Frame") -> None:
-        """The picture so far, as on_progress asked for."""
-
-    def on_snapshot(self, seconds: float, frame: "Frame") -> None:
-        """The picture at a mark of ``snapshots``."""
 
 
 class _Conversation:

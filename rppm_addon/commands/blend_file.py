@@ -108,9 +108,9 @@ def _opened(request: BlendRequest, show_output: bool) -> Iterator[tuple]:
                 f"the bpy module could not be loaded ({error}); install it with make setup or pip install bpy==5.0.1, "
                 "or export the scene where Blender is and render the .npz"
             ) from error
-        import rppm_addon
+        from .. import register, unregister
 
-        rppm_addon.register()
+        register()
         try:
             report = BlenderReport(bpy.app.version_string, start_seconds=time.perf_counter() - start)
             _open(bpy, request.path)
@@ -119,7 +119,7 @@ def _opened(request: BlendRequest, show_output: bool) -> Iterator[tuple]:
             report.frame = bpy.context.scene.frame_current
             yield bpy, report
         finally:
-            rppm_addon.unregister()  # an engine still registered at exit crashes or hangs Blender
+            unregister()  # an engine still registered at exit crashes or hangs Blender
 
 
 def _open(bpy, path: Path) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..pictures import Placement, standard_view, write_exr, write_png
 from ..scene import Camera, RenderSettings, Scene
+from ..scene.quantities import count_text
 from ..session.observers import RenderObserver
 from .progress_bar import ProgressBar
 
@@ -170,15 +171,6 @@ def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> Re
     settings = settings.with_values(**values)
     settings.validate()
     return settings
-
-
-def count_text(count: int) -> str:
-    """A count with three digits: 950, 65.5 k, 8.39 M, 1.20 G."""
-    for power, unit in ((1e9, " G"), (1e6, " M"), (1e3, " k")):
-        if count >= power:
-            value = count / power
-            return f"{value:.{max(0, 3 - len(str(int(value))))}f}{unit}"
-    return str(count)
 
 
 def _write_frame(path: Path, frame: "Frame", camera: Camera, metadata: Mapping[str, object]) -> None:

@@ -23,6 +23,7 @@ from .guide import Guide, learns_after
 from .lamp_maps import LampMaps
 from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
+from .sources import SURFACES, SURROUNDINGS, source_name
 from .targets import caustic_targets
 
 log = logging.getLogger(__name__)
@@ -110,6 +111,8 @@ class Emission:
         self._guide = Guide(context, library)
         self._table = LIGHT.zeros(0)
         self._weights = np.zeros(0)
+        self._names: list[str] = []
+        self._powers: list[float] = []
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
@@ -136,6 +139,22 @@ class Emission:
             **self._guide.memory_bytes,
         }
 
+    @property
+    def source_watts(self) -> dict[str, float]:
+        """Power within the scene, the channels' mean, by source: lights (source_name), SURFACES and SURROUNDINGS."""
+        return self._by_source(self._powers)
+
+    @property
+    def source_photons(self) -> dict[str, int]:
+        """Photons of the current iteration by source."""
+        return self._by_source(self._table["photon_count"].tolist())
+
+    def _by_source(self, values: list) -> dict:
+        sums: dict[str, float] = {}
+        for name, value in zip(self._names, values):
+            sums[name] = sums.get(name, 0) + value
+        return sums
+
     def use_maps(self) -> None:
         """Bind the textures of programs that include emission/lights.glsl."""
         self.environment.use()
@@ -145,18 +164,27 @@ class Emission:
         """Values of LIGHT_PARAMETERS."""
         return {**self._parameters, "seed": seed, "iteration": iteration, "count": count}
 
-    def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
+    def build(
+        self,
+        scene: Scene,
+        geometry: Geometry,
+        materials: MaterialTables,
+        resolve: Resolve,
+        keep_world: bool = False,
+    ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        Raises SceneError when all lights have a photon share of 0.
+        keep_world: the world is that of the last call. Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
+        names: list[str] = []
         entries: list[np.ndarray] = []
         powers: list[float] = []
         weights: list[float] = []
 
-        def add(entry: np.ndarray, power: np.ndarray, share: float = 1.0) -> None:
+        def add(name: str, entry: np.ndarray, power: np.ndarray, share: float = 1.0) -> None:
             if np.isfinite(power).all() and np.max(power) > 0:
+                names.append(name)
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(share, 0.0))
@@ -171,15 +199,16 @@ class Emission:
                 if nodes.shape is not None:
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
-            add(entry, power, light.photon_share)
+            add(source_name(light.name), entry, power, light.photon_share)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = MESH, int(RayVisibility.ALL)
-        add(entry, self.emitters.power)
-        self.environment.build(scene.world, scene.images, materials)
+        add(SURFACES, entry, self.emitters.power)
+        if not keep_world:
+            self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = WORLD, int(RayVisibility.ALL)
-        add(entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
+        add(SURROUNDINGS, entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
         if not entries:
             # As in an animation whose lights go out: the picture is black, as Cycles' is.
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
@@ -187,6 +216,7 @@ class Emission:
         if sum(weights) <= 0:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
+        self._names, self._powers = names, powers
         self.photon_flux = sum(powers) / scene.settings.photons
         # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
         selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
@@ -196,9 +226,7 @@ class Emission:
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
         self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
-        self._share_photons(self._weights)
-        self._guide.build(table, scene.settings.photons)
-        self._lights.upload(table)
+        self.begin()
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
@@ -214,6 +242,12 @@ class Emission:
             "mesh_selection": float(selection[table["kind"] == MESH].sum()),
             "world_selection": float(selection[table["kind"] == WORLD].sum()),
         }
+
+    def begin(self) -> None:
+        """Forget what photons were good for, as before the first iteration."""
+        self._share_photons(self._weights)
+        self._guide.build(self._table, self._photons)
+        self._lights.upload(self._table)
 
     def _share_photons(self, weights: np.ndarray) -> None:
         counts = share_out(weights, self._photons)

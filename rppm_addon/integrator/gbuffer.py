@@ -10,15 +10,6 @@ from .importons import Importons
 from .records import CAMERA_VIEW
 from .stages import Stages
 
-MAXIMUM_BAND_PIXELS = 1 << 18
-"""Pixels of a band: bounds the memory of camera paths and the length of one dispatch."""
-
-
-def bands_of(width: int, height: int) -> list[tuple[int, int]]:
-    """First row and rows of each band of a width x height region."""
-    rows = max(1, min(height, MAXIMUM_BAND_PIXELS // width))
-    return [(first, min(rows, height - first)) for first in range(0, height, rows)]
-
 
 def filter_offsets(iteration: int, width: float, seed: int) -> tuple[float, float]:
     """Subpixel offset of an iteration (from 1), in pixels, by the density of a Blackman-Harris

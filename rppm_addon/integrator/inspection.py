@@ -7,9 +7,9 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..scene.camera import Camera
+from .bands import bands_of
 from .camera_view import camera_view
 from .deep_cubemap import DeepCubemap
-from .gbuffer import bands_of
 from .records import CAMERA_VIEW
 
 

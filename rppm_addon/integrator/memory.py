@@ -4,6 +4,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from .bands import bands_of
+from .records import CAMERA_PATH, CLOSURE, GATHERING_VERTEX, HIT, IMPORTON, PHOTON, PHOTON_PATH, RAY
+
 PPM_BUFFERS = ("film", "gathered radiance", "photons")
 """Running mean of radiance (16 R), sums of splats (48 bytes a pixel of one band of rows), photons (64 M L)."""
 
@@ -64,3 +67,43 @@ def reckon_memory(groups: Mapping[str, Mapping[str, int]], pixels: int, photons:
         group: {name: size for name, size in sizes.items() if name not in ppm} for group, sizes in groups.items()
     }
     return Memory(pixels, photons, segments, ppm, {group: sizes for group, sizes in working.items() if sizes})
+
+
+def expected_memory(width: int, height: int, photons: int, segments: int) -> Memory:
+    """The buffers whose size follows from the settings, known before anything is rendered.
+
+    What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
+    """
+    pixels, band = width * height, width * bands_of(width, height)[0][1]
+    groups = {
+        "photon paths": {
+            "photons": PHOTON.size * photons * segments,
+            "photon paths": PHOTON_PATH.size * photons,
+            "photon rays": RAY.size * photons,
+            "photon hits": HIT.size * photons,
+            "photon closures": CLOSURE.size * photons,
+        },
+        "camera paths": {
+            "camera rays": RAY.size * band,
+            "camera hits": HIT.size * band,
+            "camera paths": CAMERA_PATH.size * band,
+            "camera closures": CLOSURE.size * band,
+            "importons": IMPORTON.size * band,
+            "band radiance": 16 * band,
+        },
+        "direct light": {
+            "shadow rays": RAY.size * band,
+            "direct light": 16 * band,
+            "visibility": 4 * band,
+            "triangles of sampled lights": 4 * band,
+        },
+        "final gather": {"gathering vertices": GATHERING_VERTEX.size * band, "found radiance": 16 * band},
+        "splatting": {
+            "stored photons": 8 + 4 * photons * segments,
+            "splat core list": 4 * (band + 1),
+            "gathered radiance": 48 * band,
+            "diffused photons": 4 * band,
+        },
+        "passes": {"film": 16 * pixels, "film surface": 16 * pixels},
+    }
+    return reckon_memory(groups, pixels, photons, segments)

@@ -4,6 +4,7 @@
 import logging
 import math
 import time
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
+from .bands import bands_of
 from .bandwidth import (
     EXPECTED_BY_RAY,
     EXPECTED_PHOTONS,
@@ -25,12 +27,13 @@ from .bandwidth import (
     widest_radius,
 )
 from .camera_view import camera_view, is_rasterized
+from .changes import Changes, changes_between, snapshot
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
 from .final_gather import FinalGather
-from .gbuffer import GBuffer, bands_of, filter_offsets
+from .gbuffer import GBuffer, filter_offsets
 from .geometry import Geometry
 from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
@@ -63,6 +66,10 @@ class ProgressivePhotonMapper:
         self._resolve = Resolve(context, library)
         self.iteration = 0
         self.build_seconds = 0.0
+        self._built: Scene | None = None
+        """What stands on the device; None is nothing that a change could be told from."""
+        self._warnings: list[str] = []
+        self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
         self._wide_radius = 0.0
         self._diffused_photons: list[np.ndarray] = []
@@ -72,27 +79,70 @@ class ProgressivePhotonMapper:
 
         Raises SettingsError, SceneError or DeviceError, each with its remedy.
         """
+        self._built = None
+        self.update(scene)
+
+    def update(self, scene: Scene, keep_centre: bool = False) -> None:
+        """Take another scene like build, but build only what rests on members that are not the very objects of the
+        scene before; so nobody may change those.
+
+        keep_centre: leave the deep cubemap where it is though the camera has moved, which changes no picture. Raises
+        as build does; what is built then is built anew the next time.
+        """
         start = time.perf_counter()
         settings = scene.settings
-        self._gather(scene)
-        self._resolve.build(scene, self._geometry, self._materials)
-        self._emission.build(scene, self._geometry, self._materials, self._resolve)
-        with self.timers.stage("deep cubemap"):
-            self._build_deep_cubemap()
-        width, height = scene.camera.resolution
+        settings.validate()
+        changes = changes_between(self._built, scene)
+        self._built = None
+        self._restart(scene)
+        known = list(scene.warnings)
+        if changes.materials:
+            self._materials.build(scene)
+        if changes.geometry:
+            self._geometry.build(scene, self._materials.default_material)
+        if changes.geometry or changes.materials:
+            self._resolve.build(scene, self._geometry, self._materials)
+        self._resolve.look_from(scene.camera, settings.seed)
+        if changes.geometry or changes.materials or changes.lights:
+            self._emission.build(scene, self._geometry, self._materials, self._resolve, not changes.world)
+        else:
+            self._emission.begin()
+        wanted = next(cubemap_centres(scene, self._geometry))
+        moved = not keep_centre and not np.array_equal(wanted, self._wanted_centre)
+        if changes.geometry or changes.cubemap or moved:
+            with self.timers.stage("deep cubemap"):
+                self._build_deep_cubemap()
+        self._keep_warnings(scene, known, changes)
+        self._open_views()
+        self._built = snapshot(scene)
+        self.build_seconds = time.perf_counter() - start
+
+    def _keep_warnings(self, scene: Scene, known: list[str], changes: Changes) -> None:
+        """What was said of parts that stay as they are holds for the new scene as well."""
+        said = [text for text in scene.warnings if text not in known]
+        if not (changes.geometry or changes.materials or changes.lights):
+            for text in self._warnings:
+                scene.warn(text)
+        else:
+            self._warnings = said
+
+    def _open_views(self) -> None:
+        """What the camera's side of an iteration needs, for the scene's camera and settings."""
+        camera, settings = self.scene.camera, self.scene.settings
+        width, height = camera.resolution
         self._bands = bands_of(width, height)
         rows = self._bands[0][1]
         self._photons = Photons(self.context, self._library, settings.photons, settings.photon_path_length)
         self._gbuffer = (
             GBuffer(self.context, self._library, width, rows)
-            if is_rasterized(scene.camera)
+            if is_rasterized(camera)
             else PrimaryRays(self.context, self._library)
         )
         self._importons = Importons(self.context, self._library, width * rows)
         self._splatting = Splatting(self.context, self._library, width, rows)
         self._direct_light = DirectLight(self.context, self._library, width * rows)
         self._final_gather = FinalGather(self.context, self._library, width * rows)
-        self._shadow_catcher = ShadowCatcher(self.context, self._library, width * rows, scene)
+        self._shadow_catcher = ShadowCatcher(self.context, self._library, width * rows, self.scene)
         self.film = Film(self.context, self._library, width, height)
         self._views = [
             self._photons,
@@ -107,25 +157,23 @@ class ProgressivePhotonMapper:
         self._stages = Stages(
             settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
         )
-        self._radius_scale = radius_in_pixels(settings, scene.camera)
+        self._radius_scale = radius_in_pixels(settings, camera)
         footprints = self._first_footprints()
         self._leaves_importon = footprints > 0
         self._limits = radius_limits(settings, footprints, self._geometry.radius)
         self._widest_radius = widest_radius(footprints, self._geometry.bounds_low, self._geometry.bounds_high)
-        self.build_seconds = time.perf_counter() - start
 
-    def _gather(self, scene: Scene) -> None:
-        scene.settings.validate()
+    def _restart(self, scene: Scene) -> None:
+        """Forget the picture: iterations begin anew with a scene."""
         self._release_views()
         self.iteration = 0
         self._diffused_photons = []
         self._wide_radius = 0.0
         self.scene = scene
-        self._materials.build(scene)
-        self._geometry.build(scene, self._materials.default_material)
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
+        self._wanted_centre = next(cubemap_centres(self.scene, self._geometry))
         for centre in cubemap_centres(self.scene, self._geometry):
             self.centre = centre
             self._deep_cubemap.build(
@@ -140,25 +188,39 @@ class ProgressivePhotonMapper:
 
     def iterate(self) -> None:
         """One iteration of Algorithm 1."""
+        for _ in self.steps():
+            pass
+
+    def steps(self) -> Iterator[None]:
+        """One iteration in steps, for whoever has something to do between them.
+
+        An iteration that is not run to its end leaves the film unfinished: go on with update or build.
+        """
         self.iteration += 1
         self._trace_photons()
+        yield
         for first_row, rows in self._bands:
             self._direct_camera_hits(first_row, rows)
+            yield
             for segment in range(self.scene.settings.camera_path_length):
                 self._trace_importons(segment)
+                yield
                 self._catch_shadows(segment)
                 self._add_direct_light(segment)
+                yield
                 self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits)
                 # Photons are projected onto the camera's view only where it is a raster.
                 if segment == 0 and self._gbuffer.rasterizes:
                     self._direct_splatting()
                 else:
                     self._indirect_splatting(segment)
+                yield
             if self._gathers:
                 self._share_gathered_light()
             self._update_film()
             if self._splatting.counting:
                 self._diffused_photons.append(self._splatting.diffused_photons(self._count))
+        yield
 
     @property
     def _gathers(self) -> bool:
@@ -176,6 +238,16 @@ class ProgressivePhotonMapper:
     @property
     def photons_emitted(self) -> int:
         return self.iteration * self.scene.settings.photons
+
+    @property
+    def source_watts(self) -> dict[str, float]:
+        """Power by light source (Emission.source_watts)."""
+        return self._emission.source_watts
+
+    @property
+    def source_photons(self) -> dict[str, int]:
+        """Photons of the current iteration by light source."""
+        return self._emission.source_photons
 
     @property
     def triangle_count(self) -> int:
@@ -222,7 +294,11 @@ class ProgressivePhotonMapper:
 
     def build_deep_cubemap(self, scene: Scene) -> None:
         """Take a scene and build what rays need, to be looked at: nothing can be rendered. Raises as build does."""
-        self._gather(scene)
+        scene.settings.validate()
+        self._built = None
+        self._restart(scene)
+        self._materials.build(scene)
+        self._geometry.build(scene, self._materials.default_material)
         self._build_deep_cubemap()
 
     def inspect_deep_cubemap(self) -> np.ndarray:

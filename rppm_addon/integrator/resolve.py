@@ -11,6 +11,7 @@ from ..gl.records import Record
 from ..gl.sources import CompileError
 from ..materials.compiler import NEUTRAL_TEXT
 from ..materials.tables import MaterialTables, first_line
+from ..scene.camera import Camera
 from ..scene.scene import Scene
 from .geometry import Geometry
 from .records import CAMERA_PATH, PHOTON_PATH
@@ -61,6 +62,7 @@ class Resolve:
 
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
         """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
+        What the camera tells nodes follows by look_from.
 
         A program that the driver refuses is replaced by that of a grey surface, with a warning in scene.warnings.
         Raises DeviceError when the device cannot hold the attributes.
@@ -73,13 +75,15 @@ class Resolve:
             **self._surface_attributes.buffers,
             **materials.buffers,
         }
-        camera = scene.camera
+
+    def look_from(self, camera: Camera, seed: int) -> None:
+        """Take the camera that nodes may ask about, and the seed of random choices."""
         self._parameters = {
             "world_to_camera": np.linalg.inv(camera.matrix),
             "window": camera.window,
             "orthographic": camera.orthographic,
             "pixel_size": camera.pixel_size,
-            "seed": scene.settings.seed,
+            "seed": seed,
             "attribute_count": self._surface_attributes.count,
             "camera_stride": CAMERA_PATH.size // 4,
             "camera_flags": CAMERA_PATH.offset("flags") // 4,

@@ -40,7 +40,7 @@ def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
     found, pending = [], [(graph.surface, 1.0)]
     while pending:
         link, weight = pending.pop()
-        if not isinstance(link, Link) or weight < _LEAST:
+        if not isinstance(link, Link) or weight < _LEAST or not 0 <= link.node < len(graph.nodes):
             continue
         node = graph.nodes[link.node]
         shaders = node.inputs.get("shader"), node.inputs.get("shader_001")

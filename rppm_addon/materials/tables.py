@@ -64,6 +64,7 @@ class MaterialTables:
         self.users: dict[str, list[str]] = {}
         """By text, the names of the materials that it belongs to."""
         self._others: dict[int, tuple[str, int, str]] = {}
+        self._images: list[Image] = []
         self._scene: Scene | None = None
 
     @property
@@ -109,13 +110,21 @@ class MaterialTables:
                 self._others[id(graph)] = compiled_graph.text, layout.add(graph, compiled_graph), owner
         self.attribute_names = list(layout.attributes)
         self._buffers["MaterialData"].upload(layout.data())
-        entries, texels = layout.images()
-        self._buffers["Images"].upload(entries)
-        self._buffers["Texels"].upload(texels)
+        self._upload_images(layout.images())
         for record, interior in zip(records, interiors, strict=True):
             if interior is not None:
                 record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
         self._buffers["Materials"].upload(records)
+
+    def _upload_images(self, images: list[Image]) -> None:
+        """Those that are the very objects of the last build are there. Whoever changes an image gives a new one."""
+        if len(images) == len(self._images) and all(new is old for new, old in zip(images, self._images, strict=True)):
+            return
+        self._images = []  # should an upload fail
+        entries, texels = _image_records(images)
+        self._buffers["Images"].upload(entries)
+        self._buffers["Texels"].upload(texels)
+        self._images = images
 
     def _compile(self, graph: NodeGraph, owner: str, remedy: str) -> tuple[CompiledGraph, Emits]:
         try:
@@ -195,19 +204,22 @@ class _Layout:
             self._numbers[place] = float(starts[table])
         return np.concatenate([np.array(self._numbers or [0.0], np.float32), *self._tables]).astype(np.float32)
 
-    def images(self) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) IMAGE_ENTRY records of the images in use, and (m,) uint32, their texels one after the other; an image
-        that is missing is magenta."""
-        entries = IMAGE_ENTRY.zeros(max(1, len(self._used)))
-        texels, first = [], 0
-        for entry, index in zip(entries, self._used, strict=False):
-            image = _MISSING if index < 0 else self._images[index]
-            data, kind = _texels(image)
-            height, width = image.pixels.shape[:2]
-            entry["first_texel"], entry["width"], entry["height"], entry["format"] = first, width, height, kind
-            texels.append(data)
-            first += len(data)
-        return entries, np.concatenate(texels) if texels else np.zeros(1, np.uint32)
+    def images(self) -> list[Image]:
+        """The images in use, at least one; one that is missing is magenta."""
+        return [_MISSING if index < 0 else self._images[index] for index in self._used] or [_MISSING]
+
+
+def _image_records(images: list[Image]) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) IMAGE_ENTRY records, and (m,) uint32, the images' texels one after the other."""
+    entries = IMAGE_ENTRY.zeros(len(images))
+    texels, first = [], 0
+    for entry, image in zip(entries, images, strict=True):
+        data, kind = _texels(image)
+        height, width = image.pixels.shape[:2]
+        entry["first_texel"], entry["width"], entry["height"], entry["format"] = first, width, height, kind
+        texels.append(data)
+        first += len(data)
+    return entries, np.concatenate(texels)
 
 
 _MISSING = Image("missing", np.array([[[255, 0, 255, 255]]], np.uint8), "LINEAR")

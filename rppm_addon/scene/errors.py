@@ -16,3 +16,7 @@ class SettingsError(RppmError):
 
 class DeviceError(RppmError):
     """The graphics device or its driver cannot do what is asked."""
+
+
+class RendererError(RppmError):
+    """The renderer's process has failed."""

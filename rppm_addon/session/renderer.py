@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the photon mapper on a scene and reports how it goes."""
 
-import dataclasses
 import logging
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -15,79 +13,123 @@ from ..integrator.film import Film
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..scene.scene import Scene
+from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
 
 log = logging.getLogger(__name__)
 
 
-@dataclass
-class Frame:
-    """A picture: arrays with row 0 at the bottom."""
-
-    combined: np.ndarray
-    """(height, width, 4) float32 scene-linear Rec.709, premultiplied alpha."""
-    depth: np.ndarray
-    """(height, width) float32, metres along the view axis; 1e10 where nothing is hit."""
-    normal: np.ndarray
-    """(height, width, 3) float32 world-space shading normals; 0 where nothing is hit."""
-    deep_cubemap: np.ndarray | None = None
-    """(height, width, 3) float32: steps, triangle tests and list (scene.settings.CUBEMAP_COSTS); None
-    unless the setting deep_cubemap_pass asks for it."""
-
-
-@dataclass
-class Progress:
-    """How far a render is."""
-
-    iteration: int
-    iterations: int
-    elapsed_seconds: float
-    photons: int
-    time_limit: float = 0.0
-
-    @property
-    def fraction(self) -> float:
-        """Share done, 0 to 1, of the iterations or of the time limit, whichever is nearer its end."""
-        by_iterations = self.iteration / self.iterations
-        by_time = self.elapsed_seconds / self.time_limit if self.time_limit > 0 else 0.0
-        return min(1.0, max(by_iterations, by_time))
-
-
-@dataclass
-class RenderStatistics:
-    """Figures of a finished render."""
-
-    iterations: int
-    photons: int
-    seconds: float
-    build_seconds: float
-    device: str
-    triangles: int
-    radius_metres: float
-    stage_seconds: dict[str, float] = field(default_factory=dict)
-    memory_bytes: dict[str, int] = field(default_factory=dict)
-    flux_watts: dict[str, float] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
-
-    def as_dict(self) -> dict:
-        """Plain values for JSON."""
-        return dataclasses.asdict(self)
-
-
-@dataclass
-class RenderResult:
-    frame: Frame
-    statistics: RenderStatistics
-    stopped: bool
-    """Whether should_stop ended it before its iterations or time limit did."""
-
-
-def read_frame(film: Film, exposure: float, deep_cubemap: np.ndarray | None = None) -> Frame:
-    """The film's current picture."""
+def read_combined(film: Film, exposure: float) -> np.ndarray:
+    """The film's current picture, as Frame.combined."""
     combined = film.read_radiance()
     combined[..., :3] *= exposure
     combined[..., 3] = np.clip(combined[..., 3], 0.0, 1.0)
+    return combined
+
+
+def read_frame(film: Film, exposure: float, deep_cubemap: np.ndarray | None = None) -> Frame:
+    """The film's current picture and passes."""
     normal, depth = film.read_surface()
-    return Frame(combined, depth, normal, deep_cubemap)
+    return Frame(read_combined(film, exposure), depth, normal, deep_cubemap)
+
+
+class SlicedRender:
+    """One render in pieces that the device does in a bounded while, so that it can be shared and stopped."""
+
+    def __init__(
+        self,
+        context: Context,
+        mapper: ProgressivePhotonMapper,
+        scene: Scene,
+        on_progress: Callable[[Progress, Callable[[], Frame]], None] | None = None,
+        snapshots: Sequence[float] = (),
+        on_snapshot: Callable[[float, Frame], None] | None = None,
+    ) -> None:
+        """Arguments as those of Renderer.render. Nothing is rendered yet, but time counts from now on."""
+        self._context = context
+        self._mapper = mapper
+        self._scene = scene
+        self._on_progress = on_progress
+        self._pending = list(snapshots)
+        self._on_snapshot = on_snapshot
+        self._start = time.perf_counter()
+        self._inspection: np.ndarray | None = None
+        self.iterations = 0
+        """Those that are complete."""
+        self.between_iterations = False
+        """Whether the photons and the film are those of a complete iteration, or of none."""
+
+    def slices(self) -> Iterator[None]:
+        """Render until the settings' iterations or time limit are reached. Raises the errors of scene/errors.py."""
+        mapper, settings = self._mapper, self._scene.settings
+        mapper.timers.reset()
+        mapper.build(self._scene)
+        if settings.deep_cubemap_pass:
+            self._inspection = mapper.inspect_deep_cubemap()[..., :3]
+        self.between_iterations = True
+        self._report()
+        while True:
+            yield
+            self.between_iterations = False
+            yield from mapper.steps()
+            self._context.finish()
+            self.iterations += 1
+            self.between_iterations = True
+            self._report()
+            self._take_snapshots()
+            if self.iterations >= settings.iterations or 0.0 < settings.time_limit <= self._elapsed:
+                return
+
+    @property
+    def _elapsed(self) -> float:
+        return time.perf_counter() - self._start
+
+    def _report(self) -> None:
+        if self._on_progress is not None:
+            self._on_progress(self.progress, self.frame)
+
+    def _take_snapshots(self) -> None:
+        while self._pending and self._elapsed >= self._pending[0]:
+            mark = self._pending.pop(0)
+            if self._on_snapshot is not None:
+                self._on_snapshot(mark, self.frame())
+
+    @property
+    def progress(self) -> Progress:
+        settings = self._scene.settings
+        photons = self.iterations * settings.photons
+        return Progress(self.iterations, settings.iterations, self._elapsed, photons, settings.time_limit)
+
+    def frame(self) -> Frame:
+        """The picture so far."""
+        return read_frame(self._mapper.film, self._scene.exposure, self._inspection)
+
+    def result(self, stopped: bool) -> RenderResult:
+        """The picture and the figures; ``stopped`` says whether slices() was left before its end."""
+        if self.iterations == 0:
+            return empty_result(self._scene, self._context.information.name)
+        mapper, seconds, warnings = self._mapper, self._elapsed, list(self._scene.warnings)
+        balance = {}
+        if self.between_iterations:
+            balance = mapper.flux_balance()
+            emitted = max(balance["emitted"], 1e-30)
+            if abs(balance["lost"]) > 1e-4 * emitted:
+                warnings.append(f"{balance['lost'] / emitted:.2%} of the photons' flux was lost in tracing")
+        statistics = RenderStatistics(
+            iterations=self.iterations,
+            photons=self.progress.photons,
+            seconds=seconds,
+            build_seconds=mapper.build_seconds,
+            device=self._context.information.name,
+            triangles=mapper.triangle_count,
+            radius_metres=mapper.splat_radii[0],
+            stage_seconds=mapper.timers.seconds,
+            memory_bytes=mapper.memory_bytes,
+            flux_watts=balance,
+            source_watts=mapper.source_watts,
+            source_photons=mapper.source_photons,
+            warnings=warnings,
+        )
+        return RenderResult(self.frame(), statistics, stopped)
 
 
 class Renderer:
@@ -136,66 +178,13 @@ class Renderer:
         snapshots: Sequence[float],
         on_snapshot: Callable[[float, Frame], None] | None,
     ) -> RenderResult:
-        start = time.perf_counter()
-        settings = scene.settings
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
-        mapper = self._mapper
-        mapper.timers.reset()
-        mapper.build(scene)
-        inspection = mapper.inspect_deep_cubemap()[..., :3] if settings.deep_cubemap_pass else None
-        pending = list(snapshots)
-        stopped = False
-
-        def frame() -> Frame:
-            return read_frame(mapper.film, scene.exposure, inspection)
-
-        def elapsed() -> float:
-            return time.perf_counter() - start
-
-        def report() -> None:
-            if on_progress is not None:
-                on_progress(
-                    Progress(
-                        mapper.iteration, settings.iterations, elapsed(), mapper.photons_emitted, settings.time_limit
-                    ),
-                    frame,
-                )
-
-        report()
-        while mapper.iteration < settings.iterations:
-            mapper.iterate()
-            self._context.finish()
-            report()
-            while pending and elapsed() >= pending[0]:
-                mark = pending.pop(0)
-                if on_snapshot is not None:
-                    on_snapshot(mark, frame())
-            if settings.time_limit > 0 and elapsed() >= settings.time_limit:
-                break
-            if should_stop is not None and mapper.iteration < settings.iterations and should_stop():
-                stopped = True
-                break
-        seconds = elapsed()
-        balance = mapper.flux_balance()
-        emitted = max(balance["emitted"], 1e-30)
-        warnings = list(scene.warnings)
-        if abs(balance["lost"]) > 1e-4 * emitted:
-            warnings.append(f"{balance['lost'] / emitted:.2%} of the photons' flux was lost in tracing")
-        statistics = RenderStatistics(
-            iterations=mapper.iteration,
-            photons=mapper.photons_emitted,
-            seconds=seconds,
-            build_seconds=mapper.build_seconds,
-            device=self.device.name,
-            triangles=mapper.triangle_count,
-            radius_metres=mapper.splat_radii[0],
-            stage_seconds=mapper.timers.seconds,
-            memory_bytes=mapper.memory_bytes,
-            flux_watts=balance,
-            warnings=warnings,
-        )
-        return RenderResult(frame(), statistics, stopped)
+        render = SlicedRender(self._context, self._mapper, scene, on_progress, snapshots, on_snapshot)
+        for _ in render.slices():
+            if should_stop is not None and render.between_iterations and render.iterations > 0 and should_stop():
+                return render.result(stopped=True)
+        return render.result(stopped=False)
 
     def inspect(self, scene: Scene) -> tuple[np.ndarray, dict[str, int], dict[str, int]]:
         """What the camera's rays cost in the scene's deep cubemap, without rendering.

@@ -7,20 +7,18 @@ import bpy
 import pytest
 from blender_scenes import export
 
+from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.scene import DirectLight, RenderSettings
 
 ELSEWHERE = {"film_transparent"}  # a property that Blender itself has
+# an object of Blender's, exported as a point, and what viewports have apart
+BESIDES = {"cubemap_centre_object", "viewport_iterations", "viewport_photons", "viewport_paused"}
 
 
 def test_properties_are_the_settings_with_their_defaults(scene):
     names = {field.name for field in dataclasses.fields(RenderSettings)}
-    # an object of Blender's, exported as a point
-    properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {
-        "rna_type",
-        "name",
-        "cubemap_centre_object",
-    }
-    assert properties == names - ELSEWHERE
+    properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
+    assert properties == (names - ELSEWHERE) | BESIDES
     found, expected = export(scene).settings, RenderSettings()
     for name in names:
         assert getattr(found, name) == pytest.approx(getattr(expected, name)) if name == "alpha" else True
@@ -52,12 +50,27 @@ def test_values_are_exported(scene):
     assert settings.film_transparent and exported.exposure == 2.5
 
 
+def test_a_viewport_has_settings_of_its_own(scene):
+    settings, default = export_settings(scene, viewport=True), RenderSettings()
+    # A viewport at rest sees as many photons as a final render.
+    assert settings.iterations * settings.photons == default.iterations * default.photons
+    assert settings.photons < default.photons
+    scene.rppm.time_limit, scene.rppm.deep_cubemap_pass, scene.rppm.alpha = 5.0, True, 0.5
+    scene.rppm.viewport_iterations, scene.rppm.viewport_photons = 3, 77
+    viewport, final = export_settings(scene, viewport=True), export_settings(scene)
+    assert (viewport.iterations, viewport.photons, viewport.time_limit) == (3, 77, 0.0)
+    assert not viewport.deep_cubemap_pass
+    assert (final.iterations, final.photons, final.time_limit) == (default.iterations, default.photons, 5.0)
+    differing = {f.name for f in dataclasses.fields(final) if getattr(final, f.name) != getattr(viewport, f.name)}
+    assert differing == {"iterations", "photons", "time_limit", "deep_cubemap_pass"}
+
+
 def test_the_ranges_of_the_properties_are_valid_settings(scene):
     for item in scene.rppm.bl_rna.properties:
         if item.type in {"INT", "FLOAT"} and item.identifier != "cubemap_resolution":
             for value in (item.hard_min, min(item.hard_max, 1e9)):
                 kind = int if item.type == "INT" else float
-                settings = RenderSettings(**{item.identifier: kind(value)})
+                settings = RenderSettings(**{item.identifier.removeprefix("viewport_"): kind(value)})
                 if item.identifier == "radius_minimum":
                     settings.radius_maximum = 0.0
                 settings.validate()

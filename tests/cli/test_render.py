@@ -8,11 +8,12 @@ import time
 import numpy as np
 import PIL.Image
 import pytest
+from floor import floor_scene
 
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene import load_scene
 
-from .conftest import floor_scene, start_rppm
+from .conftest import start_rppm
 
 
 def expected_radiance(x, y):

@@ -6,7 +6,8 @@ import dataclasses
 import pytest
 import scenes
 
-from rppm_addon.integrator.gbuffer import MAXIMUM_BAND_PIXELS
+from rppm_addon.integrator.bands import MAXIMUM_BAND_PIXELS
+from rppm_addon.integrator.memory import expected_memory
 
 SETTINGS = {"photons": 3000, "photon_path_length": 5, "camera_path_length": 2, "iterations": 1}
 
@@ -49,3 +50,15 @@ def test_buffers_of_the_camera_have_the_size_of_a_band(renderer):
     assert two.ppm["film"] == 2 * one.ppm["film"]
     assert {**two.ppm, "film": 0} == {**one.ppm, "film": 0}
     assert {**two.working, "passes": 0} == {**one.working, "passes": 0}
+
+
+@pytest.mark.parametrize(("width", "height"), [(16, 16), (2048, 200)])
+def test_what_the_settings_alone_take_is_known_beforehand(renderer, width, height):
+    scene = scenes.room(16, **SETTINGS)
+    scene = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, width=width, height=height))
+    memory, expected = renderer.memory(scene), expected_memory(width, height, 3000, 5)
+    assert expected.ppm == memory.ppm and expected.paper_bytes == memory.paper_bytes
+    for group, sizes in expected.working.items():
+        assert sizes == {name: memory.working[group][name] for name in sizes}
+        # Nothing but what depends on the scene or the camera's kind is left out.
+        assert set(memory.working[group]) - set(sizes) <= {"visibility buffer", "splat jobs", "splat cubemap"}

@@ -140,7 +140,7 @@ def _material(case: Case) -> bpy.types.Material:
         is_float = case.kind.outputs[name] is FLOAT
         aov.aov_name = f"{'float' if is_float else 'vector'}_{index}"
         tree.links.new(_socket(node.outputs, case, name), aov.inputs["Value" if is_float else "Color"])
-    exporter = GraphExporter(case.name, Report(), ImageTable(1))
+    exporter = GraphExporter(case.name, Report(), ImageTable())
     link = exporter.value(aov.inputs["Value" if is_float else "Color"], ())
     case.exported = exporter.graph.nodes[link.node]
     case.idle = {

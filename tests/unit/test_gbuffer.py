@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
+from rppm_addon.integrator.bands import MAXIMUM_BAND_PIXELS, bands_of
 from rppm_addon.integrator.camera_view import camera_view
-from rppm_addon.integrator.gbuffer import MAXIMUM_BAND_PIXELS, bands_of, filter_offsets
+from rppm_addon.integrator.gbuffer import filter_offsets
 from rppm_addon.integrator.photons import flux_balance
 from rppm_addon.integrator.records import PHOTON, PHOTON_ACTIVE, PHOTON_ESCAPED
 from rppm_addon.scene import Camera

@@ -11,10 +11,12 @@ from .camera import export_camera
 from .images import ImageTable
 from .objects import ObjectExporter
 from .report import ExportStopped, Report
-from .settings import export_cubemap_centre, export_settings
+from .settings import export_cubemap_centre, export_exposure, export_settings
+from .sync import SceneSync
+from .view import export_view
 from .world import export_world
 
-__all__ = ["ExportStopped", "SceneError", "export_scene"]
+__all__ = ["ExportStopped", "SceneError", "SceneSync", "export_scene", "export_view"]
 
 
 def export_scene(
@@ -38,16 +40,22 @@ def export_scene(
     report = Report(stop, show)
     report.progress("Exporting the scene")
     source = depsgraph.scene_eval
-    images = ImageTable(source.frame_current)
+    images = ImageTable()
+    images.frame = source.frame_current
     scene = Scene(camera=export_camera(source, depsgraph, report))
     scene.settings = export_settings(source)
     scene.settings.validate()
     scene.cubemap_centre = export_cubemap_centre(depsgraph)
-    if hasattr(source, "cycles"):
-        scene.exposure = source.cycles.film_exposure
-    ObjectExporter(scene, report, images).export(depsgraph)
+    scene.exposure = export_exposure(source)
+    objects = ObjectExporter(report, images)
+    placed = objects.export(depsgraph)
+    scene.meshes, scene.instances, scene.materials = (
+        objects.meshes.meshes,
+        placed.instances,
+        objects.materials.materials,
+    )
     scene.world, suns = export_world(source.world, report, images)
-    scene.lights += suns
+    scene.lights = placed.lights + suns
     scene.images = images.images
     scene.warnings = report.warnings
     return scene

@@ -68,10 +68,13 @@ def frame_shape(render: bpy.types.RenderSettings, width: int, height: int) -> tu
     return float(width), height * render.pixel_aspect_y / render.pixel_aspect_x
 
 
-def window(camera: bpy.types.Camera, across: float, upward: float) -> tuple[float, float, float, float]:
+def window(
+    camera: bpy.types.Camera, across: float, upward: float, flat: bool = False
+) -> tuple[float, float, float, float]:
     """left, right, bottom, top: tangents for a perspective camera, metres for an orthographic one, shares of a
-    panorama's frame, which is ``across`` by ``upward`` pixel widths."""
-    if camera.type == "PANO":
+    panorama's frame, which is ``across`` by ``upward`` pixel widths. flat: of a panorama, those of the perspective
+    view that Blender draws of it."""
+    if camera.type == "PANO" and not flat:
         return camera.shift_x, camera.shift_x + 1.0, camera.shift_y, camera.shift_y + 1.0
     fit = camera.sensor_fit
     if fit == "AUTO":

@@ -21,9 +21,12 @@ _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"
 class ImageTable:
     """The images of a scene under export, at a frame of the scene."""
 
-    def __init__(self, frame: int) -> None:
+    def __init__(self) -> None:
         self.images: list[Image] = []
-        self._frame = frame
+        self.frame = 1
+        """Of the scene, whose sequences and movies are shown."""
+        self.frames = 0
+        """How often an image was asked for that depends on the frame."""
         self._indices: dict[tuple, int] = {}
 
     def of_node(self, node: bpy.types.Node, exporter: "GraphExporter") -> int:
@@ -34,9 +37,10 @@ class ImageTable:
             return MISSING
         if image.source not in {"SEQUENCE", "MOVIE"}:
             return self._index((image.as_pointer(),), lambda: image, image, node, exporter)
-        frame = frame_of(node.image_user, self._frame)
+        self.frames += 1
+        number = frame_of(node.image_user, self.frame)
         load = _of_movie if image.source == "MOVIE" else _of_sequence
-        return self._index((image.as_pointer(), frame), lambda: load(image, frame), image, node, exporter)
+        return self._index((image.as_pointer(), number), lambda: load(image, number), image, node, exporter)
 
     def add(self, image: Image) -> int:
         """Index of an image that belongs to no datablock."""

@@ -13,7 +13,7 @@ from .report import Report
 
 
 class MaterialTable:
-    """The materials of a scene under export, each exported once."""
+    """The materials of a scene under export, each exported once and as long as it does not change."""
 
     def __init__(self, report: Report, images: ImageTable) -> None:
         self.materials: list[Material] = []
@@ -21,21 +21,44 @@ class MaterialTable:
         """Of each material, the names of the attributes that its nodes read."""
         self._report = report
         self._images = images
-        self._indices: dict[int, int] = {}
+        self._places: dict[int, int] = {}
+        self._of_frame: set[int] = set()
 
     def index(self, material: bpy.types.Material | None) -> int:
         """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
-        # Not session_uid: Blender gives evaluated copies none.
-        key = 0 if material is None else material.as_pointer()
-        if key not in self._indices:
+        # Blender gives evaluated copies no session_uid.
+        key = 0 if material is None else material.original.session_uid
+        if key not in self._places:
+            self._places[key] = len(self.materials)
+            self.materials.append(Material(""))
+            self.attributes.append(set())
+            self._export(key, material)
+        return self._places[key]
+
+    def renew(self, material: bpy.types.Material) -> bool:
+        """Export a material that has changed again, if it is in use. Returns whether meshes need other attributes."""
+        key = material.original.session_uid
+        if key not in self._places:
+            return False
+        before = self.attributes[self._places[key]]
+        self._export(key, material)
+        return self.attributes[self._places[key]] != before
+
+    def shows_frames(self, material: bpy.types.Material) -> bool:
+        """Whether a material has images that depend on the frame."""
+        return material.original.session_uid in self._of_frame
+
+    def _export(self, key: int, material: bpy.types.Material | None) -> None:
+        frames = self._images.frames
+        with self._report.about(("material", key)):
             if material is None:
                 exported = Material("Default", default_surface())
             else:
                 exported = export_material(material, self._report, self._images)
-            self._indices[key] = len(self.materials)
-            self.materials.append(exported)
-            self.attributes.append({node.attribute for node in exported.graph.nodes} - {"", NO_ATTRIBUTE})
-        return self._indices[key]
+        (self._of_frame.add if self._images.frames > frames else self._of_frame.discard)(key)
+        place = self._places[key]
+        self.materials[place] = exported
+        self.attributes[place] = {node.attribute for node in exported.graph.nodes} - {"", NO_ATTRIBUTE}
 
 
 def default_surface() -> NodeGraph:

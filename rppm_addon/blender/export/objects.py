@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The objects of a depsgraph, instances included: meshes, placements and lights."""
 
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
 import bpy
 import numpy as np
 
-from ...scene import Instance, Mesh, RayVisibility, Scene
-from .attributes import add_attributes, attribute_of
+from ...scene import Instance, Light, RayVisibility
+from .attributes import attribute_of
 from .hashing import hashed
 from .images import ImageTable
 from .lights import export_light
 from .materials import MaterialTable
 from .matrices import usable_matrices
-from .meshes import export_mesh
+from .mesh_table import MeshTable
 from .particles import particle_of
 from .report import Report
 from .visibility import visibility_of
@@ -22,77 +25,68 @@ UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOL
 
 
 class ObjectExporter:
-    """Fills a scene's meshes, instances, materials and lights from a depsgraph."""
+    """Reads a depsgraph's objects; meshes and materials that it knows are not exported again."""
 
-    def __init__(self, scene: Scene, report: Report, images: ImageTable) -> None:
-        self._scene = scene
+    def __init__(self, report: Report, images: ImageTable) -> None:
+        self.materials = MaterialTable(report, images)
+        self.meshes = MeshTable(report)
         self._report = report
         self._images = images
-        self._materials = MaterialTable(report, images)
-        self._meshes: dict[int, int | None] = {}
-        self._placed: list[tuple[Instance, np.ndarray]] = []
-        self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object]]] = []
         self._frame = 0.0
-        self._converted: set[tuple[int, bytes]] = set()
 
-    def export(self, depsgraph: bpy.types.Depsgraph) -> None:
-        """Read all instances; raises ExportStopped when the user wants no more."""
+    def export(
+        self, depsgraph: bpy.types.Depsgraph, shown: Callable[[bpy.types.Object], bool] | None = None
+    ) -> "Placed":
+        """All instances and lights. shown: which of the original objects are to be seen, all if None.
+
+        Raises ExportStopped when the user wants no more.
+        """
         self._frame = depsgraph.scene_eval.frame_current_final
-        for number, instance in enumerate(depsgraph.object_instances):
-            if number % 256 == 0:
-                self._report.progress(f"Exporting objects ({number})")
-            # Only valid inside the loop: Blender reuses the memory for the next instance.
-            if instance.show_self:
-                self._export_instance(instance, instance.object, np.array(instance.matrix_world, np.float64))
-        self._convert(depsgraph)
-        self._keep_usable()
-        self._scene.materials = self._materials.materials
+        self.meshes.begin_pass()
+        with self._report.about("objects"):
+            placed = _Pass(self, depsgraph, shown).run()
+        self.meshes.end_pass()
+        return placed
 
-    def _export_instance(
-        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
-    ) -> None:
-        if source.type == "LIGHT":
-            if not np.isfinite(matrix).all():
-                self._report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
-                return
-            light = export_light(source, matrix, self._report, self._images)
-            if light is not None:
-                self._scene.lights.append(light)
-            return
-        if source.type in UNSUPPORTED_TYPES:
-            what = UNSUPPORTED_TYPES[source.type]
-            self._report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
-            return
-        if source.type not in CONVERTED_TYPES and source.type != "MESH":
-            return
+    def instance(self, source: bpy.types.Object) -> Instance | None:
+        """The instance of a mesh object that stands for itself alone; None when it is not to be rendered."""
         visibility = visibility_of(source)
-        if not visibility:
-            return
-        if source.type != "MESH":
-            self._unconverted.append((source.original, matrix, self._shading(instance, source, visibility)))
-            return
-        if len(source.data.polygons) == 0:
-            return  # and its materials are not needed
-        original = source.original
-        if original.type in CONVERTED_TYPES:
-            self._converted.add((original.as_pointer(), matrix.tobytes()))
-        self._place(source, source.data, matrix, self._shading(instance, source, visibility))
+        if source.type != "MESH" or not visibility:
+            return None
+        matrices, usable = usable_matrices(np.array(source.matrix_world, np.float64)[None])
+        shading = self._shading(source, visibility)
+        index = self._mesh_index(source, source.data, shading, source.original.session_uid)
+        return _instance(index, source, matrices[0], shading) if usable[0] and index is not None else None
+
+    def light(self, source: bpy.types.Object, matrix: np.ndarray) -> Light | None:
+        """A light object placed by a matrix (4, 4); None when it gives no light."""
+        if not np.isfinite(matrix).all():
+            self._report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
+            return None
+        return export_light(source, matrix, self._report, self._images)
 
     def _shading(
-        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, visibility: RayVisibility
+        self,
+        source: bpy.types.Object,
+        visibility: RayVisibility,
+        instance: bpy.types.DepsgraphObjectInstance | None = None,
     ) -> dict[str, object]:
-        """Materials of an instance and what their nodes may ask about it: members of scene.Instance."""
+        """Materials of an instance and what their nodes may ask about it: members of scene.Instance.
+
+        instance: None for an object that stands for itself.
+        """
         materials = self._material_slots(source)
+        multiplied = instance is not None and instance.is_instance
         members: dict[str, object] = {
             "materials": materials,
             "color": tuple(source.color),
-            "random": _random(instance, source),
-            "particle": particle_of(instance, self._frame),
+            "random": (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF if multiplied else _random(source),
+            "particle": particle_of(instance, self._frame) if multiplied else None,
             "visibility": visibility,
             "holdout": source.is_holdout,
             "shadow_catcher": source.is_shadow_catcher,
         }
-        instancer = instance.parent if instance.is_instance else None
+        instancer = instance.parent if multiplied else None
         values: dict[str, tuple[float, ...]] = {}
         for name in self._attributes_of(materials):
             domain, _, path = name.partition(":")
@@ -106,17 +100,115 @@ class ObjectExporter:
 
     def _attributes_of(self, materials: list[int]) -> set[str]:
         """Names of the attributes that materials read."""
-        return {name for material in materials for name in self._materials.attributes[material]}
+        return {name for material in materials for name in self.materials.attributes[material]}
+
+    def _mesh_index(
+        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, shading: dict[str, object], owner: int
+    ) -> int | None:
+        return self.meshes.index(source, mesh, self._attributes_of(shading["materials"]), owner)
+
+    def _material_slots(self, source: bpy.types.Object) -> list[int]:
+        slots = [slot.material for slot in source.material_slots]
+        made = list(source.data.materials)
+        # Geometry nodes may give the evaluated data slots that the object does not have.
+        slots += made[len(slots) :]
+        return [self.materials.index(material) for material in slots or [None]]
+
+
+@dataclass
+class Placed:
+    """What a pass over a depsgraph found."""
+
+    instances: list[Instance] = field(default_factory=list)
+    lights: list[Light] = field(default_factory=list)
+    alone: dict[int, int] = field(default_factory=dict)
+    """By session_uid, the index of the only instance of each mesh object that multiplies nothing."""
+    lights_alone: dict[int, int] = field(default_factory=dict)
+    """By session_uid, the index of the only light of each light object."""
+
+
+class _Pass:
+    """One pass over the instances of a depsgraph."""
+
+    def __init__(
+        self,
+        exporter: ObjectExporter,
+        depsgraph: bpy.types.Depsgraph,
+        shown: Callable[[bpy.types.Object], bool] | None,
+    ) -> None:
+        self._exporter = exporter
+        self._report = exporter._report
+        self._depsgraph = depsgraph
+        self._shown = shown
+        self._placed: list[tuple[Instance, np.ndarray, int]] = []
+        self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object]]] = []
+        self._converted: set[tuple[int, bytes]] = set()
+        self._multiple: set[int] = set()
+        """Objects that are multiplied or multiply others."""
+        self._result = Placed()
+
+    def run(self) -> Placed:
+        for number, instance in enumerate(self._depsgraph.object_instances):
+            if number % 256 == 0:
+                self._report.progress(f"Exporting objects ({number})")
+            # Only valid inside the loop: Blender reuses the memory for the next instance.
+            source = instance.object
+            stands_for = instance.parent if instance.is_instance else source
+            if instance.is_instance:
+                self._multiple |= {source.original.session_uid, stands_for.original.session_uid}
+            if instance.show_self and (self._shown is None or self._shown(stands_for.original)):
+                self._export_instance(instance, source, stands_for, np.array(instance.matrix_world, np.float64))
+        self._convert()
+        self._keep_usable()
+        return self._result
+
+    def _export_instance(
+        self,
+        instance: bpy.types.DepsgraphObjectInstance,
+        source: bpy.types.Object,
+        owner: bpy.types.Object,
+        matrix: np.ndarray,
+    ) -> None:
+        if source.type == "LIGHT":
+            light = self._exporter.light(source, matrix)
+            if light is not None:
+                self._result.lights_alone[source.original.session_uid] = len(self._result.lights)
+                self._result.lights.append(light)
+            return
+        if source.type in UNSUPPORTED_TYPES:
+            what = UNSUPPORTED_TYPES[source.type]
+            self._report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
+            return
+        if source.type not in CONVERTED_TYPES and source.type != "MESH":
+            return
+        visibility = visibility_of(source)
+        if not visibility:
+            return
+        if source.type == "MESH" and len(source.data.polygons) == 0:
+            return  # and its materials are not needed
+        shading = self._exporter._shading(source, visibility, instance)
+        if source.type != "MESH":
+            self._unconverted.append((source.original, matrix, shading))
+            return
+        original = source.original
+        if original.type in CONVERTED_TYPES:
+            self._converted.add((original.as_pointer(), matrix.tobytes()))
+        self._place(source, source.data, matrix, shading, owner.original.session_uid)
 
     def _place(
-        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, matrix: np.ndarray, shading: dict[str, object]
+        self,
+        source: bpy.types.Object,
+        mesh: bpy.types.Mesh | None,
+        matrix: np.ndarray,
+        shading: dict[str, object],
+        owner: int,
     ) -> None:
-        index = self._mesh_index(source, mesh, self._attributes_of(shading["materials"]))
+        index = self._exporter._mesh_index(source, mesh, shading, owner)
         if index is not None:
-            instance = Instance(index, matrix, object_name=source.name, object_index=source.pass_index, **shading)
-            self._placed.append((instance, matrix))
+            uid = source.original.session_uid
+            self._placed.append((_instance(index, source, matrix, shading), matrix, uid if mesh is not None else 0))
 
-    def _convert(self, depsgraph: bpy.types.Depsgraph) -> None:
+    def _convert(self) -> None:
         """Place the curves, texts, surfaces and metaballs whose mesh did not come as an instance.
 
         Blender shows the mesh of such an object as an instance beside it, but not where particles
@@ -125,62 +217,23 @@ class ObjectExporter:
         for original, matrix, shading in self._unconverted:
             if (original.as_pointer(), matrix.tobytes()) in self._converted:
                 continue
-            source = original.evaluated_get(depsgraph)
-            self._place(source, None, matrix, shading)
-
-    def _mesh_index(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str]) -> int | None:
-        """Index of a mesh, exported now if it is new, with the named attributes; None when it has no triangles.
-
-        mesh: None lets Blender make one of the object.
-        """
-        # Evaluated data is shared exactly when it is the same block of memory: session_uid is also
-        # shared by copies that different modifiers made different.
-        key = (source if mesh is None else mesh).as_pointer()
-        if key not in self._meshes:
-            self._report.progress(f"Exporting {source.name}")
-            if mesh is None:
-                exported = self._read_converted(source, attributes)
-            else:
-                exported = export_mesh(mesh, source.name, self._report)
-            self._meshes[key] = None if exported is None else len(self._scene.meshes)
-            if exported is not None:
-                self._scene.meshes.append(exported)
-        index = self._meshes[key]
-        if index is not None and mesh is not None:
-            add_attributes(self._scene.meshes[index], mesh, attributes)
-        return index
-
-    def _read_converted(self, source: bpy.types.Object, attributes: set[str]) -> Mesh | None:
-        try:
-            mesh = source.to_mesh()
-        except RuntimeError:  # an object without geometry
-            return None
-        try:
-            exported = None if mesh is None else export_mesh(mesh, source.name, self._report)
-            if exported is not None:
-                add_attributes(exported, mesh, attributes)
-            return exported
-        finally:
-            source.to_mesh_clear()
-
-    def _material_slots(self, source: bpy.types.Object) -> list[int]:
-        slots = [slot.material for slot in source.material_slots]
-        made = list(source.data.materials)
-        # Geometry nodes may give the evaluated data slots that the object does not have.
-        slots += made[len(slots) :]
-        return [self._materials.index(material) for material in slots or [None]]
+            source = original.evaluated_get(self._depsgraph)
+            self._place(source, None, matrix, shading, original.session_uid)
 
     def _keep_usable(self) -> None:
+        self._result.lights_alone = _without(self._result.lights_alone, self._multiple)
         if not self._placed:
             return
-        matrices, usable = usable_matrices(np.stack([matrix for _, matrix in self._placed]))
+        matrices, usable = usable_matrices(np.stack([matrix for _, matrix, _ in self._placed]))
         lost: dict[str, int] = {}
-        for (instance, _), matrix, good in zip(self._placed, matrices, usable, strict=True):
+        for (instance, _, uid), matrix, good in zip(self._placed, matrices, usable, strict=True):
             if good:
                 instance.matrix = matrix
-                self._scene.instances.append(instance)
+                self._result.alone[uid] = len(self._result.instances)
+                self._result.instances.append(instance)
             else:
                 lost[instance.object_name] = lost.get(instance.object_name, 0) + 1
+        self._result.alone = _without(self._result.alone, self._multiple | {0})
         for name, count in lost.items():
             self._report.warn(
                 f'Object "{name}": {count} placements have no extent (scale 0) or are not finite and were left out; '
@@ -188,10 +241,16 @@ class ObjectExporter:
             )
 
 
-def _random(instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object) -> float:
-    """From 0 to 1: Blender's number of an instance; of an object, which has none there, Cycles' hash of its name."""
-    if instance.is_instance:
-        return (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF
+def _without(places: dict[int, int], keys: set[int]) -> dict[int, int]:
+    return {key: place for key, place in places.items() if key not in keys}
+
+
+def _instance(mesh: int, source: bpy.types.Object, matrix: np.ndarray, shading: dict[str, object]) -> Instance:
+    return Instance(mesh, matrix, object_name=source.name, object_index=source.pass_index, **shading)
+
+
+def _random(source: bpy.types.Object) -> float:
+    """From 0 to 1, for an object that is no instance: Cycles' hash of its name."""
     number = 0
     for byte in source.name.encode():
         number = (37 * number + byte) & 0xFFFFFFFF

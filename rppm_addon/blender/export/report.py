@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What an export has to say to the user, and how it is interrupted."""
 
+import contextlib
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Iterator
 
 from ...scene.errors import RppmError
 
@@ -17,16 +18,32 @@ class Report:
     """Collects warnings without repeating them and asks whether to go on."""
 
     def __init__(self, should_stop: Callable[[], bool] | None = None, show: Callable[[str], None] | None = None):
-        self.warnings: list[str] = []
-        self._known: set[str] = set()
+        self._warnings: dict[Hashable, dict[str, None]] = {}
+        self._part: Hashable = None
+        self._logged: set[str] = set()
         self._should_stop = should_stop
         self._show = show
 
+    @property
+    def warnings(self) -> list[str]:
+        """One line each, which names the thing and what was done about it."""
+        return list({text: None for texts in self._warnings.values() for text in texts})
+
+    @contextlib.contextmanager
+    def about(self, part: Hashable) -> Iterator[None]:
+        """Forget what was said of a part, which is exported anew in the with block."""
+        outer, self._part = self._part, part
+        self._warnings.pop(part, None)
+        try:
+            yield
+        finally:
+            self._part = outer
+
     def warn(self, text: str) -> None:
-        """Record and log one line that names the thing and what was done about it."""
-        if text not in self._known:
-            self._known.add(text)
-            self.warnings.append(text)
+        """Record one line, and log it the first time."""
+        self._warnings.setdefault(self._part, {})[text] = None
+        if text not in self._logged:
+            self._logged.add(text)
             logger.warning(text)
 
     def progress(self, text: str) -> None:

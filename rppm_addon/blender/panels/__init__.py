@@ -1,20 +1,53 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the Properties editor."""
+"""Panels of the Properties editor, and a button in the viewport's header."""
 
 import bpy
 
-from . import borrowed, data, render
+from . import (
+    borrowed,
+    data,
+    lights,
+    performance,
+    presets,
+    render,
+    shading,
+    view_layer,
+    viewport_header,
+    warnings,
+)
 
-_CLASSES = (*render.CLASSES, *data.CLASSES)
+CLASSES = (
+    *presets.CLASSES,
+    *warnings.CLASSES,
+    *render.CLASSES,
+    *lights.CLASSES,
+    *performance.CLASSES,
+    *view_layer.CLASSES,
+    *data.CLASSES,
+    *shading.CLASSES,
+)
 
 
 def register() -> None:
-    for cls in _CLASSES:
+    """Add the panels, in the order in which their tabs show them."""
+    for cls in CLASSES:
         bpy.utils.register_class(cls)
+    presets.register()
     borrowed.register()
+    viewport_header.register()
 
 
 def unregister() -> None:
+    viewport_header.unregister()
     borrowed.unregister()
-    for cls in reversed(_CLASSES):
+    presets.unregister()
+    for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+
+
+def redraw() -> None:
+    """Have the editors that show readings drawn again, as when a viewport has reported. Main thread only."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in {"PROPERTIES", "PREFERENCES"}:
+                area.tag_redraw()

@@ -5,39 +5,43 @@ from collections.abc import Iterator
 
 import bpy
 
-ENGINE = "RPPM"
+from .base import ENGINE
 
 UNFIT = {
-    "DATA_PT_light",  # without units; ours shows what counts
-    "DATA_PT_spot",
-    "NODE_DATA_PT_light",
-    "NODE_DATA_PT_spot",
-    "DATA_PT_falloff_curve",
-    "MATERIAL_PT_preview",
-    "RENDER_PT_freestyle",
-    "RENDER_PT_gpencil",
-    "RENDER_PT_simplify",
-    "VIEWLAYER_PT_layer_passes",
+    "DATA_PT_light": "shows powers without units; RPPM_PT_light shows what counts",
+    "DATA_PT_spot": "as DATA_PT_light",
+    "NODE_DATA_PT_light": "as DATA_PT_light",
+    "NODE_DATA_PT_spot": "as DATA_PT_light",
+    "DATA_PT_falloff_curve": "light falls off with the square of the distance; nodes change that",
+    "DATA_PT_camera_stereoscopy": "one eye is rendered",
+    "DATA_PT_volume_render": "volumes are not rendered",
+    "MATERIAL_PT_freestyle_line": "as RENDER_PT_freestyle",
+    "OBJECT_PT_shading": "is empty without Cycles' panels in it",
+    "RENDER_PT_freestyle": "the strokes, which Blender has the engine render, come out too wide",
+    "RENDER_PT_stereoscopy": "one eye is rendered",
+    "VIEWLAYER_PT_layer_passes": "is empty without the panels of other engines",
 }
-"""Panels for all engines that promise something that RPPM does not do."""
+"""Panels for all engines that promise something that RPPM does not do, and what."""
+UNFIT_BEGINNINGS = ("VIEWLAYER_PT_freestyle",)
 
 FITTING = {
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
-    "EEVEE_MATERIAL_PT_surface",
-    "EEVEE_MATERIAL_PT_volume",
-    "EEVEE_WORLD_PT_surface",
+    "MATERIAL_PT_preview",
 }
-"""Panels of EEVEE that edit what RPPM reads: depth of field, material slots and node trees."""
+"""Panels of EEVEE that edit what RPPM reads: depth of field and material slots."""
+
+
+def _is_fit(panel: type) -> bool:
+    name = panel.__name__
+    unfit = name in UNFIT or name.startswith(UNFIT_BEGINNINGS)
+    return name in FITTING or ("BLENDER_RENDER" in panel.COMPAT_ENGINES and not unfit)
 
 
 def _panels() -> Iterator[type]:
     for panel in bpy.types.Panel.__subclasses__():
-        engines = getattr(panel, "COMPAT_ENGINES", None)
-        if engines is None:
-            continue
-        if ("BLENDER_RENDER" in engines and panel.__name__ not in UNFIT) or panel.__name__ in FITTING:
+        if hasattr(panel, "COMPAT_ENGINES") and _is_fit(panel):
             yield panel
 
 

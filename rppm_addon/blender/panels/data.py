@@ -3,7 +3,8 @@
 
 import bpy
 
-from .render import RppmPanel
+from .base import RppmPanel
+from .nodes import RppmNodePanel
 
 
 class RppmLightPanel(RppmPanel):
@@ -28,6 +29,8 @@ class RPPM_PT_light(RppmLightPanel, bpy.types.Panel):
         column.separator()
         if light.type in {"POINT", "SPOT"}:
             column.prop(light, "shadow_soft_size", text="Radius")
+            if hasattr(light, "use_soft_falloff"):
+                column.prop(light, "use_soft_falloff")
         elif light.type == "SUN":
             column.prop(light, "angle")
         else:
@@ -54,6 +57,12 @@ class RPPM_PT_light_beam(RppmLightPanel, bpy.types.Panel):
         column.prop(context.light, "spot_size", text="Spot Size")
         column.prop(context.light, "spot_blend", text="Blend", slider=True)
         column.prop(context.light, "show_cone")
+
+
+class RPPM_PT_light_nodes(RppmNodePanel, bpy.types.Panel):
+    bl_label = "Nodes"
+    bl_context = "data"
+    owner_name = "light"
 
 
 class RPPM_PT_panorama(RppmPanel, bpy.types.Panel):
@@ -95,4 +104,4 @@ _PANORAMA_PROPERTIES = {
 }
 
 
-CLASSES = (RPPM_PT_light, RPPM_PT_light_beam, RPPM_PT_panorama)
+CLASSES = (RPPM_PT_light, RPPM_PT_light_beam, RPPM_PT_light_nodes, RPPM_PT_panorama)

@@ -1,41 +1,51 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the render and view layer tabs."""
+"""Panels of the render tab that show settings."""
 
 import bpy
 
-ENGINE = "RPPM"
-
-
-class RppmPanel:
-    """What all panels of RPPM in the Properties editor share."""
-
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.engine == ENGINE
-
-    def column(self) -> bpy.types.UILayout:
-        """A column laid out as Blender's own panels are."""
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column()
+from ..export.camera import frame_size
+from ..export.settings import export_settings
+from ..readings import radius_reading
+from ..reports import reports_of
+from .base import RppmPanel, reading
+from .presets import RPPM_PT_presets
 
 
 class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
     bl_label = "Sampling"
 
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        RPPM_PT_presets.draw_panel_header(self.layout)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        column.prop(settings, "direct_light")
+        column.prop(settings, "final_gather")
+
+
+class RPPM_PT_sampling_viewport(RppmPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "RPPM_PT_sampling"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        column.prop(settings, "viewport_iterations", text="Iterations")
+        column.prop(settings, "viewport_photons", text="Photons")
+        column.prop(settings, "viewport_paused", text="Pause")
+
+
+class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
+    bl_label = "Final Render"
+    bl_parent_id = "RPPM_PT_sampling"
+
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
         column = self.column()
         column.prop(settings, "iterations")
-        column.prop(settings, "time_limit")
-        column.separator()
         column.prop(settings, "photons")
-        column.prop(settings, "direct_light")
-        column.prop(settings, "final_gather")
+        column.prop(settings, "time_limit")
 
 
 class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
@@ -53,20 +63,44 @@ class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
     bl_label = "Radius"
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
+        scene = context.scene
         column = self.column()
-        column.prop(settings, "radius_scale")
-        column.prop(settings, "radius_minimum")
-        column.prop(settings, "radius_maximum")
-        column.prop(settings, "alpha")
+        column.prop(scene.rppm, "radius_scale")
+        column.prop(scene.rppm, "radius_minimum")
+        column.prop(scene.rppm, "radius_maximum")
+        column.prop(scene.rppm, "alpha")
+        column.separator()
+        final = radius_reading(export_settings(scene), *frame_size(scene.render))
+        reading(column, "First Iteration", f"{final.first:.2f} pixels")
+        text = f"{final.last:.2f} pixels ({final.shrinkage:.0%}) after {scene.rppm.iterations} iterations"
+        reading(column, "Final Render", text)
+        viewport = radius_reading(export_settings(scene, viewport=True), *frame_size(scene.render))
+        reading(column, "Viewport", f"{viewport.shrinkage:.0%} after {scene.rppm.viewport_iterations} iterations")
+        report = reports_of(scene.session_uid).latest
+        if report is not None:
+            length = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_metres, precision=4)
+            reading(column, f"Last {report.kind.value}", f"{length} in iteration {report.iterations}")
 
 
 class RPPM_PT_animation(RppmPanel, bpy.types.Panel):
-    bl_label = "Animation and Display"
+    bl_label = "Animation"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         self.column().prop(context.scene.rppm, "iterations_per_frame")
+
+
+class RPPM_PT_film(RppmPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        scene = context.scene
+        column = self.column()
+        if hasattr(scene, "cycles"):
+            column.prop(scene.cycles, "film_exposure")
+        column.prop(scene.rppm, "filter_width")
+        column.prop(scene.render, "film_transparent", text="Transparent")
 
 
 class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
@@ -78,38 +112,27 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         column = self.column()
         column.prop(settings, "seed")
         column.prop(settings, "splat_roulette")
-        column.prop(settings, "cubemap_resolution")
-        column.prop(settings, "cubemap_centre_object")
 
 
-class RPPM_PT_film(RppmPanel, bpy.types.Panel):
-    bl_label = "Film"
-    bl_options = {"DEFAULT_CLOSED"}
+class RPPM_PT_deep_cubemap(RppmPanel, bpy.types.Panel):
+    bl_label = "Deep Cubemap"
+    bl_parent_id = "RPPM_PT_advanced"
 
     def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
         column = self.column()
-        column.prop(context.scene.rppm, "filter_width")
-        column.prop(context.scene.render, "film_transparent", text="Transparent")
-
-
-class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
-    bl_label = "Passes"
-    bl_context = "view_layer"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        column = self.column()
-        column.prop(context.view_layer, "use_pass_combined")
-        column.prop(context.view_layer, "use_pass_z")
-        column.prop(context.view_layer, "use_pass_normal")
-        column.prop(context.scene.rppm, "deep_cubemap_pass")
+        column.prop(settings, "cubemap_resolution", text="Resolution")
+        column.prop(settings, "cubemap_centre_object", text="Centre")
 
 
 CLASSES = (
     RPPM_PT_sampling,
+    RPPM_PT_sampling_viewport,
+    RPPM_PT_sampling_final,
     RPPM_PT_paths,
     RPPM_PT_radius,
     RPPM_PT_animation,
-    RPPM_PT_advanced,
     RPPM_PT_film,
-    RPPM_PT_passes,
+    RPPM_PT_advanced,
+    RPPM_PT_deep_cubemap,
 )

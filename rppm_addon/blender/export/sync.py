@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Scene that follows a viewport's depsgraph: only what has changed is exported again."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from ...scene import Camera, Scene, World
+from ...scene.lights import Light
+from ...scene.sharing import share
+from .images import ImageTable
+from .objects import ObjectExporter, Placed
+from .report import Report
+from .settings import export_cubemap_centre, export_exposure, export_settings
+from .world import export_world
+
+_MOST_UNUSED = 64
+"""Images of frames gone by are kept up to so many."""
+_SHAPELESS = {"CAMERA", "ARMATURE", "LATTICE", "EMPTY", "SPEAKER", "LIGHT_PROBE"}
+"""Objects that are not seen."""
+
+
+@dataclass
+class Edits:
+    """What a depsgraph says has changed."""
+
+    objects: dict[int, bpy.types.Object] = field(default_factory=dict)
+    """Evaluated objects by session_uid."""
+    shapes: set[int] = field(default_factory=set)
+    """session_uid of the objects whose geometry has changed."""
+    materials: list[bpy.types.Material] = field(default_factory=list)
+    world: bool = False
+    images: bool = False
+    others: bool = False
+    """Whether objects may have come, gone or changed in other ways: all instances are listed anew."""
+
+
+def read_edits(depsgraph: bpy.types.Depsgraph) -> Edits:
+    """The updates of a depsgraph since it was last evaluated."""
+    edits = Edits()
+    for update in depsgraph.updates:
+        block = update.id
+        if isinstance(block, bpy.types.Object):
+            uid = block.original.session_uid
+            edits.objects[uid] = block
+            if update.is_updated_geometry:
+                edits.shapes.add(uid)
+        elif isinstance(block, bpy.types.Material):
+            edits.materials.append(block)
+        elif isinstance(block, bpy.types.World):
+            edits.world = True
+        elif isinstance(block, bpy.types.Image):
+            edits.images = True
+        elif not isinstance(block, _TOLD_BY_THEIR_USERS):
+            edits.others = True
+    edits.others |= not depsgraph.updates
+    return edits
+
+
+_TOLD_BY_THEIR_USERS = (
+    bpy.types.NodeTree, bpy.types.Light, bpy.types.Camera, bpy.types.Mesh, bpy.types.Curve, bpy.types.MetaBall,
+    bpy.types.Armature, bpy.types.Lattice, bpy.types.Key, bpy.types.Action,
+)  # fmt: skip
+"""Blocks with which Blender also names the objects or materials that they change."""
+
+
+class SceneSync:
+    """The scene of one viewport."""
+
+    def __init__(self) -> None:
+        self.scene: Scene | None = None
+        """The newest, None before the first update. Scenes that were handed out are not changed."""
+        self._begin()
+
+    def _begin(self) -> None:
+        self._report = Report()
+        self._images = ImageTable()
+        self._objects = ObjectExporter(self._report, self._images)
+        self._placed: Placed | None = None
+        self._world: tuple[World, list[Light]] | None = None
+        self._world_shows_frames = False
+        self._most_images = 0
+        self._frame: float | None = None
+
+    def update(
+        self, depsgraph: bpy.types.Depsgraph, camera: Camera, shown: Callable[[bpy.types.Object], bool] | None = None
+    ) -> Scene:
+        """Export what the depsgraph says has changed; the scene before if nothing did that is seen.
+
+        shown: which original objects the viewport shows. Raises the errors of scene/errors.py.
+        """
+        edits = read_edits(depsgraph)
+        source = depsgraph.scene_eval
+        if edits.images or 0 < self._most_images < len(self._images.images):
+            self._begin()
+        self._advance(source, depsgraph, edits)
+        # Not any(): each is to be exported.
+        asked = [self._objects.materials.renew(material) for material in edits.materials]
+        if edits.world or self._world is None:
+            frames = self._images.frames
+            with self._report.about("world"):
+                self._world = export_world(source.world, self._report, self._images)
+            self._world_shows_frames = self._images.frames > frames
+        self._objects.meshes.forget(edits.shapes)
+        if self._placed is None or edits.others or any(asked) or not self._patch(edits):
+            self._placed = self._objects.export(depsgraph, shown)
+        world, suns = self._world
+        settings = export_settings(source, viewport=True)
+        settings.validate()
+        new = Scene(
+            camera=camera,
+            meshes=list(self._objects.meshes.meshes),
+            instances=list(self._placed.instances),
+            materials=list(self._objects.materials.materials),
+            lights=[*self._placed.lights, *suns],
+            world=world,
+            images=list(self._images.images),
+            settings=settings,
+            exposure=export_exposure(source),
+            cubemap_centre=export_cubemap_centre(depsgraph),
+            warnings=self._report.warnings,
+        )
+        if self._most_images == 0:
+            self._most_images = len(new.images) + _MOST_UNUSED
+        self.scene = share(self.scene, new)
+        return self.scene
+
+    def _advance(self, source: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, edits: Edits) -> None:
+        """Of another frame image sequences show other images, of which the depsgraph says nothing."""
+        frame = source.frame_current_final
+        if self._frame not in {None, frame}:
+            edits.others = True
+            known = {material.original.session_uid for material in edits.materials}
+            edits.materials += [
+                material.evaluated_get(depsgraph)
+                for material in bpy.data.materials
+                if material.session_uid not in known and self._objects.materials.shows_frames(material)
+            ]
+            edits.world |= self._world_shows_frames
+        self._frame = frame
+        self._images.frame = source.frame_current
+
+    def _patch(self, edits: Edits) -> bool:
+        """Put changed objects in their places; False when that is not enough."""
+        instances, lights = self._placed.instances, self._placed.lights
+        for uid, source in edits.objects.items():
+            if source.is_instancer or len(source.particle_systems) > 0:
+                return False
+            if uid in self._placed.alone:
+                if uid in edits.shapes and any(modifier.type == "NODES" for modifier in source.modifiers):
+                    return False  # they may bring instances
+                with self._report.about(("object", uid)):
+                    instance = self._objects.instance(source)
+                if instance is None:
+                    return False
+                instances[self._placed.alone[uid]] = instance
+            elif uid in self._placed.lights_alone:
+                with self._report.about(("object", uid)):
+                    light = self._objects.light(source, np.array(source.matrix_world, np.float64))
+                if light is None:
+                    return False
+                lights[self._placed.lights_alone[uid]] = light
+            elif source.type not in _SHAPELESS:
+                return False
+        return True

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators behind the buttons of panels and preferences."""
+
+import bpy
+from bpy.props import EnumProperty, StringProperty
+
+from ..session.client import ProcessState
+from . import panels, renderer_process
+from .subjects import SubjectKind, select
+
+START_SHOWN_EVERY = 0.25
+"""Seconds."""
+_TABS = {SubjectKind.OBJECT: "OBJECT", SubjectKind.MATERIAL: "MATERIAL", SubjectKind.WORLD: "WORLD"}
+
+
+class RPPM_OT_select_subject(bpy.types.Operator):
+    """Select what the warning is about"""
+
+    bl_idname = "rppm.select_subject"
+    bl_label = "Select"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    kind: EnumProperty(
+        name="Kind",
+        description="What kind of thing is to be selected",
+        items=[(kind.name, kind.name.capitalize(), "", kind.value) for kind in SubjectKind],
+    )
+    name: StringProperty(name="Name", description="Name of the object, material or world")
+    node: StringProperty(name="Node", description="Name of the node that becomes the active one")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if context.mode != "OBJECT" and bpy.ops.object.mode_set.poll():
+            bpy.ops.object.mode_set(mode="OBJECT")
+        kind = SubjectKind[self.kind]
+        problem = select(context, kind, self.name, self.node)
+        if problem:
+            self.report({"WARNING"}, problem[0].upper() + problem[1:])
+        space = context.space_data
+        if space is not None and space.type == "PROPERTIES" and not problem:
+            space.context = _TABS[kind]
+        return {"FINISHED"}
+
+
+class RPPM_OT_start_renderer(bpy.types.Operator):
+    """Start the renderer process, anew if it runs, and see which graphics device it finds"""
+
+    bl_idname = "rppm.start_renderer"
+    bl_label = "Check the Device"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        renderer_process.renderer_process().restart()
+        if not bpy.app.timers.is_registered(_show_start):
+            bpy.app.timers.register(_show_start, first_interval=START_SHOWN_EVERY)
+        return {"FINISHED"}
+
+
+def _show_start() -> float | None:
+    """Have the preferences drawn again until the process has started or failed."""
+    panels.redraw()
+    starting = renderer_process.renderer_process().state is ProcessState.STARTING
+    return START_SHOWN_EVERY if starting else None
+
+
+class RPPM_OT_open_log(bpy.types.Operator):
+    """Open the renderer's log file with the program that shows text files"""
+
+    bl_idname = "rppm.open_log"
+    bl_label = "Open the Log"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        path = renderer_process.renderer_process().log_path
+        if not path.is_file():
+            self.report({"WARNING"}, f"There is no log yet: {path} is written once the renderer has started")
+            return {"CANCELLED"}
+        bpy.ops.wm.path_open(filepath=str(path))
+        return {"FINISHED"}
+
+
+_CLASSES = (RPPM_OT_select_subject, RPPM_OT_start_renderer, RPPM_OT_open_log)
+
+
+def register() -> None:
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister() -> None:
+    if bpy.app.timers.is_registered(_show_start):
+        bpy.app.timers.unregister(_show_start)
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What all panels of RPPM in the Properties editor share."""
+
+import textwrap
+
+import bpy
+
+ENGINE = "RPPM"
+_CHARACTER_WIDTH = 7.0
+"""Pixels of a letter at a scale of 1, on average."""
+
+
+class RppmPanel:
+    """Mixed into panels of the render tab; others set ``bl_context``."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.engine == ENGINE
+
+    def column(self) -> bpy.types.UILayout:
+        """A column laid out as Blender's own panels are."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+def reading(layout: bpy.types.UILayout, name: str, text: str) -> None:
+    """A line with a figure that is computed, laid out as a property is."""
+    split = layout.split(factor=0.4)
+    left = split.row()
+    left.alignment = "RIGHT"
+    left.label(text=name)
+    split.label(text=text)
+
+
+def paragraph(layout: bpy.types.UILayout, text: str, context: bpy.types.Context, icon: str = "NONE") -> None:
+    """Text on as many lines as the region's width takes."""
+    scale = context.preferences.system.ui_scale
+    letters = max(20, int(context.region.width / (_CHARACTER_WIDTH * scale)) - 8)
+    column = layout.column(align=True)
+    for number, line in enumerate(textwrap.wrap(text, letters)):
+        column.label(text=line, icon=icon if number == 0 else "BLANK1" if icon != "NONE" else "NONE")

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels of the render tab on memory, rates and the last renders."""
+
+import bpy
+
+from ...scene.errors import SceneError
+from ...scene.quantities import bytes_text, count_text, rate_text, seconds_text
+from ..export.camera import crop, frame_size
+from ..export.settings import export_settings
+from ..readings import memory_reading
+from ..reports import RenderReport, reports_of
+from .base import RppmPanel, reading
+
+
+class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        scene = context.scene
+        column = self.column()
+        reports = reports_of(scene.session_uid)
+        last = reports.finals[0] if reports.finals else None
+        memory = memory_reading(export_settings(scene), *_region(scene.render), last)
+        photons = memory.by_settings.ppm.get("photons", 0)
+        reading(column, "Photons", bytes_text(photons))
+        reading(column, "Picture and Paths", bytes_text(memory.by_settings.total_bytes - photons))
+        if memory.scene_bytes is None:
+            reading(column, "Scene", "known once it was rendered")
+        else:
+            reading(column, "Scene", bytes_text(memory.scene_bytes))
+        reading(column, "Expected Memory", bytes_text(memory.total_bytes))
+
+
+def _region(render: bpy.types.RenderSettings) -> tuple[int, int]:
+    """Pixels across and upward that a final render has."""
+    width, height = frame_size(render)
+    try:
+        region = crop(render, width, height)
+    except SceneError:  # an empty border, which a render says
+        region = None
+    return (width, height) if region is None else (region[2] - region[0], region[3] - region[1])
+
+
+class RPPM_PT_status(RppmPanel, bpy.types.Panel):
+    bl_label = "Status"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and reports_of(context.scene.session_uid).latest is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        reports = reports_of(context.scene.session_uid)
+        for report in (reports.viewport, reports.finals[0] if reports.finals else None):
+            if report is not None:
+                self.layout.label(text=report.kind.value)
+                _show(self.column(), report, context.scene)
+
+
+def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
+    reading(column, "Iterations", f"{report.iterations} of {report.settings.iterations}")
+    radius = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_metres, precision=4)
+    reading(column, "Largest Radius", radius)
+    reading(column, "Memory", bytes_text(report.memory_bytes))
+    rates = f"{rate_text(report.iterations_per_second)} iterations, {rate_text(report.photons_per_second)} photons"
+    reading(column, "Per Second", rates)
+    reading(column, "Time", f"{seconds_text(report.seconds)}, {seconds_text(report.build_seconds)} of it building")
+    if report.device:
+        reading(column, "Device", report.device)
+
+
+class RPPM_PT_last_renders(RppmPanel, bpy.types.Panel):
+    bl_label = "Last Renders"
+    bl_parent_id = "RPPM_PT_performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and bool(reports_of(context.scene.session_uid).finals)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        finals = reports_of(context.scene.session_uid).finals
+        table = self.layout.column(align=True)
+        for name, text in _COMPARED:
+            row = table.row(align=True)
+            row.label(text=name)
+            for report in finals:
+                row.label(text=text(report))
+
+
+_COMPARED = (
+    ("Resolution", lambda report: f"{report.width} x {report.height}"),
+    ("Iterations", lambda report: str(report.iterations)),
+    ("Photons", lambda report: count_text(report.photons)),
+    ("Time", lambda report: seconds_text(report.seconds)),
+    ("Building", lambda report: seconds_text(report.build_seconds)),
+    ("Photons/s", lambda report: rate_text(report.photons_per_second)),
+    ("Iterations/s", lambda report: rate_text(report.iterations_per_second)),
+    ("Memory", lambda report: bytes_text(report.memory_bytes)),
+    ("Triangles", lambda report: count_text(report.triangles)),
+    ("Warnings", lambda report: str(report.warning_count)),
+)
+"""Lines of the table and what they say of a render, the newest on the left."""
+
+
+CLASSES = (RPPM_PT_status, RPPM_PT_performance, RPPM_PT_last_renders)

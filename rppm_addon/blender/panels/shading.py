@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels of the tabs of a material and of the world."""
+
+import bpy
+
+from .base import RppmPanel
+from .nodes import RppmNodePanel
+
+
+class RppmMaterialPanel(RppmNodePanel):
+    bl_context = "material"
+    owner_name = "material"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and not context.material.grease_pencil
+
+
+class RPPM_PT_material_surface(RppmMaterialPanel, bpy.types.Panel):
+    bl_label = "Surface"
+
+
+class RPPM_PT_material_volume(RppmMaterialPanel, bpy.types.Panel):
+    bl_label = "Volume"
+    bl_options = {"DEFAULT_CLOSED"}
+    input_name = "Volume"
+
+
+class RPPM_PT_material_displacement(RppmMaterialPanel, bpy.types.Panel):
+    bl_label = "Displacement"
+    bl_options = {"DEFAULT_CLOSED"}
+    input_name = "Displacement"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        super().draw(context)
+        if getattr(context.material, "displacement_method", "BUMP") != "BUMP":
+            self.layout.label(text="Surfaces are not moved: it is rendered as bump", icon="INFO")
+
+
+class RPPM_PT_material_settings(RppmMaterialPanel, bpy.types.Panel):
+    bl_label = "Settings"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        material = context.material
+        column = self.column()
+        column.prop(material, "pass_index")
+        # Names differ between the Blender versions: show what this one has.
+        for name in ("displacement_method", "use_transparent_shadow"):
+            if hasattr(material, name):
+                column.prop(material, name)
+
+
+class RppmWorldPanel(RppmNodePanel):
+    bl_context = "world"
+    owner_name = "world"
+
+
+class RPPM_PT_world_preview(RppmWorldPanel, bpy.types.Panel):
+    bl_label = "Preview"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.template_preview(context.world)
+
+
+class RPPM_PT_world_surface(RppmWorldPanel, bpy.types.Panel):
+    bl_label = "Surface"
+
+
+class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.object is not None and context.object.type in _VISIBLE_TYPES
+
+    def draw(self, context: bpy.types.Context) -> None:
+        thing = context.object
+        column = self.column()
+        for name in ("camera", "diffuse", "glossy", "transmission"):
+            column.prop(thing, f"visible_{name}", text=name.capitalize())
+        if thing.type != "LIGHT":
+            column.prop(thing, "visible_shadow", text="Shadow")
+            column.separator()
+            column.prop(thing, "is_shadow_catcher")
+            column.prop(thing, "is_holdout")
+
+
+_VISIBLE_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "LIGHT"}
+"""Objects that are rendered."""
+
+
+CLASSES = (
+    RPPM_PT_material_surface,
+    RPPM_PT_material_volume,
+    RPPM_PT_material_displacement,
+    RPPM_PT_material_settings,
+    RPPM_PT_world_preview,
+    RPPM_PT_world_surface,
+    RPPM_PT_ray_visibility,
+)

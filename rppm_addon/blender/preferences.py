@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The extension's preferences: the renderer process, the graphics device that it found, and what is missing."""
+
+import importlib.util
+import os
+import sys
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..scene.quantities import bytes_text
+from ..session.client import ProcessState
+from . import renderer_process
+from .panels.base import paragraph, reading
+
+if TYPE_CHECKING:
+    from ..gl.context import DeviceInformation
+
+_MODULES = ("numpy", "moderngl", "glcontext")
+"""What the renderer process imports besides this package."""
+_TEXTS = {
+    ProcessState.STOPPED: "The renderer has not been needed yet",
+    ProcessState.STARTING: "The renderer is starting",
+    ProcessState.RUNNING: "The renderer is running",
+    ProcessState.FAILED: "The renderer does not run",
+}
+_LIMITS = {
+    "GL_MAX_SHADER_STORAGE_BLOCK_SIZE": "Largest Buffer",
+    "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS": "Buffers of a Program",
+    "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS": "Threads of a Group",
+    "GL_MAX_TEXTURE_SIZE": "Texture Size",
+}
+
+
+def root_package() -> str:
+    """The name under which Blender knows the extension: bl_ext.REPOSITORY.rppm, or rppm_addon from source."""
+    return __package__.rpartition(".rppm_addon")[0] or "rppm_addon"
+
+
+def missing() -> list[str]:
+    """What keeps RPPM from rendering here, a line each with the remedy."""
+    problems = []
+    if sys.platform == "darwin":
+        problems.append("macOS stops at OpenGL 4.1 and RPPM needs 4.3: use Linux or Windows")
+    # Looked for without importing them: Windows cannot replace what Blender has loaded.
+    modules = [name for name in _MODULES if importlib.util.find_spec(name) is None]
+    if modules:
+        problems.append(
+            f"Python does not find {', '.join(modules)}: install the extension's zip for this platform again"
+        )
+    return problems
+
+
+class RppmPreferences(bpy.types.AddonPreferences):
+    bl_idname = root_package()
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        problems = missing()
+        for problem in problems:
+            paragraph(layout, problem, context, icon="ERROR")
+        if problems:
+            return
+        process = renderer_process.renderer_process()
+        state = process.state
+        row = layout.row()
+        row.label(text=_TEXTS[state], icon="ERROR" if state is ProcessState.FAILED else "NONE")
+        row.operator("rppm.start_renderer", text="Check the Device" if state is ProcessState.STOPPED else "Restart")
+        if process.error:
+            paragraph(layout, process.error, context, icon="INFO")
+        device = process.device  # the process may end meanwhile
+        if device is not None:
+            self._draw_device(device)
+        chosen = os.environ.get("RPPM_DEVICE")
+        if chosen:
+            reading(layout, "Chosen Device", f"{chosen}, by the environment variable RPPM_DEVICE")
+        row = layout.row()
+        row.label(text=f"Log: {process.log_path}")
+        row.operator("rppm.open_log", text="Open", icon="TEXT")
+
+    def _draw_device(self, device: "DeviceInformation") -> None:
+        column = self.layout.column(align=True)
+        reading(column, "Device", device.name)
+        reading(column, "Driver", device.driver)
+        reading(column, "OpenGL", device.version)
+        for name, text in _LIMITS.items():
+            if name in device.limits:
+                limit = int(device.limits[name])
+                reading(column, text, bytes_text(limit) if name.endswith("_BLOCK_SIZE") else f"{limit:,}")
+        for text in device.missing:
+            reading(column, "Without", text)
+
+
+def register() -> None:
+    bpy.utils.register_class(RppmPreferences)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(RppmPreferences)

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# An eighth of the default's photons; wide disks hide that there are few.
+import bpy
+
+settings = bpy.context.scene.rppm
+
+settings.iterations = 32
+settings.photons = 32768
+settings.direct_light = "RAYS"
+settings.final_gather = True
+settings.camera_path_length = 6
+settings.photon_path_length = 6
+settings.radius_scale = 15.0
+settings.alpha = 0.7

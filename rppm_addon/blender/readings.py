@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures that panels compute from settings and from what renders reported. Without bpy."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..integrator.bandwidth import radius_in_pixels, shrinkage
+from ..integrator.memory import Memory, expected_memory
+from ..scene import Camera, RenderSettings
+from .reports import RenderReport
+
+
+@dataclass(frozen=True)
+class RadiusReading:
+    """Radius of a surface that faces the camera, in pixels of the picture."""
+
+    first: float
+    last: float
+    """After all iterations."""
+    shrinkage: float
+    """The one over the other, for radii of all kinds."""
+
+
+def radius_reading(settings: RenderSettings, width: int, height: int) -> RadiusReading:
+    """Eq. 3 and Eq. 2 for the settings' iterations and a frame of so many pixels.
+
+    Eq. 3's disk covers the footprints of s_r^2 pixels, so its radius is s_r / sqrt(pi) pixels.
+    """
+    frame = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), width, height)
+    first = radius_in_pixels(settings, frame) / math.sqrt(math.pi)
+    ratio = shrinkage(settings.iterations, settings.alpha)
+    return RadiusReading(first, first * ratio, ratio)
+
+
+@dataclass(frozen=True)
+class MemoryReading:
+    """Bytes on the device that the next render takes."""
+
+    by_settings: Memory
+    scene_bytes: int | None
+    """Geometry, textures, deep cubemap and lists, as in a render before; None before the first one."""
+
+    @property
+    def total_bytes(self) -> int:
+        return self.by_settings.total_bytes + (self.scene_bytes or 0)
+
+
+def memory_reading(settings: RenderSettings, width: int, height: int, report: RenderReport | None) -> MemoryReading:
+    """What rendering width x height pixels takes, with what a former render of the scene needed beside."""
+
+    def expected(settings: RenderSettings, width: int, height: int) -> Memory:
+        return expected_memory(width, height, settings.photons, settings.photon_path_length)
+
+    scene_bytes = None
+    if report is not None:
+        before = expected(report.settings, report.width, report.height)
+        scene_bytes = max(0, report.memory_bytes - before.total_bytes)
+    return MemoryReading(expected(settings, width, height), scene_bytes)
+
+
+def photon_shares(watts: Mapping[str, float], factors: Mapping[str, float]) -> dict[str, float]:
+    """Shares of the photons by source, summing to 1: power times the user's factor, 1 where none is named."""
+    weights = {name: value * max(factors.get(name, 1.0), 0.0) for name, value in watts.items()}
+    total = sum(weights.values())
+    return {name: weight / total if total > 0 else 0.0 for name, weight in weights.items()}

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one renderer process of this Blender: its viewports, previews and renders share it."""
+
+import atexit
+import sys
+import threading
+from pathlib import Path
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..scene import Scene
+from ..session import remote_rendering
+from ..session.client import RendererProcess
+from ..session.render_job import RenderJob
+from ..session.results import RenderResult
+from ..session.sessions import SessionKind
+
+_EXTENSIONS = "bl_ext"
+_process: RendererProcess | None = None
+_lock = threading.Lock()
+
+
+def renderer_process() -> RendererProcess:
+    """The process, which is not started before a session is opened in it."""
+    global _process
+    with _lock:
+        if _process is None:
+            folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
+            _process = RendererProcess([python_program(), *bpy.app.python_args], folders, log_path())
+        return _process
+
+
+def is_used() -> bool:
+    """Whether renders go to the process: where there is a window, which must not freeze."""
+    return not bpy.app.background
+
+
+def render(scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
+    """Render in the process, as remote_rendering.render does."""
+    return remote_rendering.render(renderer_process(), scene, job, kind)
+
+
+def close() -> None:
+    """End the process and its sessions; waits a few seconds at the most."""
+    if _process is not None:
+        _process.close()
+
+
+def python_program() -> str:
+    """The Python that Blender brings or uses; sys.executable is Blender itself in some builds."""
+    if "python" in Path(sys.executable or "").name.lower():
+        return sys.executable
+    programs = sorted(Path(sys.prefix, "bin").glob("python*"))
+    return str(programs[-1]) if programs else "python"
+
+
+def log_path() -> Path:
+    """The file that the process logs to."""
+    package = __package__.split(".")
+    if package[0] == _EXTENSIONS:
+        folder = bpy.utils.extension_path_user(".".join(package[:3]))
+    else:
+        folder = bpy.utils.user_resource("DATAFILES", path="rppm")
+    return Path(folder) / "renderer.log"
+
+
+@persistent
+def _on_load(*_: object) -> None:
+    """Nothing of the file before is of use any more."""
+    close()
+
+
+def register() -> None:
+    """Have the process end when another file is loaded."""
+    bpy.app.handlers.load_post.append(_on_load)
+
+
+def unregister() -> None:
+    """End the process."""
+    bpy.app.handlers.load_post.remove(_on_load)
+    close()
+
+
+atexit.register(close)

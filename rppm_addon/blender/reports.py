@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the last renders of each scene had to tell, for the panels; kept while Blender runs, never saved."""
+
+import enum
+import threading
+from dataclasses import dataclass, field, replace
+
+from ..scene import RenderSettings
+
+FINALS_KEPT = 5
+"""Final renders of a scene, to compare."""
+SCENES_KEPT = 16
+"""Scenes that were rendered last; older ones are forgotten."""
+WARNINGS_KEPT = 200
+"""Warnings of a render; the log has them all."""
+
+
+class RenderKind(enum.Enum):
+    FINAL = "Final"
+    VIEWPORT = "Viewport"
+
+
+@dataclass(frozen=True)
+class RenderReport:
+    """Figures of a render, finished or, in a viewport, so far."""
+
+    kind: RenderKind
+    width: int
+    height: int
+    settings: RenderSettings
+    """Those that the render had."""
+    iterations: int
+    photons: int
+    """Emitted in all iterations."""
+    seconds: float
+    """Since the render began, building included."""
+    radius_metres: float
+    """r_max of the last iteration."""
+    memory_bytes: int
+    """On the device."""
+    build_seconds: float = 0.0
+    device: str = ""
+    triangles: int = 0
+    source_watts: dict[str, float] = field(default_factory=dict)
+    """Power by light source, as integrator/sources.py names them."""
+    source_photons: dict[str, int] = field(default_factory=dict)
+    """Photons of the last iteration by light source."""
+    warnings: tuple[str, ...] = ()
+    warning_count: int = 0
+    """All of them, where ``warnings`` was cut short."""
+
+    @property
+    def rendering_seconds(self) -> float:
+        return max(self.seconds - self.build_seconds, 1e-9)
+
+    @property
+    def iterations_per_second(self) -> float:
+        return self.iterations / self.rendering_seconds
+
+    @property
+    def photons_per_second(self) -> float:
+        return self.photons / self.rendering_seconds
+
+
+@dataclass(frozen=True)
+class SceneReports:
+    """All that is kept of a scene; replaced as a whole, so that a panel reads it while a render records."""
+
+    finals: tuple[RenderReport, ...] = ()
+    """The newest first."""
+    viewport: RenderReport | None = None
+    latest: RenderReport | None = None
+    error: str = ""
+    """Why the last final render gave no picture."""
+
+
+_EMPTY = SceneReports()
+_reports: dict[int, SceneReports] = {}
+_lock = threading.Lock()
+
+
+def record(scene_uid: int, report: RenderReport) -> None:
+    """Keep a report for the scene of that session_uid; a viewport's replaces its last one. From any thread."""
+    report = replace(
+        report,
+        warnings=tuple(report.warnings[:WARNINGS_KEPT]),
+        warning_count=max(report.warning_count, len(report.warnings)),
+    )
+    with _lock:
+        known = _reports.get(scene_uid, _EMPTY)
+        if report.kind is RenderKind.FINAL:
+            known = replace(known, finals=(report, *known.finals)[:FINALS_KEPT], error="")
+        else:
+            known = replace(known, viewport=report)
+        _keep(scene_uid, replace(known, latest=report))
+
+
+def record_error(scene_uid: int, text: str) -> None:
+    """Keep why a final render failed until one succeeds."""
+    with _lock:
+        _keep(scene_uid, replace(_reports.get(scene_uid, _EMPTY), error=text))
+
+
+def _keep(scene_uid: int, kept: SceneReports) -> None:
+    _reports.pop(scene_uid, None)
+    _reports[scene_uid] = kept
+    while len(_reports) > SCENES_KEPT:
+        del _reports[next(iter(_reports))]
+
+
+def reports_of(scene_uid: int) -> SceneReports:
+    """What is kept of a scene; empty before its first render."""
+    return _reports.get(scene_uid, _EMPTY)
+
+
+def forget() -> None:
+    """Forget all scenes."""
+    with _lock:
+        _reports.clear()

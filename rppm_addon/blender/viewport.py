@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rendered viewport: hands changes to the renderer process and draws the newest frame; it never waits."""
+
+import logging
+import time
+from dataclasses import replace
+
+import bpy
+
+from ..scene import Camera, Scene
+from ..scene.errors import RppmError
+from ..scene.sharing import equal, share
+from ..session.client import ProcessState
+from ..session.sessions import SessionKind, SessionStatus
+from . import reports
+from .export import SceneSync, export_view
+from .frame_texture import FrameTexture
+from .renderer_process import renderer_process
+
+logger = logging.getLogger(__name__)
+
+POLL_SECONDS = 1.0 / 30.0
+"""How often the newest frames are asked for."""
+NAVIGATION_SECONDS = 0.4
+"""Changes that follow each other faster are one movement."""
+
+
+class Viewport:
+    """One viewport in Rendered mode."""
+
+    def __init__(self, engine: bpy.types.RenderEngine) -> None:
+        self._engine = engine
+        self._sync = SceneSync()
+        self._scene: Scene | None = None
+        self._session = renderer_process().open(SessionKind.VIEWPORT)
+        self._texture = FrameTexture()
+        self._generation = 0
+        self._changed_at = 0.0
+        self._seen: tuple = ()
+        self._error = ""
+        self._recorded: SessionStatus | None = None
+        self._regions: dict[int, tuple[float, float, float, float]] = {}
+        """By generation, the part of the region that its frames cover: x, y, width, height, 0 to 1."""
+
+    def update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        """Take what the depsgraph says has changed."""
+        space = context.space_data
+        try:
+            camera = export_view(context, depsgraph)
+            scene = self._sync.update(depsgraph, camera, lambda source: source.visible_in_viewport_get(space))
+        except RppmError as error:
+            self._fail(str(error))
+            return
+        except Exception as error:
+            logger.exception("the viewport's export failed")
+            self._fail(f"RPPM failed unexpectedly ({type(error).__name__}: {error}); see the system console")
+            return
+        self._error = ""
+        self._show(context, scene)
+
+    def draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        """Draw the newest frame, and follow the view."""
+        if self._sync.scene is not None and not self._error:
+            try:
+                self._follow(context, export_view(context, depsgraph))
+            except RppmError as error:
+                self._engine.update_stats("RPPM", str(error))
+        frame = self._session.newest()
+        if frame is not None:
+            x, y, width, height = self._regions.get(frame.generation, (0.0, 0.0, 1.0, 1.0))
+            region = context.region
+            place = x * region.width, y * region.height, width * region.width, height * region.height
+            self._texture.draw(frame, *place)
+            self._forget_regions(frame.generation)
+        self._tell(context)
+        self._session.pause(context.scene.rppm.viewport_paused)
+        self._seen = self._state()
+
+    def _follow(self, context: bpy.types.Context, camera: Camera) -> None:
+        if not equal(camera, self._scene.camera):
+            self._show(context, share(self._scene, _seen_by(self._scene, camera)))
+
+    def _show(self, context: bpy.types.Context, scene: Scene) -> None:
+        playing = context.screen is not None and context.screen.is_animation_playing
+        if not playing:
+            scene = _picture_by_picture(scene)
+        if self._scene is not None:
+            scene = share(self._scene, scene)
+            if scene is self._scene:
+                return
+        now = time.monotonic()
+        navigating = playing or now - self._changed_at < NAVIGATION_SECONDS
+        self._changed_at = now
+        self._scene = scene
+        self._generation += 1
+        self._regions[self._generation] = _region_of(scene.camera)
+        self._session.show(scene, self._generation, navigating)
+        poll_soon()
+
+    def _forget_regions(self, generation: int) -> None:
+        for old in [key for key in self._regions if key < generation]:
+            del self._regions[old]
+
+    def _tell(self, context: bpy.types.Context) -> None:
+        process = renderer_process()
+        status = self._session.status
+        error = self._error or status.error or (process.error if process.state is ProcessState.FAILED else "")
+        if error:
+            self._engine.update_stats("RPPM", error)
+        elif process.state is ProcessState.STARTING:
+            self._engine.update_stats("RPPM", "Starting the renderer")
+        elif status.iterations:
+            self._engine.update_stats("", status_text(status, context.scene.rppm.viewport_paused))
+        self._record(context, status)
+
+    def _record(self, context: bpy.types.Context, status: SessionStatus) -> None:
+        """For the panels' read-outs, once for each iteration."""
+        if self._scene is None or status.iteration == 0 or status == self._recorded:
+            return
+        self._recorded = status
+        width, height = self._scene.camera.resolution
+        reports.record(
+            context.scene.session_uid,
+            reports.RenderReport(
+                kind=reports.RenderKind.VIEWPORT,
+                width=width,
+                height=height,
+                settings=self._scene.settings,
+                iterations=status.iteration,
+                photons=status.photons,
+                seconds=status.elapsed_seconds,
+                radius_metres=status.radius_metres,
+                memory_bytes=status.memory_bytes,
+                triangles=self._scene.triangle_count,
+                warnings=tuple(status.warnings),
+            ),
+        )
+
+    def _fail(self, text: str) -> None:
+        if text != self._error:
+            logger.warning("%s", text)
+        self._error = text
+
+    def _state(self) -> tuple:
+        """What a drawing depends on that comes from the renderer process."""
+        process, status, frame = renderer_process(), self._session.status, self._session.newest()
+        shown = None if frame is None else frame.sequence
+        return process.state, status.generation, status.iteration, status.error, shown
+
+    def poll(self) -> None:
+        """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""
+        if self._state() != self._seen:
+            self._engine.tag_redraw()
+
+    def close(self) -> None:
+        """Render this no more."""
+        self._session.close()
+
+
+def _picture_by_picture(scene: Scene) -> Scene:
+    """N_ipf is for playback (paper section 5.4); at rest each iteration is shown."""
+    if scene.settings.iterations_per_frame == 1:
+        return scene
+    return replace(scene, settings=replace(scene.settings, iterations_per_frame=1))
+
+
+def _seen_by(scene: Scene, camera: Camera) -> Scene:
+    return replace(scene, camera=camera)
+
+
+def _region_of(camera: Camera) -> tuple[float, float, float, float]:
+    x_min, y_min, x_max, y_max = camera.region
+    width, height = camera.width, camera.height
+    return x_min / width, y_min / height, (x_max - x_min) / width, (y_max - y_min) / height
+
+
+def status_text(status: SessionStatus, paused: bool) -> str:
+    """One line over the viewport."""
+    text = f"Iteration {status.iteration}/{status.iterations} | Radius {_metres(status.radius_metres)}"
+    if paused:
+        return f"{text} | Paused"
+    if status.settled:
+        return f"{text} | Finished"
+    return f"{text} | {status.photons_per_second / 1e6:.2f} million photons a second"
+
+
+def _metres(length: float) -> str:
+    return f"{length * 1e3:.3g} mm" if length < 1.0 else f"{length:.3g} m"
+
+
+_viewports: dict[int, Viewport] = {}
+"""By the engine's address: workers must not hang on an engine, which Blender makes and frees as it likes."""
+
+
+def of_engine(engine: bpy.types.RenderEngine) -> Viewport:
+    """The viewport that an engine draws."""
+    key = engine.as_pointer()
+    if key not in _viewports:
+        _viewports[key] = Viewport(engine)
+    return _viewports[key]
+
+
+def close(key: int) -> None:
+    """Forget the viewport of an engine that is being freed."""
+    viewport = _viewports.pop(key, None)
+    if viewport is not None:
+        viewport.close()
+
+
+def close_all() -> None:
+    """Forget all viewports; nothing asks for redraws any more."""
+    for key in list(_viewports):
+        close(key)
+    if bpy.app.timers.is_registered(_poll):
+        bpy.app.timers.unregister(_poll)
+
+
+def poll_soon() -> None:
+    """See to it that new frames are drawn."""
+    if not bpy.app.timers.is_registered(_poll):
+        bpy.app.timers.register(_poll, first_interval=POLL_SECONDS)
+
+
+def _poll() -> float | None:
+    for key, viewport in list(_viewports.items()):
+        try:
+            viewport.poll()
+        except ReferenceError:
+            close(key)
+    return POLL_SECONDS if _viewports else None

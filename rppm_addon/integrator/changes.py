@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What differs between two scenes that share the members that did not change."""
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..scene.node_graphs import Link, NodeGraph
+from ..scene.scene import Scene
+
+_CAMERA_NODES = {"camera", "vector_transform"}
+_CAMERA_OUTPUTS = {("tex_coord", "camera"), ("tex_coord", "window")}
+
+
+@dataclass
+class Changes:
+    """The parts of a scene that are not those of the scene before."""
+
+    materials: bool
+    """Node graphs and images, those of lights and the world included."""
+    geometry: bool
+    lights: bool
+    """Lights, the world, or how many photons they share."""
+    world: bool
+    """The world, its images, or the camera if its nodes ask for it."""
+    cubemap: bool
+    """Where the deep cubemap is asked to be, and how fine."""
+
+
+def changes_between(before: Scene | None, after: Scene) -> Changes:
+    """Members are compared by identity, the settings by value; before None: all has changed."""
+    if before is None:
+        return Changes(True, True, True, True, True)
+    images = _differ(before.images, after.images)
+    camera = before.camera is not after.camera
+    world = images or before.world is not after.world or (camera and _asks_for_camera([after.world.graph]))
+    graphs = [light.graph for light in after.lights] + [after.world.graph]
+    graphs_before = [light.graph for light in before.lights] + [before.world.graph]
+    return Changes(
+        materials=images or _differ(before.materials, after.materials) or _differ(graphs_before, graphs),
+        geometry=_differ(before.instances, after.instances)
+        or _differ(before.meshes, after.meshes)
+        or len(before.materials) != len(after.materials),
+        lights=world
+        or _differ(before.lights, after.lights)
+        or (camera and _asks_for_camera(graphs))
+        or after.settings.photons != before.settings.photons,
+        world=world,
+        cubemap=after.settings.cubemap_resolution != before.settings.cubemap_resolution
+        or not np.array_equal(_point(before), _point(after), equal_nan=True),
+    )
+
+
+def snapshot(scene: Scene) -> Scene:
+    """The scene as it is now, to be compared with later: its lists may grow afterwards."""
+    lists = ("meshes", "instances", "materials", "lights", "images")
+    copies = {name: list(getattr(scene, name)) for name in lists}
+    return dataclasses.replace(scene, settings=dataclasses.replace(scene.settings), **copies)
+
+
+def _differ(before: Sequence, after: Sequence) -> bool:
+    return len(before) != len(after) or any(old is not new for old, new in zip(before, after, strict=True))
+
+
+def _point(scene: Scene) -> np.ndarray:
+    return np.full(3, np.nan) if scene.cubemap_centre is None else np.asarray(scene.cubemap_centre)
+
+
+def _asks_for_camera(graphs: list[NodeGraph | None]) -> bool:
+    """Whether a graph that is evaluated beforehand holds a node that may look at the camera."""
+    nodes = [(graph, node) for graph in graphs if graph is not None for node in graph.nodes]
+    return any(
+        node.kind in _CAMERA_NODES
+        or any(
+            isinstance(value, Link) and (graph.nodes[value.node].kind, value.output) in _CAMERA_OUTPUTS
+            for value in node.inputs.values()
+        )
+        for graph, node in nodes
+    )

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A viewport's frames, from the renderer's process to Blender: three slots in shared memory.
+
+Beside its picture a slot has a guard, a generation, a sequence number and a size. The writer makes the guard odd,
+writes the slot, and makes it even; then it announces the slot. The reader copies it between two looks at the guard and
+takes the copy only if both are the same even number, and if the slot is what was announced: a torn or an older frame is
+never shown. While a frame is copied, two more can be written.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .protocol import ProtocolError
+from .shared_memory import SharedBlock
+
+SLOTS = 3
+_HEADER = np.dtype([(name, np.int64) for name in ("guard", "generation", "sequence", "width", "height")])
+_HEADER_BYTES = 64
+
+
+@dataclass(frozen=True)
+class SharedFrame:
+    """A complete picture of a viewport."""
+
+    generation: int
+    """Of the scene that it shows."""
+    sequence: int
+    """Greater than that of every frame of the session before it."""
+    width: int
+    height: int
+    combined: np.ndarray
+    """(height, width, 4) float32, scene-linear Rec.709, premultiplied alpha, row 0 at the bottom."""
+    progress: float
+    """Share of the iterations done, 0 to 1."""
+
+
+class _Slots:
+    """Views of the slots that lie in a block."""
+
+    def __init__(self, block: SharedBlock, capacity: int) -> None:
+        self.block = block
+        self.capacity = capacity
+        stride = slot_bytes(capacity)
+        memory = block.memory
+        self.headers = [np.ndarray((), _HEADER, memory, slot * stride) for slot in range(SLOTS)]
+        self.pixels = [
+            np.ndarray((4 * capacity,), np.float32, memory, slot * stride + _HEADER_BYTES) for slot in range(SLOTS)
+        ]
+
+
+def slot_bytes(capacity: int) -> int:
+    """Bytes of a slot for pictures of up to ``capacity`` pixels."""
+    return _HEADER_BYTES + -(-16 * capacity // 64) * 64
+
+
+class FrameWriter:
+    """In the renderer's process: writes one session's frames."""
+
+    def __init__(self) -> None:
+        self._slots: _Slots | None = None
+        self._sequence = 0
+
+    def reserve(self, pixels: int) -> dict | None:
+        """Make room for pictures of so many pixels; what to tell the reader of new slots, or None if the old ones do.
+
+        Raises OSError when there is not enough shared memory.
+        """
+        if self._slots is not None and pixels <= self._slots.capacity:
+            return None
+        self.release()
+        self._slots = _Slots(SharedBlock.create(SLOTS * slot_bytes(pixels)), pixels)
+        return {"block": self._slots.block.name, "capacity": pixels}
+
+    def write(self, generation: int, combined: np.ndarray) -> dict:
+        """Write the next frame, (height, width, 4) float32; returns what to tell the reader."""
+        self._sequence += 1
+        slot = self._sequence % SLOTS
+        header = self._slots.headers[slot]
+        height, width = combined.shape[:2]
+        header["guard"] += 1
+        header["generation"], header["sequence"] = generation, self._sequence
+        header["width"], header["height"] = width, height
+        self._slots.pixels[slot][: combined.size] = combined.reshape(-1)
+        header["guard"] += 1
+        return {
+            "slot": slot, "generation": generation, "sequence": self._sequence, "width": width, "height": height,
+        }  # fmt: skip
+
+    def unlink(self) -> None:
+        """Take the slots' name away, which the reader has done unless it never opened them."""
+        slots = self._slots
+        if slots is not None:
+            slots.block.unlink()
+
+    def release(self) -> None:
+        """Give the memory back; the reader keeps what it has open."""
+        self.unlink()
+        self._slots = None
+
+
+class FrameReader:
+    """In Blender's process: reads the slots of one session."""
+
+    def __init__(self, block: str, capacity: int) -> None:
+        """Open the slots that the writer has announced. Raises ProtocolError when there are none such."""
+        try:
+            opened = SharedBlock.open(block, SLOTS * slot_bytes(capacity))
+        except (OSError, ValueError, TypeError) as error:
+            raise ProtocolError(f"a session's frames cannot be opened ({error})") from error
+        opened.unlink()
+        self._slots = _Slots(opened, capacity)
+
+    def read(self, slot: int, generation: int, sequence: int, width: int, height: int) -> np.ndarray | None:
+        """A copy of an announced frame, or None if it is being, or has been, written over.
+
+        Raises ProtocolError for a frame that does not fit its slot.
+        """
+        if not (0 <= slot < SLOTS and width > 0 and height > 0 and width * height <= self._slots.capacity):
+            raise ProtocolError(f"a frame of {width} x {height} pixels in slot {slot} cannot be")
+        header = self._slots.headers[slot]
+        guard = int(header["guard"])
+        announced = (generation, sequence, width, height)
+        if guard % 2 or tuple(int(header[name]) for name in _HEADER.names[1:]) != announced:
+            return None
+        combined = self._slots.pixels[slot][: 4 * width * height].reshape(height, width, 4).copy()
+        return combined if int(header["guard"]) == guard else None

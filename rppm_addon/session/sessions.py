@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What both sides know of a session in the renderer's process."""
+
+import enum
+from dataclasses import dataclass, field
+
+
+class SessionKind(enum.Enum):
+    """What a session is for; the value is its weight when several share the device."""
+
+    VIEWPORT = 1
+    FINAL = 3
+    PREVIEW = 4
+
+
+@dataclass(frozen=True)
+class SessionStatus:
+    """How a session gets on."""
+
+    generation: int = 0
+    """Of the scene that this is about."""
+    iteration: int = 0
+    iterations: int = 0
+    photons: int = 0
+    elapsed_seconds: float = 0.0
+    """Since the scene was taken up."""
+    radius_metres: float = 0.0
+    """r_max of the iteration."""
+    memory_bytes: int = 0
+    iterations_per_second: float = 0.0
+    photons_per_second: float = 0.0
+    warnings: list[str] = field(default_factory=list)
+    error: str = ""
+    """One line with the remedy; empty while all is well."""
+    settled: bool = False
+    """Whether nothing more will come until another scene is shown."""

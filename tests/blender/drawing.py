@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws panels without a window: a layout that records what is shown, and insists that it exists."""
+
+from types import SimpleNamespace
+
+import bpy
+
+ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
+
+
+class RecordingLayout:
+    """Stands in for a UILayout: properties, operators, icons and pointers must be there."""
+
+    def __init__(self, record=None):
+        self.record = record or SimpleNamespace(properties=[], labels=[], operators=[], templates=[], popovers=[])
+
+    def _part(self, **_):
+        return RecordingLayout(self.record)
+
+    row = column = box = split = _part
+
+    def separator(self, **_):
+        pass
+
+    def prop(self, data, name, icon="NONE", **_):
+        assert name in data.bl_rna.properties, f"{data} has no {name}"
+        assert icon in ICONS
+        self.record.properties.append(name)
+
+    def label(self, text="", icon="NONE"):
+        assert isinstance(text, str) and icon in ICONS
+        self.record.labels.append(text)
+
+    def operator(self, identifier, text="", icon="NONE"):
+        module, name = identifier.split(".")
+        properties = getattr(getattr(bpy.ops, module), name).get_rna_type().properties
+        assert icon in ICONS
+        shown = SimpleNamespace(_identifier=identifier, _names=set(properties.keys()))
+        self.record.operators.append(shown)
+        return shown
+
+    def popover(self, panel, icon="NONE", **_):
+        assert hasattr(bpy.types, panel) and icon in ICONS
+        self.record.popovers.append(panel)
+
+    def template_preview(self, owner):
+        self.record.templates.append(owner)
+
+    def template_node_view(self, tree, node, socket):
+        assert node.id_data == tree and socket.node == node
+        self.record.templates.append(socket)
+
+
+def context_of(scene, **members):
+    """What panels ask of a context of the Properties editor."""
+    nothing = dict.fromkeys(("light", "camera", "material", "world", "object"))
+    return SimpleNamespace(
+        **{
+            "engine": scene.render.engine,
+            "scene": scene,
+            "view_layer": scene.view_layers[0],
+            "region": SimpleNamespace(width=400),
+            "preferences": SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),  # 0 without a window
+        }
+        | nothing
+        | members
+    )
+
+
+def drawn(cls, context):
+    """What a panel (or preferences, or another class with draw) shows."""
+    panel = cls(bpy.data.scenes[0])  # an instance needs some RNA; which does not matter
+    panel.layout = RecordingLayout()
+    for name in ("draw_header", "draw_header_preset"):
+        if hasattr(cls, name):
+            getattr(panel, name)(context)
+    panel.draw(context)
+    for button in panel.layout.record.operators:
+        assert set(vars(button)) - {"_identifier", "_names"} <= button._names, button
+    return panel.layout.record
+
+
+def drawn_panels(classes, context):
+    """Records by the name of the panel, of those that show in the context."""
+    return {cls.__name__: drawn(cls, context) for cls in classes if hasattr(cls, "poll") and cls.poll(context)}

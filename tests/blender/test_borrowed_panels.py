@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every panel that Cycles shows has a counterpart for RPPM, or a reason why there is none."""
+
+import bpy
+import pytest
+from blender_scenes import add_mesh, export
+from drawing import context_of
+
+from rppm_addon.blender.panels import borrowed
+
+NOT_RENDERED = "has no effect on RPPM's picture"
+OF_CYCLES = "is about how Cycles works"
+
+COUNTERPARTS = {
+    # data
+    "CYCLES_CAMERA_PT_dof": "DATA_PT_camera_dof",
+    "CYCLES_CAMERA_PT_dof_aperture": "DATA_PT_camera_dof_aperture",
+    "CYCLES_LIGHT_PT_beam_shape": "RPPM_PT_light_beam",
+    "CYCLES_LIGHT_PT_light": "RPPM_PT_light",
+    "CYCLES_LIGHT_PT_nodes": "RPPM_PT_light_nodes",
+    "CYCLES_LIGHT_PT_preview": "DATA_PT_preview",
+    # material
+    "CYCLES_MATERIAL_PT_displacement": "RPPM_PT_material_displacement",
+    "CYCLES_MATERIAL_PT_preview": "MATERIAL_PT_preview",
+    "CYCLES_MATERIAL_PT_settings": "RPPM_PT_material_settings",
+    "CYCLES_MATERIAL_PT_settings_surface": "RPPM_PT_material_settings",
+    "CYCLES_MATERIAL_PT_surface": "RPPM_PT_material_surface",
+    "CYCLES_MATERIAL_PT_volume": "RPPM_PT_material_volume",
+    "CYCLES_PT_context_material": "EEVEE_MATERIAL_PT_context_material",
+    # object
+    "CYCLES_OBJECT_PT_visibility": "OBJECT_PT_visibility",
+    "CYCLES_OBJECT_PT_visibility_ray_visibility": "RPPM_PT_ray_visibility",
+    # render
+    "CYCLES_PT_integrator_presets": "RPPM_PT_presets",
+    "CYCLES_PT_performance_presets": "RPPM_PT_presets",
+    "CYCLES_PT_sampling_presets": "RPPM_PT_presets",
+    "CYCLES_PT_viewport_sampling_presets": "RPPM_PT_presets",
+    "CYCLES_RENDER_PT_film": "RPPM_PT_film",
+    "CYCLES_RENDER_PT_film_pixel_filter": "RPPM_PT_film",
+    "CYCLES_RENDER_PT_film_transparency": "RPPM_PT_film",
+    "CYCLES_RENDER_PT_light_paths": "RPPM_PT_paths",
+    "CYCLES_RENDER_PT_light_paths_max_bounces": "RPPM_PT_paths",
+    "CYCLES_RENDER_PT_performance": "RPPM_PT_performance",
+    "CYCLES_RENDER_PT_performance_acceleration_structure": "RPPM_PT_deep_cubemap",
+    "CYCLES_RENDER_PT_performance_memory": "RPPM_PT_performance",
+    "CYCLES_RENDER_PT_sampling": "RPPM_PT_sampling",
+    "CYCLES_RENDER_PT_sampling_advanced": "RPPM_PT_advanced",
+    "CYCLES_RENDER_PT_sampling_lights": "RPPM_PT_light_shares",
+    "CYCLES_RENDER_PT_sampling_render": "RPPM_PT_sampling_final",
+    "CYCLES_RENDER_PT_sampling_viewport": "RPPM_PT_sampling_viewport",
+    "CYCLES_RENDER_PT_simplify": "RENDER_PT_simplify",
+    "CYCLES_RENDER_PT_simplify_render": "RENDER_PT_simplify_render",
+    "CYCLES_RENDER_PT_simplify_viewport": "RENDER_PT_simplify_viewport",
+    "CYCLES_VIEW3D_PT_simplify_greasepencil": "RENDER_PT_simplify_greasepencil",
+    # output and view layer
+    "CYCLES_PT_post_processing": "RENDER_PT_post_processing",
+    "CYCLES_RENDER_PT_passes": "RPPM_PT_passes",
+    "CYCLES_RENDER_PT_passes_data": "RPPM_PT_passes",
+    # world
+    "CYCLES_WORLD_PT_preview": "RPPM_PT_world_preview",
+    "CYCLES_WORLD_PT_surface": "RPPM_PT_world_surface",
+}
+"""Panels of Cycles, and those that stand in their place."""
+
+EXCLUDED = {
+    "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are refused",
+    "CYCLES_LIGHT_PT_settings": f"portals, bounces and unshadowed lights: {NOT_RENDERED}",
+    "CYCLES_MATERIAL_PT_settings_volume": OF_CYCLES,
+    "CYCLES_OBJECT_PT_lightgroup": f"light groups: {NOT_RENDERED}",
+    "CYCLES_OBJECT_PT_motion_blur": f"motion blur: {NOT_RENDERED}",
+    "CYCLES_OBJECT_PT_shading_caustics": "caustics need no switch",
+    "CYCLES_OBJECT_PT_shading_gi_approximation": OF_CYCLES,
+    "CYCLES_OBJECT_PT_visibility_culling": OF_CYCLES,
+    "CYCLES_RENDER_PT_curves": f"hair: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_curves_viewport_display": f"hair: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_debug": OF_CYCLES,
+    "CYCLES_RENDER_PT_filter": f"kinds of objects in a view layer: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_light_paths_caustics": "caustics need no switch",
+    "CYCLES_RENDER_PT_light_paths_clamping": "nothing is clamped",
+    "CYCLES_RENDER_PT_light_paths_fast_gi": OF_CYCLES,
+    "CYCLES_RENDER_PT_passes_aov": f"passes of materials: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_passes_crypto": f"Cryptomatte: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_passes_light": f"passes of light: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_passes_lightgroups": f"light groups: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_performance_final_render": "persistent data is not kept",
+    "CYCLES_RENDER_PT_performance_threads": "the graphics device renders",
+    "CYCLES_RENDER_PT_performance_viewport": "the viewport finds its resolution itself",
+    "CYCLES_RENDER_PT_sampling_advanced_sample_subset": OF_CYCLES,
+    "CYCLES_RENDER_PT_simplify_culling": OF_CYCLES,
+    "CYCLES_RENDER_PT_subdivision": OF_CYCLES,
+    "CYCLES_RENDER_PT_volumes": OF_CYCLES,
+    "CYCLES_WORLD_PT_mist": f"the mist pass: {NOT_RENDERED}",
+    "CYCLES_WORLD_PT_ray_visibility": NOT_RENDERED,
+    "CYCLES_WORLD_PT_volume": NOT_RENDERED,
+    "OBJECT_PT_shadow_terminator": OF_CYCLES,
+    "VIEWLAYER_PT_layer_passes_lightgroups": f"light groups: {NOT_RENDERED}",
+    "VIEWLAYER_PT_override": f"overrides of materials: {NOT_RENDERED}",
+}
+"""Panels of Cycles that RPPM has nothing for, and why."""
+EXCLUDED_BEGINNINGS = {
+    "CYCLES_RENDER_PT_bake": "textures are not baked",
+    "CYCLES_RENDER_PT_motion_blur": f"motion blur: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_performance_compositor": "is the compositor's, which needs no engine",
+    "CYCLES_RENDER_PT_sampling_path_guiding": OF_CYCLES,
+    "CYCLES_RENDER_PT_sampling_render_denoise": f"denoising: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_sampling_viewport_denoise": f"denoising: {NOT_RENDERED}",
+    "CYCLES_WORLD_PT_settings": OF_CYCLES,
+}
+
+
+def shown(engine):
+    """Names of the registered panels of the Properties editor that say that they are for an engine."""
+    pending, found = [bpy.types.Panel], set()
+    while pending:
+        classes = pending.pop().__subclasses__()
+        pending += classes
+        found |= {cls for cls in classes if getattr(cls, "bl_space_type", "") == "PROPERTIES"}
+    return {
+        cls.__name__
+        for cls in found
+        if engine in getattr(cls, "COMPAT_ENGINES", ()) and hasattr(bpy.types, cls.__name__)
+    }
+
+
+def test_every_panel_of_cycles_has_a_counterpart_or_a_reason(scene):
+    ours = shown("RPPM")
+    missing = {
+        name
+        for name in shown("CYCLES") - ours - set(borrowed.UNFIT) - set(COUNTERPARTS) - set(EXCLUDED)
+        if not name.startswith((*EXCLUDED_BEGINNINGS, *borrowed.UNFIT_BEGINNINGS))
+    }
+    assert not missing
+    assert not (set(COUNTERPARTS) | set(EXCLUDED)) & ours and not set(COUNTERPARTS) & set(EXCLUDED)
+    for name in set(COUNTERPARTS.values()):
+        assert hasattr(bpy.types, name) and (name in ours or name.startswith("RPPM_PT_")), name
+
+
+def test_the_lists_name_nothing_that_is_not_there(scene):
+    if bpy.app.version[:2] == (5, 0):  # other versions have other panels
+        everything = shown("CYCLES") | shown("BLENDER_RENDER") | shown("BLENDER_EEVEE")
+        assert set(COUNTERPARTS) | set(EXCLUDED) | set(borrowed.UNFIT) <= everything | {
+            "NODE_DATA_PT_light", "NODE_DATA_PT_spot", "DATA_PT_falloff_curve",
+        }  # fmt: skip
+        assert everything >= borrowed.FITTING
+        for beginning in (*EXCLUDED_BEGINNINGS, *borrowed.UNFIT_BEGINNINGS):
+            assert any(name.startswith(beginning) for name in everything), beginning
+
+
+@pytest.mark.parametrize(
+    ("tab", "names"),
+    {
+        "camera": {"DATA_PT_lens", "DATA_PT_camera", "DATA_PT_camera_dof", "DATA_PT_camera_safe_areas",
+                   "DATA_PT_camera_background_image", "DATA_PT_camera_display"},
+        "object": {"OBJECT_PT_visibility"},
+        "particle": {"PARTICLE_PT_render_object", "PARTICLE_PT_render_collection", "PARTICLE_PT_emission"},
+        "texture": {"TEXTURE_PT_image", "TEXTURE_PT_context"},
+        "output": {"RENDER_PT_format", "RENDER_PT_frame_range", "RENDER_PT_output", "RENDER_PT_encoding",
+                   "RENDER_PT_stamp", "RENDER_PT_post_processing"},
+        "render": {"RENDER_PT_color_management", "RENDER_PT_simplify", "RENDER_PT_gpencil"},
+        "mesh": {"DATA_PT_uv_texture", "DATA_PT_vertex_colors", "DATA_PT_customdata", "DATA_PT_mesh_attributes"},
+        "world": {"WORLD_PT_context_world"},
+        "view_layer": {"VIEWLAYER_PT_layer"},
+    }.items(),
+)  # fmt: skip
+def test_tabs_have_what_users_look_for(scene, tab, names):
+    assert names <= shown("RPPM")
+
+
+def test_panels_without_a_place_do_not_show(scene):
+    """A panel in another one that is left out would hang in the air."""
+    ours = shown("RPPM")
+    for name in ours:
+        parent = getattr(getattr(bpy.types, name), "bl_parent_id", "")
+        if parent and hasattr(getattr(bpy.types, parent), "COMPAT_ENGINES"):
+            assert parent in ours, name
+
+
+def test_simplify_which_the_panel_offers_counts(scene):
+    cube = add_mesh(scene, "Quad")
+    modifier = cube.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = modifier.render_levels = 3
+    assert export(scene).triangle_count == 2 * 4**3
+    scene.render.use_simplify, scene.render.simplify_subdivision = True, 1
+    assert export(scene).triangle_count == 2 * 4
+
+
+def test_borrowed_panels_poll(scene):
+    """Blender's own poll functions let them show."""
+    cube = add_mesh(scene, "Quad")
+    context = context_of(scene, object=cube, mesh=cube.data, camera=scene.camera.data, world=None)
+    for name in ("OBJECT_PT_visibility", "DATA_PT_uv_texture", "DATA_PT_camera_dof", "RENDER_PT_simplify"):
+        assert getattr(bpy.types, name).poll(context), name
+    context.engine = "NO ENGINE"
+    assert not bpy.types.OBJECT_PT_visibility.poll(context)

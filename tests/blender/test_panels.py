@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panels show in which context, and that all that they show exists."""
+
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_light, add_mesh, add_object, new_material, set_world
+from drawing import RecordingLayout, context_of, drawn, drawn_panels
+
+from rppm_addon.blender import panels, reports
+from rppm_addon.blender.export.settings import export_settings
+from rppm_addon.blender.panels import presets, viewport_header
+from rppm_addon.blender.panels.base import RppmPanel
+from rppm_addon.blender.reports import RenderKind, RenderReport
+from rppm_addon.integrator.bandwidth import shrinkage
+from rppm_addon.integrator.memory import expected_memory
+from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
+from rppm_addon.scene import RenderSettings
+from rppm_addon.scene.quantities import bytes_text
+
+PANELS = [cls for cls in panels.CLASSES if issubclass(cls, RppmPanel)]
+
+
+@pytest.fixture(autouse=True)
+def no_reports():
+    reports.forget()
+    yield
+    reports.forget()
+
+
+def report(kind=RenderKind.FINAL, **values):
+    """A report of a render of 64x32 pixels."""
+    figures = {
+        "settings": RenderSettings(iterations=8, photons=1000), "iterations": 8, "photons": 8000, "seconds": 5.0,
+        "radius_metres": 0.012, "memory_bytes": 200 << 20, "build_seconds": 1.0, "device": "Device", "triangles": 12,
+    }  # fmt: skip
+    return RenderReport(kind, 64, 32, **figures | values)
+
+
+def test_panels_show_every_setting(scene):
+    records = drawn_panels(PANELS, context_of(scene))
+    shown = {name for record in records.values() for name in record.properties}
+    properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
+    assert shown >= properties | {"film_transparent", "film_exposure", "use_pass_z", "use_pass_normal"}
+    # Nothing has been rendered: no statistics and no warnings.
+    assert not set(records) & {"RPPM_PT_status", "RPPM_PT_warnings", "RPPM_PT_last_renders"}
+    assert records["RPPM_PT_sampling"].popovers == ["RPPM_PT_presets"]
+
+
+def test_panels_are_named_and_shown_for_this_engine_only(scene):
+    reports.record(scene.session_uid, report(warnings=("something",)))
+    contexts = dict.fromkeys(("light", "camera", "material", "world", "object"))
+    contexts |= {"world": set_world(scene), "material": new_material(), "object": add_mesh(scene)}
+    scene.render.engine = "CYCLES"
+    assert not drawn_panels(PANELS, context_of(scene, **contexts))
+    scene.render.engine = "RPPM"
+    names = [cls.__name__ for cls in panels.CLASSES]
+    assert all(name.startswith(("RPPM_PT_", "RPPM_OT_")) for name in names) and len(set(names)) == len(names)
+    parents = {cls.bl_parent_id for cls in PANELS if hasattr(cls, "bl_parent_id")}
+    assert all(hasattr(bpy.types, parent) for parent in parents)
+    assert len(drawn_panels(PANELS, context_of(scene, **contexts))) >= 20
+
+
+@pytest.mark.parametrize("kind", ["POINT", "SPOT", "SUN", "AREA"])
+def test_light_panels(scene, kind):
+    light = bpy.data.lights.new("Light", kind)
+    records = drawn_panels(panels.data.CLASSES, context_of(scene, light=light))
+    shown = {name for record in records.values() for name in record.properties}
+    assert {"energy", "color", "photon_share", "use_nodes"} <= shown
+    assert ("spot_size" in shown) == (kind == "SPOT") and ("spread" in shown) == (kind == "AREA")
+    assert ("use_soft_falloff" in shown) == (kind in {"POINT", "SPOT"})
+    light.use_nodes = True
+    socket = drawn(panels.data.RPPM_PT_light_nodes, context_of(scene, light=light)).templates[0]
+    assert (socket.node.type, socket.identifier) == ("OUTPUT_LIGHT", "Surface")
+    assert not drawn_panels(panels.data.CLASSES, context_of(scene))
+
+
+def test_the_panorama_panel(scene):
+    camera = scene.camera.data
+    panel, context = panels.data.RPPM_PT_panorama, context_of(scene, camera=camera)
+    assert not panel.poll(context)
+    camera.type = "PANO"
+    assert panel.poll(context)
+    expected = {"EQUIRECTANGULAR": "latitude_min", "FISHEYE_EQUISOLID": "fisheye_lens", "MIRRORBALL": "panorama_type"}
+    for kind, name in expected.items():
+        camera.panorama_type = kind
+        assert name in drawn(panel, context).properties
+
+
+def test_material_and_world_panels_edit_the_output_that_is_exported(scene):
+    material = new_material()
+    tree = material.node_tree
+    tree.nodes["Output"].target = "EEVEE"
+    ours = tree.nodes.new("ShaderNodeOutputMaterial")
+    ours.target = "CYCLES"
+    records = drawn_panels(panels.shading.CLASSES, context_of(scene, material=material))
+    shown = [socket for record in records.values() for socket in record.templates]
+    assert [socket.identifier for socket in shown] == ["Surface", "Volume", "Displacement"]
+    assert all(socket.node == ours for socket in shown)
+    assert records["RPPM_PT_material_settings"].properties == [
+        "pass_index", "displacement_method", "use_transparent_shadow",
+    ]  # fmt: skip
+    assert records["RPPM_PT_material_displacement"].labels == []
+    material.displacement_method = "DISPLACEMENT"
+    record = drawn(panels.shading.RPPM_PT_material_displacement, context_of(scene, material=material))
+    assert "bump" in record.labels[0]
+    tree.nodes.clear()
+    record = drawn(panels.shading.RPPM_PT_material_surface, context_of(scene, material=material))
+    assert record.labels == ["No output node"]
+    world = set_world(scene)
+    records = drawn_panels(panels.shading.CLASSES, context_of(scene, world=world))
+    assert records["RPPM_PT_world_surface"].templates[0].node.type == "OUTPUT_WORLD"
+    assert records["RPPM_PT_world_preview"].templates == [world]
+
+
+def test_ray_visibility(scene):
+    panel = panels.shading.RPPM_PT_ray_visibility
+    of_mesh = drawn(panel, context_of(scene, object=add_mesh(scene))).properties
+    assert of_mesh[-3:] == ["visible_shadow", "is_shadow_catcher", "is_holdout"]
+    of_light = drawn(panel, context_of(scene, object=add_light(scene, "POINT"))).properties
+    assert of_light == of_mesh[:4] == [f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission")]
+    assert not panel.poll(context_of(scene, object=add_object(scene, "Empty", None)))
+
+
+def test_the_radius_is_that_of_equations_2_and_3(scene):
+    """A first disk over as many pixels as the square of the scale has, that alpha shrinks."""
+    scene.render.resolution_x = scene.render.resolution_y = 2048  # twice the side of a megapixel
+    scene.rppm.radius_scale, scene.rppm.alpha, scene.rppm.iterations = 12.0, 0.5, 40
+    scene.rppm.viewport_iterations = 10
+    first = 24.0 / np.sqrt(np.pi)
+    ratio = np.prod([np.sqrt((k + 0.5) / (k + 1)) for k in range(1, 40)])
+    labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
+    assert f"{first:.2f} pixels" in labels
+    assert f"{first * ratio:.2f} pixels ({ratio:.0%}) after 40 iterations" in labels
+    assert f"{shrinkage(10, 0.5):.0%} after 10 iterations" in labels
+    scene.unit_settings.system = "METRIC"
+    reports.record(scene.session_uid, report(RenderKind.VIEWPORT))
+    labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
+    assert labels[-2:] == ["Last Viewport", "1.2 cm in iteration 8"]
+
+
+def test_expected_memory(scene):
+    """The closed form, and beside it what the scene took in the last render beyond its closed form."""
+    panel = panels.performance.RPPM_PT_performance
+    scene.render.use_border = True
+    scene.render.border_min_x, scene.render.border_max_x = 0.0, 0.5
+    scene.render.border_min_y, scene.render.border_max_y = 0.0, 1.0
+    scene.rppm.photons, scene.rppm.photon_path_length = 5000, 3
+    expected = expected_memory(16, 32, 5000, 3)
+    labels = drawn(panel, context_of(scene)).labels
+    assert labels[-1] == bytes_text(expected.total_bytes) and "known once it was rendered" in labels
+    reports.record(scene.session_uid, report())
+    beside = (200 << 20) - expected_memory(64, 32, 1000, 8).total_bytes
+    labels = drawn(panel, context_of(scene)).labels
+    assert labels[-1] == bytes_text(expected.total_bytes + beside)
+    scene.render.border_max_x = 0.0
+    assert drawn(panel, context_of(scene)).labels  # a border without pixels is no reason not to draw
+
+
+def test_rates_and_the_last_renders(scene):
+    reports.record(scene.session_uid, report(RenderKind.VIEWPORT, iterations=4, photons=1000))
+    for number in range(1, 4):
+        reports.record(scene.session_uid, report(photons=8000 * number, warnings=("a", "b")))
+    status = drawn(panels.performance.RPPM_PT_status, context_of(scene)).labels
+    assert status.index("Viewport") < status.index("Final")
+    assert "1 iterations, 250 photons" in status and "2 iterations, 6.00 k photons" in status
+    assert "8 of 8" in status and "200.0 MiB" in status
+    table = drawn(panels.performance.RPPM_PT_last_renders, context_of(scene)).labels
+    start = table.index("Photons")
+    assert table[start : start + 4] == ["Photons", "24.0 k", "16.0 k", "8.00 k"]
+    assert table[-4:] == ["Warnings", "2", "2", "2"]
+
+
+def test_shares_of_lights(scene):
+    """Power times factor as it is now; lights that no render knows yet come last."""
+    lamp = add_light(scene, "POINT", "Lamp")
+    add_light(scene, "SUN", "Late")
+    lamp.data.rppm.photon_share = 3.0
+    watts = {source_name("Lamp"): 10.0, source_name("Gone"): 10.0, SURFACES: 20.0, SURROUNDINGS: 60.0}
+    photons = {source_name("Lamp"): 500, source_name("Gone"): 0, SURFACES: 250, SURROUNDINGS: 250}
+    panel = panels.lights.RPPM_PT_light_shares
+    record = drawn(panel, context_of(scene))
+    assert record.properties == ["photon_share"] * 2 and "once the scene was rendered" in record.labels[-1]
+    reports.record(scene.session_uid, report(source_watts=watts, source_photons=photons))
+    rows = panels.lights.source_rows(scene)
+    assert [row.name for row in rows] == ["World", "Lamp", SURFACES, "Gone", "Late"]
+    assert [row.share for row in rows] == pytest.approx([60 / 120, 30 / 120, 20 / 120, 10 / 120, None], nan_ok=True)
+    assert [row.sent for row in rows[:4]] == [0.25, 0.5, 0.25, 0.0]
+    assert [row.light for row in rows] == [None, lamp.data, None, None, bpy.data.lights["Late"]]
+    labels = drawn(panel, context_of(scene)).labels
+    assert "25.0%" in labels and "50.0%" in labels
+    # A later report of a viewport that knows no powers hides nothing.
+    reports.record(scene.session_uid, report(RenderKind.VIEWPORT))
+    assert panels.lights.source_rows(scene) == rows
+
+
+def test_many_lights_are_cut_short(scene):
+    for number in range(40):
+        add_light(scene, "POINT", f"Lamp {number}")
+    record = drawn(panels.lights.RPPM_PT_light_shares, context_of(scene))
+    assert len(record.properties) == panels.lights.LIGHTS_SHOWN and "and 16 more" in record.labels
+
+
+def test_presets_set_what_they_say(scene):
+    folder = bpy.utils.preset_paths("rppm")
+    files = {path.stem: path for path in (presets.FOLDER / "presets" / "rppm").glob("*.py")}
+    assert str(presets.FOLDER / "presets" / "rppm") in folder and set(files) == {"Draft", "Balanced", "Final"}
+    emitted = {}
+    for name, path in files.items():
+        for setting in presets.SETTINGS:
+            scene.rppm.property_unset(setting)
+        scene.rppm.iterations, scene.rppm.seed = 3, 7
+        bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RPPM_PT_presets")
+        settings = export_settings(scene)
+        settings.validate()
+        written = {line.split(" = ")[0] for line in path.read_text().splitlines() if line.startswith("settings.")}
+        assert written == set(presets.RPPM_OT_preset_add.preset_values)
+        assert settings.seed == 7
+        emitted[name] = settings.iterations * settings.photons
+        if name == "Balanced":
+            for setting in presets.SETTINGS:
+                expected = getattr(RenderSettings(), setting)
+                assert getattr(settings, setting) == (
+                    pytest.approx(expected, rel=1e-6) if isinstance(expected, float) else expected
+                )
+    assert emitted["Draft"] * 8 == emitted["Balanced"] == emitted["Final"] // 8
+
+
+def test_a_preset_of_the_users_own(scene, tmp_path, monkeypatch):
+    monkeypatch.setattr(bpy.utils, "user_resource", lambda kind, path="", create=False: str(tmp_path))
+    scene.rppm.photons, scene.rppm.direct_light = 777, "PHOTONS"
+    assert bpy.ops.rppm.preset_add(name="mine") == {"FINISHED"}
+    (saved,) = tmp_path.glob("*.py")
+    scene.rppm.photons, scene.rppm.direct_light = 5, "RAYS"
+    bpy.ops.script.execute_preset(filepath=str(saved), menu_idname="RPPM_PT_presets")
+    assert (scene.rppm.photons, scene.rppm.direct_light) == (777, "PHOTONS")
+
+
+def test_the_pause_button_shows_in_rendered_viewports(scene):
+    def shown(engine, shading):
+        header = SimpleNamespace(layout=RecordingLayout())
+        space = SimpleNamespace(type="VIEW_3D", shading=SimpleNamespace(type=shading))
+        viewport_header.draw_pause(header, context_of(scene, engine=engine, space_data=space))
+        return header.layout.record.properties
+
+    assert shown("RPPM", "RENDERED") == ["viewport_paused"]
+    assert shown("RPPM", "SOLID") == shown("CYCLES", "RENDERED") == []

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What final renders leave for the panels, against what was rendered."""
+
+import math
+
+import bpy
+import pytest
+from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
+from drawing import context_of, drawn
+
+from rppm_addon.blender import panels, reports
+from rppm_addon.blender.export.settings import export_settings
+from rppm_addon.blender.readings import memory_reading, photon_shares, radius_reading
+from rppm_addon.blender.reports import RenderKind, RenderReport
+from rppm_addon.blender.subjects import SubjectKind, select, subjects
+from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
+from rppm_addon.scene import RenderSettings
+
+
+@pytest.fixture(autouse=True)
+def no_reports():
+    reports.forget()
+    yield
+    reports.forget()
+
+
+@pytest.fixture
+def facing(scene):
+    """A white quad that an orthographic camera faces and that fills the picture, 2 m across."""
+    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 2.0
+    add_mesh(scene, "Quad")
+    scene.rppm.iterations, scene.rppm.photons, scene.rppm.photon_path_length = 1, 4000, 1
+    scene.rppm.filter_width, scene.rppm.final_gather = 0.0, False
+    set_world(scene)
+    return scene
+
+
+def rendered(scene) -> RenderReport:
+    bpy.ops.render.render()
+    return reports.reports_of(scene.session_uid).finals[0]
+
+
+def test_the_radius_that_is_shown_is_the_one_that_is_used(facing):
+    """All surfaces face the camera: r_max is Eq. 3's radius, as wide as the panel's pixels are on the quad."""
+    add_light(facing, "SUN")
+    facing.rppm.iterations, facing.rppm.photons, facing.rppm.alpha = 7, 64, 0.6
+    facing.rppm.radius_scale = 90.0  # of a megapixel: 2.8 pixels of these
+    report = rendered(facing)
+    shown = radius_reading(export_settings(facing), 32, 32)
+    assert report.radius_metres == pytest.approx(shown.last * 2.0 / 32, rel=1e-4)
+    assert shown.first == pytest.approx(90.0 * 32 / 1024 / math.sqrt(math.pi))
+
+
+def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
+    """Lamps of all kinds, one of them with nodes, a glowing quad and a sky, with factors."""
+    factors = {"POINT": 1.0, "SPOT": 2.5, "SUN": 0.25, "AREA": 1.0}
+    for kind, factor in factors.items():
+        lamp = add_light(facing, kind, f"The {kind}", energy=3.0 if kind == "SUN" else 40.0)
+        lamp.data.rppm.photon_share = factor
+    tree = bpy.data.objects["The AREA"].data
+    tree.use_nodes = True
+    tree.node_tree.nodes["Emission"].inputs["Strength"].default_value = 2.0
+    glow = new_material("Glow")
+    to_surface(glow, add_node(glow.node_tree, "ShaderNodeEmission", Strength=5.0))
+    add_mesh(facing, "Glowing", location=(0.0, 0.0, -1.0)).data.materials.append(glow)
+    set_world(facing, (0.3, 0.3, 0.3))
+    report = rendered(facing)
+    names = {source_name(f"The {kind}") for kind in factors} | {SURFACES, SURROUNDINGS}
+    assert set(report.source_watts) == set(report.source_photons) == names
+    assert sum(report.source_photons.values()) == 4000
+    shares = {row.name: row for row in panels.lights.source_rows(facing)}
+    for name, row in shares.items():
+        sent = report.source_photons[name if name in names else source_name(name)]
+        assert row.sent == sent / 4000
+        assert 4000 * row.share == pytest.approx(sent, abs=1.0) and sent > 10, name
+    # Other factors change the shares before anything is rendered again, and the next render agrees.
+    bpy.data.lights["The SUN"].rppm.photon_share = 4.0
+    expected = {row.name: row.share for row in panels.lights.source_rows(facing)}
+    assert expected["The SUN"] > 2 * shares["The SUN"].share
+    rendered(facing)
+    for row in panels.lights.source_rows(facing):
+        assert row.sent == pytest.approx(expected[row.name], abs=1.0 / 4000)
+
+
+def test_the_memory_that_is_expected_is_the_one_that_is_used(facing):
+    """With the same settings exactly; with others, lists of photons grow that only a render can tell the length of."""
+    add_light(facing, "SUN")
+    report = rendered(facing)
+    assert memory_reading(export_settings(facing), 32, 32, report).total_bytes == report.memory_bytes
+    facing.rppm.photons, facing.render.resolution_x = 8000, 64
+    expected = memory_reading(export_settings(facing), 64, 32, report).total_bytes
+    assert expected == pytest.approx(rendered(facing).memory_bytes, rel=0.05)
+
+
+def test_what_a_final_render_reports(facing):
+    add_light(facing, "SUN")
+    facing.rppm.iterations = 3
+    report = rendered(facing)
+    assert report.kind is RenderKind.FINAL and (report.width, report.height) == (32, 32)
+    assert (report.iterations, report.photons, report.triangles) == (3, 12000, 2)
+    assert 0.0 < report.build_seconds < report.seconds and report.settings == export_settings(facing)
+    assert report.photons_per_second == pytest.approx(4000 * report.iterations_per_second)
+    assert report.photons_per_second * (report.seconds - report.build_seconds) == pytest.approx(12000)
+    assert report.device in drawn(panels.performance.RPPM_PT_status, context_of(facing)).labels
+    second = rendered(facing)
+    kept = reports.reports_of(facing.session_uid)
+    assert kept.finals == (second, report) and kept.latest is second and kept.viewport is None
+
+
+def test_an_error_is_shown_until_a_render_succeeds(facing):
+    lamp = add_light(facing, "SUN")
+    lamp.data.rppm.photon_share = 0.0
+    with pytest.raises(RuntimeError, match="photon share 0"):
+        bpy.ops.render.render()
+    panel, context = panels.warnings.RPPM_PT_warnings, context_of(facing)
+    assert panel.poll(context) and "all lights have photon share 0" in " ".join(drawn(panel, context).labels)
+    lamp.data.rppm.photon_share = 1.0
+    rendered(facing)
+    assert not panel.poll(context)
+
+
+def test_warnings_name_what_can_be_selected(facing):
+    """Real warnings of an export: of a node of a material on two objects, a light, an object and the world."""
+    material = new_material("Odd")
+    tree = material.node_tree
+    subsurface = add_node(tree, "ShaderNodeBsdfDiffuse")
+    link(tree, add_node(tree, "ShaderNodeAmbientOcclusion", "Shade").outputs["Color"], subsurface.inputs["Color"])
+    to_surface(material, subsurface)
+    first, second = (add_mesh(facing, name, location=(0, 0, -1)) for name in ("First", "Second"))
+    other = bpy.data.materials.new("Other")
+    first.data.materials.append(other)
+    first.data.materials.append(material)
+    first.data.polygons[0].material_index = 1
+    second.data.materials.append(material)
+    add_light(facing, "AREA", "Flat", size=0.0)
+    world = set_world(facing)
+    world.node_tree.nodes.new("ShaderNodeVolumeAbsorption")
+    link(
+        world.node_tree,
+        world.node_tree.nodes["Volume Absorption"].outputs[0],
+        world.node_tree.nodes["World Output"].inputs["Volume"],
+    )
+    rendered(facing)
+    buttons = drawn(panels.warnings.RPPM_PT_warnings, context_of(facing)).operators
+    named = {(button.kind, button.name): button.node for button in buttons}
+    assert named == {("MATERIAL", "Odd"): "Shade", ("OBJECT", "Flat"): "", ("WORLD", world.name): ""}
+    tree.nodes.active = tree.nodes["Output"]
+    assert bpy.ops.rppm.select_subject(kind="MATERIAL", name="Odd", node="Shade") == {"FINISHED"}
+    assert set(bpy.context.selected_objects) == {first, second}
+    assert bpy.context.view_layer.objects.active.active_material == material
+    assert tree.nodes.active.name == "Shade" and tree.nodes["Shade"].select and not tree.nodes["Output"].select
+    bpy.ops.rppm.select_subject(kind="OBJECT", name="Flat")
+    assert [thing.name for thing in bpy.context.selected_objects] == ["Flat"]
+    for kind in ("OBJECT", "MATERIAL", "WORLD"):  # something that was removed since
+        assert bpy.ops.rppm.select_subject(kind=kind, name="Gone") == {"FINISHED"}
+    assert [thing.name for thing in bpy.context.selected_objects] == ["Flat"]
+
+
+def report(kind=RenderKind.FINAL, **values):
+    figures = {"iterations": 1, "photons": 1, "seconds": 1.0, "radius_metres": 1.0, "memory_bytes": 1}
+    return RenderReport(kind, 1, 1, RenderSettings(), **figures | values)
+
+
+def test_little_is_kept():
+    for scene in range(reports.SCENES_KEPT + 3):
+        for number in range(reports.FINALS_KEPT + 3):
+            reports.record(scene, report(photons=number, warnings=tuple(map(str, range(1000)))))
+        reports.record(scene, report(RenderKind.VIEWPORT))
+    assert reports.reports_of(0) == reports.reports_of(2) == reports.SceneReports()
+    kept = reports.reports_of(scene)
+    assert [final.photons for final in kept.finals] == [7, 6, 5, 4, 3]
+    assert len(kept.finals[0].warnings) == reports.WARNINGS_KEPT and kept.finals[0].warning_count == 1000
+    assert kept.latest is kept.viewport
+
+
+def test_shares_without_any_weight():
+    assert photon_shares({}, {}) == {}
+    assert photon_shares({"a": 1.0}, {"a": 0.0}) == {"a": 0.0}
+    assert photon_shares({"a": 1.0, "b": 3.0}, {"a": 3.0}) == {"a": 0.5, "b": 0.5}
+
+
+def test_nothing_that_is_reported_is_saved(facing, tmp_path):
+    reports.record(facing.session_uid, report(warnings=("a warning that is nowhere in the file",)))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"), compress=False, copy=True)
+    assert b"nowhere in the file" not in (tmp_path / "saved.blend").read_bytes()
+
+
+def test_warnings_are_grouped_by_what_they_are_about():
+    found = subjects(
+        [
+            'Material "Glass "A"": node "Noise.001" (TEX_NOISE) is not rendered yet; 0 is used',
+            'Object "Cloud": volumes are not rendered yet; it is left out',
+            "3.00% of the photons' flux was lost in tracing",
+            'Material "Glass "A"": it has no Material Output node and is black',
+            'Camera "Eye": its negative scale is ignored; the picture is not mirrored',
+            'World "Sky": node "Sky" (TEX_SKY) has the type X, which is not rendered; Y is used',
+        ]
+    )
+    assert [(subject.kind, subject.name, subject.node) for subject in found] == [
+        (SubjectKind.MATERIAL, 'Glass "A"', "Noise.001"),
+        (SubjectKind.OBJECT, "Cloud", ""),
+        (None, "", ""),
+        (SubjectKind.OBJECT, "Eye", ""),
+        (SubjectKind.WORLD, "Sky", "Sky"),
+    ]
+    assert found[0].texts == [
+        'node "Noise.001" (TEX_NOISE) is not rendered yet; 0 is used', "it has no Material Output node and is black",
+    ]  # fmt: skip
+    assert found[2].texts == ["3.00% of the photons' flux was lost in tracing"]
+
+
+def test_many_warnings_are_cut_short_and_counted(facing):
+    texts = [f'Material "M{k % 30}": warning {k}' for k in range(90)]
+    reports.record(facing.session_uid, report(warnings=tuple(texts)))
+    record = drawn(panels.warnings.RPPM_PT_warnings, context_of(facing))
+    assert record.labels[0] == "90 " and record.labels[-1] == "30 more are in the log"
+    assert len(record.operators) == panels.warnings.SUBJECTS_SHOWN and "M0 (3)" in record.labels
+
+
+def test_a_hidden_object_is_said_to_be_hidden(facing):
+    hidden = add_mesh(facing, "Hidden")
+    hidden.hide_set(True)
+    assert "hidden" in select(bpy.context, SubjectKind.OBJECT, "Hidden")
+    bpy.context.view_layer.objects.active = bpy.data.objects["Quad"]
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.rppm.select_subject(kind="OBJECT", name="Quad") == {"FINISHED"}
+    assert bpy.context.mode == "OBJECT"

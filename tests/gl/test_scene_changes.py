@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene that is updated in part gives the picture of one that is built anew, bit for bit."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import scenes
+from lobes import Lobe, LobeKind, image_world, material
+
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import Image, Scene
+
+
+def with_(scene: Scene, **members: object) -> Scene:
+    """A scene that shares all other members."""
+    return dataclasses.replace(scene, warnings=[], **members)
+
+
+def replaced(members: list, index: int, **values: object) -> list:
+    return [dataclasses.replace(m, **values) if i == index else m for i, m in enumerate(members)]
+
+
+def first_scene() -> Scene:
+    scene = scenes.room(24, photons=1024, camera_path_length=3, photon_path_length=3)
+    pixels = np.random.default_rng(1).integers(0, 255, (4, 8, 4), np.uint8)
+    scene.images = [Image("sky", pixels, "LINEAR")]
+    scene.world = image_world(0)
+    return scene
+
+
+def moved_camera(scene: Scene) -> Scene:
+    matrix = scenes.looking((0.4, -3.2, 0.3), (0, 0, 0))
+    return with_(scene, camera=dataclasses.replace(scene.camera, matrix=matrix))
+
+
+def moved_object(scene: Scene) -> Scene:
+    return with_(
+        scene, instances=replaced(scene.instances, -1 % len(scene.instances), matrix=scenes.placed(0, 0, 0.2, 0.3))
+    )
+
+
+def other_mesh(scene: Scene) -> Scene:
+    index = scene.instances[-1].mesh
+    mesh = scene.meshes[index]
+    return with_(scene, meshes=replaced(scene.meshes, index, positions=(mesh.positions * 0.7).astype(np.float32)))
+
+
+def other_material(scene: Scene) -> Scene:
+    red = material(
+        "red", Lobe(LobeKind.DIFFUSE, color=(0.9, 0.1, 0.05)), Lobe(LobeKind.GLOSSY, weight=0.2, roughness=0.3)
+    )
+    return with_(scene, materials=[red, *scene.materials[1:]])
+
+
+def brighter_light(scene: Scene) -> Scene:
+    return with_(scene, lights=replaced(scene.lights, 0, strength=3.0 * scene.lights[0].strength))
+
+
+def other_image(scene: Scene) -> Scene:
+    return with_(scene, images=[Image("sky", scene.images[0].pixels[:, ::-1].copy(), "LINEAR")])
+
+
+def other_world(scene: Scene) -> Scene:
+    return with_(scene, world=dataclasses.replace(scene.world, radiance=np.array([0.1, 0.4, 0.2])))
+
+
+def other_resolution(scene: Scene) -> Scene:
+    return with_(scene, camera=dataclasses.replace(scene.camera, width=17, height=13))
+
+
+def fewer_photons(scene: Scene) -> Scene:
+    return with_(scene, settings=dataclasses.replace(scene.settings, photons=300, photon_path_length=2))
+
+
+def fewer_objects(scene: Scene) -> Scene:
+    return with_(scene, instances=scene.instances[:-1])
+
+
+CHANGES = (
+    moved_camera, moved_object, other_mesh, other_material, brighter_light, other_image, other_world, other_resolution,
+    fewer_photons, fewer_objects,
+)  # fmt: skip
+
+
+def pictures(mapper: ProgressivePhotonMapper) -> list[np.ndarray]:
+    for _ in range(3):
+        mapper.iterate()
+    return [mapper.film.read_radiance(), *mapper.film.read_surface()]
+
+
+@pytest.fixture
+def other_mapper(context, library):
+    mapper = ProgressivePhotonMapper(context, library)
+    yield mapper
+    mapper.release()
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_an_update_equals_a_build(mapper, other_mapper, change):
+    scene = first_scene()
+    mapper.build(scene)
+    before = pictures(mapper)
+    changed = change(scene)
+    mapper.update(changed)
+    other_mapper.build(changed)
+    updated, built = pictures(mapper), pictures(other_mapper)
+    for a, b in zip(updated, built, strict=True):
+        np.testing.assert_array_equal(a, b)
+    # else the comparison shows nothing
+    assert before[0].shape != updated[0].shape or not np.array_equal(before[0], updated[0])
+
+
+def test_changes_one_after_the_other(mapper, other_mapper):
+    scene = first_scene()
+    mapper.build(scene)
+    for change in CHANGES:
+        scene = change(scene)
+        mapper.update(scene)
+        mapper.iterate()
+    other_mapper.build(scene)
+    other_mapper.iterate()
+    np.testing.assert_array_equal(mapper.film.read_radiance(), other_mapper.film.read_radiance())
+
+
+def test_the_centre_of_the_deep_cubemap_changes_no_picture(mapper, other_mapper):
+    scene = first_scene()
+    mapper.build(scene)
+    centre = mapper.centre.copy()
+    moved = moved_camera(scene)
+    mapper.update(moved, keep_centre=True)
+    np.testing.assert_array_equal(mapper.centre, centre)
+    other_mapper.build(moved)
+    assert not np.array_equal(other_mapper.centre, centre)
+    kept, built = pictures(mapper), pictures(other_mapper)
+    # Splats and rays start from other cells: the same photons and hits all the same.
+    np.testing.assert_allclose(kept[0], built[0], rtol=1e-5, atol=1e-7)
+
+
+def test_only_what_changed_is_built(mapper, monkeypatch):
+    """Of an edit no more is redone than it needs: neither geometry nor deep cubemap for a view or a material."""
+    scene = first_scene()
+    mapper.build(scene)
+    done: list[str] = []
+    for part in ("_geometry", "_materials", "_emission", "_deep_cubemap"):
+        stage = getattr(mapper, part)
+        whole = stage.build
+        monkeypatch.setattr(stage, "build", lambda *a, whole=whole, part=part, **k: (done.append(part), whole(*a, **k)))
+
+    def built_by(change) -> list[str]:
+        nonlocal scene
+        scene = change(scene)
+        done.clear()
+        mapper.update(scene, keep_centre=True)
+        return list(done)
+
+    assert built_by(moved_camera) == []
+    assert built_by(other_material) == ["_materials", "_emission"]
+    assert built_by(brighter_light) == ["_emission"]
+    assert built_by(moved_object) == ["_geometry", "_emission", "_deep_cubemap"]
+    assert built_by(lambda scene: with_(scene)) == []
+
+
+def test_warnings_stay_with_the_scene(mapper):
+    scene = first_scene()
+    scene.materials[0].graph.surface = dataclasses.replace(scene.materials[0].graph.surface, node=99)
+    mapper.build(scene)
+    assert scene.warnings
+    moved = moved_camera(scene)
+    mapper.update(moved)
+    assert moved.warnings == scene.warnings
+
+
+def test_an_iteration_that_is_dropped_leaves_nothing_behind(mapper, other_mapper):
+    scene = first_scene()
+    mapper.build(scene)
+    steps = mapper.steps()
+    for _ in range(4):
+        next(steps)
+    steps.close()
+    moved = moved_camera(scene)
+    mapper.update(moved)
+    other_mapper.build(moved)
+    np.testing.assert_array_equal(pictures(mapper)[0], pictures(other_mapper)[0])

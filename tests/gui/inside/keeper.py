@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The first process of the chroot's namespaces: starts programs as it is told, and all end with it.
+
+Requests are lines of JSON on stdin, answers lines of JSON on stdout; it leaves when stdin ends.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+started: dict[str, subprocess.Popen] = {}
+
+
+def start(name: str, command: list[str], environment: dict[str, str], log: str) -> dict:
+    """Start a program; its output goes to ``log``."""
+    with open(log, "wb") as output:
+        started[name] = subprocess.Popen(
+            command, env=os.environ | environment, stdin=subprocess.DEVNULL, stdout=output, stderr=output
+        )
+    return {"pid": started[name].pid}
+
+
+def run(command: list[str], environment: dict[str, str], seconds: float) -> dict:
+    """Run a program to its end; ``status`` is None where it took longer than ``seconds``."""
+    try:
+        done = subprocess.run(
+            command, env=os.environ | environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=seconds
+        )
+    except subprocess.TimeoutExpired as expired:
+        return {"status": None, "output": f"{_text(expired.stdout)}{_text(expired.stderr)}"}
+    return {"status": done.returncode, "output": f"{_text(done.stdout)}{_text(done.stderr)}"}
+
+
+def wait(name: str, seconds: float) -> dict:
+    """The exit status of a started program; None while it still runs after ``seconds``."""
+    try:
+        return {"status": started[name].wait(seconds)}
+    except subprocess.TimeoutExpired:
+        return {"status": None}
+
+
+def kill(pid: int) -> dict:
+    """Kill a process at once."""
+    os.kill(pid, signal.SIGKILL)
+    return {}
+
+
+def processes() -> dict:
+    """Command lines of the living by process number, this one left out."""
+    found = {}
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdecimal() and folder.name != str(os.getpid()):
+            try:
+                state = (folder / "stat").read_text().rpartition(")")[2].split()[0]
+                command = (folder / "cmdline").read_bytes().rstrip(b"\0").split(b"\0")
+            except OSError:
+                continue  # it has just ended
+            if state != "Z":
+                found[folder.name] = [_text(word) for word in command]
+    return {"processes": found}
+
+
+def shared_memory() -> dict:
+    """Names in /dev/shm, and of RPPM's blocks where that is too small."""
+    return {"names": sorted(os.listdir("/dev/shm")) + [path.name for path in Path("/tmp").glob("rppm*")]}
+
+
+def cpu_seconds(pid: int) -> dict:
+    """Processor time that a process has used."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return {"seconds": (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), "at": time.monotonic()}
+
+
+def _text(data: bytes | None) -> str:
+    return (data or b"").decode(errors="replace")
+
+
+def main() -> None:
+    requests = {f.__name__: f for f in (start, run, wait, kill, processes, shared_memory, cpu_seconds)}
+    for line in sys.stdin:
+        name, arguments = json.loads(line)
+        try:
+            answer = requests[name](**arguments)
+        except Exception as error:
+            answer = {"error": f"{type(error).__name__}: {error}"}
+        print(json.dumps(answer), flush=True)
+
+
+if __name__ == "__main__":
+    main()

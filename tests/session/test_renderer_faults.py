@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whatever the renderer's process does, Blender goes on and can say what happened. Here the process is faked."""
+
+import statistics
+import time
+
+import numpy as np
+import pytest
+
+from rppm_addon.session.client import MOST_RESTARTS, ProcessState
+from rppm_addon.session.sessions import SessionKind
+
+from .conftest import children, scene_of, wait_until
+
+LONGEST_CALL = 0.5
+"""Seconds: far more than a call takes, far less than one that waits for the process. Tests run side by side."""
+USUAL_CALL = 0.005
+
+
+def viewport(process, generation=1):
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene_of(), generation, False)
+    return session
+
+
+def failed(process):
+    wait_until(lambda: process.state is ProcessState.FAILED)
+    assert process.error.count("\n") == 0
+    assert str(process.log_path) in process.error
+    assert not children()
+    return process.error
+
+
+@pytest.mark.parametrize(
+    ("fault", "text"),
+    [
+        ("import_error", "ended with code 1"),
+        ("ends_before_the_greeting", "ended with code 3"),
+        ("dies_with_each_scene", "ended by SIGSEGV"),
+        ("dies_amid_a_message", "ended with code 7"),
+        ("sends_rubbish_first", "cannot be understood"),
+        ("sends_no_json", "cannot be understood"),
+        ("sends_unknown_messages", "cannot be understood .*weather"),
+        ("sends_wrong_content", "cannot be understood .*mood"),
+        ("sends_impossible_frames", "cannot be understood .*1048576"),
+        ("names_foreign_files", "cannot be understood .*passwd"),
+    ],
+)
+def test_what_happens_again_and_again_ends_in_failure(start, fault, text):
+    process = start(fault)
+    session = viewport(process)
+    error = failed(process)
+    import re
+
+    assert re.search(text, error)
+    assert process.restarts == MOST_RESTARTS == 2
+    assert session.status.error == error and session.status.settled
+    assert viewport(process).status.error == error
+
+
+@pytest.mark.parametrize(
+    ("fault", "text"), [("has_no_device", "install a driver"), ("is_of_another_version", "restart Blender")]
+)
+def test_what_another_process_would_not_change_is_tried_once(start, fault, text):
+    process = start(fault)
+    viewport(process)
+    assert text in failed(process)
+    assert process.restarts == 0
+
+
+def test_a_program_that_is_not_there(start, tmp_path):
+    process = start()
+    process._python = [str(tmp_path / "python")]
+    viewport(process)
+    assert "cannot be started" in failed(process)
+
+
+@pytest.mark.parametrize(
+    ("fault", "patience", "text"),
+    [
+        ("hangs_in_the_greeting", {"start": 0.5}, "did not start within 0.5 s"),
+        ("hangs_and_stops_reading", {"start": 30.0, "ping": 0.05, "answer": 0.5}, "did not answer for 0.5 s"),
+        ("hangs_after_a_frame", {"start": 30.0, "ping": 0.05, "answer": 0.5}, "did not answer for 0.5 s"),
+    ],
+)
+def test_who_hangs_is_ended(start, fault, patience, text):
+    process = start(fault, **patience)
+    viewport(process)
+    assert text in failed(process)
+    assert process.restarts == MOST_RESTARTS
+
+
+def test_the_log_has_what_the_process_printed(start):
+    process = start("import_error")
+    viewport(process)
+    failed(process)
+    assert process.log_path.read_text().count("ImportError: no module that draws") == 1 + MOST_RESTARTS
+
+
+def test_restart_tries_again(start):
+    process = start("import_error")
+    viewport(process)
+    failed(process)
+    process.restart()
+    assert process.state is ProcessState.STARTING and process.restarts == 0 and not process.error
+    failed(process)
+    assert process.restarts == MOST_RESTARTS
+
+
+def test_frames_go_on_after_a_death_amid_a_frame(start):
+    process = start("is_killed_amid_a_frame")
+    session = viewport(process)
+    first = wait_until(session.newest)
+    second = wait_until(lambda: (frame := session.newest()).sequence > first.sequence and frame)
+    for frame in (first, second):
+        assert frame.generation == 1 and np.array_equal(frame.combined, np.ones((8, 8, 4)))
+    wait_until(lambda: process.state is ProcessState.RUNNING)
+    assert process.restarts == 1 and "SIGKILL" in process.error
+
+
+def test_old_and_unknown_frames_are_not_shown(start):
+    process = start("sends_old_frames")
+    session = viewport(process, generation=5)
+    wait_until(lambda: session.status.settled)
+    frame = session.newest()
+    assert (frame.generation, frame.sequence) == (5, 1) and (frame.combined == 1.0).all()
+    assert process.state is ProcessState.RUNNING
+
+
+@pytest.mark.parametrize(
+    "fault", ["floods", "hangs_in_the_greeting", "hangs_and_stops_reading", "sends_old_frames", "dies_with_each_scene"]
+)
+def test_calls_return_at_once(start, fault):
+    """Among them scenes of 8 MB that nobody reads."""
+    process = start(fault)
+    pixels = np.zeros((1024, 512, 4), np.float32)
+    calls = []
+
+    def timed(function, *arguments):
+        began = time.perf_counter()
+        result = function(*arguments)
+        calls.append(time.perf_counter() - began)
+        return result
+
+    from rppm_addon.scene import Image
+
+    session = timed(process.open, SessionKind.VIEWPORT)
+    ends = time.monotonic() + 1.5
+    generation = 0
+    while time.monotonic() < ends:
+        generation += 1
+        timed(session.show, scene_of(images=[Image("Large", pixels.copy())]), generation, True)
+        timed(session.pause, generation % 2 == 0)
+        timed(session.newest)
+        timed(lambda: (session.status, process.state, process.error))
+        time.sleep(0.01)
+    timed(process.open(SessionKind.VIEWPORT).close)
+    assert max(calls) < LONGEST_CALL
+    assert statistics.median(calls) < USUAL_CALL
+
+
+def test_close_ends_who_does_not_leave(start):
+    process = start("ignores_the_end", leave=0.2)
+    viewport(process)
+    wait_until(lambda: process.state is ProcessState.RUNNING)
+    (child,) = children()
+    began = time.monotonic()
+    process.close()
+    assert time.monotonic() - began < 4.0
+    assert child not in children() and process.state is ProcessState.STOPPED
+
+
+def test_close_while_it_starts(start):
+    process = start("hangs_in_the_greeting", leave=0.2)
+    viewport(process)
+    process.close()
+    assert process.state is ProcessState.STOPPED and not children()
+    viewport(process)
+    assert process.state is ProcessState.STARTING
+
+
+def test_close_of_what_has_failed(start):
+    process = start("import_error")
+    viewport(process)
+    failed(process)
+    process.close()
+    assert process.state is ProcessState.STOPPED and not process.error

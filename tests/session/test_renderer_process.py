@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The real process of the renderer: what it renders, and that it leaves nothing behind."""
+
+import dataclasses
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rppm_addon.scene.errors import RendererError, SettingsError
+from rppm_addon.session.client import ProcessState
+from rppm_addon.session.remote_rendering import render
+from rppm_addon.session.render_job import RenderJob
+from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.sessions import SessionKind
+
+from .conftest import children, is_running, scene_of, shared_blocks, wait_until
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def child_of(process):
+    """The id of the process's process once it runs."""
+    wait_until(lambda: process.state is ProcessState.RUNNING)
+    (child,) = children()
+    return child
+
+
+def frame_of(session, generation):
+    return wait_until(lambda: (frame := session.newest()) and frame.generation == generation and frame)
+
+
+def expected(scene):
+    with Renderer() as renderer:
+        return renderer.render(scene).frame
+
+
+def test_a_viewport_settles_on_the_picture_of_a_render(start):
+    process = start()
+    session = process.open(SessionKind.VIEWPORT)
+    scene = scene_of(3)
+    session.show(scene, 1, False)
+    wait_until(lambda: session.status.settled)
+    assert np.array_equal(session.newest().combined, expected(scene).combined)
+    status = session.status
+    assert (status.generation, status.iteration, status.iterations, status.error) == (1, 3, 3, "")
+    assert status.photons == 3 * scene.settings.photons and status.memory_bytes > 0 and status.radius_metres > 0.0
+    assert process.device.name and float(process.device.version) >= 4.3
+    darker = dataclasses.replace(scene, exposure=0.5)
+    session.show(darker, 2, False)
+    wait_until(lambda: session.status.generation == 2 and session.status.settled)
+    assert np.array_equal(session.newest().combined, expected(darker).combined)
+    wider = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, width=40, height=24))
+    session.show(wider, 3, False)
+    assert frame_of(session, 3).combined.shape == (24, 40, 4)
+
+
+def test_of_many_scenes_the_last_is_shown(start):
+    process = start()
+    session = process.open(SessionKind.VIEWPORT)
+    shown = set()
+    for generation in range(1, 300):
+        session.show(scene_of(exposure=generation), generation, True)
+        time.sleep(0.002)
+        if (frame := session.newest()) is not None:
+            shown.add(frame.generation)
+    last = frame_of(session, 299)
+    assert np.array_equal(last.combined, expected(scene_of(last.progress * 1000, exposure=299)).combined)
+    assert session._sent < 299
+
+
+def test_pause(start):
+    process = start()
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene_of(100000), 1, False)
+    frame_of(session, 1)
+    session.pause(True)
+    wait_until(lambda: (before := session.newest().sequence) and (time.sleep(0.5), session.newest().sequence == before)[1])
+    session.pause(False)
+    before = session.newest().sequence
+    wait_until(lambda: session.newest().sequence > before)
+
+
+def test_a_bad_scene_does_not_end_the_process(start):
+    process = start()
+    session = process.open(SessionKind.VIEWPORT)
+    scene = scene_of()
+    session.show(dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, alpha=2.0)), 1, False)
+    wait_until(lambda: session.status.error)
+    assert session.status.error.startswith("alpha is 2.0; set it to") and session.status.settled
+    session.show(scene_of(images=[object()]), 2, False)
+    wait_until(lambda: "could not be sent" in session.status.error)
+    session.show(scene, 3, False)
+    frame_of(session, 3)
+    assert process.state is ProcessState.RUNNING and process.restarts == 0
+    wait_until(lambda: not session.status.error)
+
+
+def test_a_killed_process_is_started_anew_and_shows_the_scene_again(start):
+    process = start()
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene_of(100000), 7, False)
+    for restarts in (1, 2):
+        frame_of(session, 7)
+        child = child_of(process)
+        os.kill(child, signal.SIGKILL)
+        wait_until(lambda: process.restarts == restarts and process.state is ProcessState.RUNNING)
+        before = session.newest().sequence
+        wait_until(lambda: session.newest().sequence > before)
+        assert session.newest().generation == 7
+        assert not is_running(child) and not shared_blocks(child, os.getpid())
+    assert "SIGKILL" in process.error
+    os.kill(child_of(process), signal.SIGKILL)
+    wait_until(lambda: process.state is ProcessState.FAILED)
+    process.restart()
+    before = session.newest().sequence
+    wait_until(lambda: session.newest().sequence > before)
+    assert process.state is ProcessState.RUNNING and not process.error
+
+
+def test_restart_of_a_process_that_runs(start):
+    process = start()
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene_of(100000), 1, False)
+    frame_of(session, 1)
+    child = child_of(process)
+    process.restart()
+    wait_until(lambda: process.state is ProcessState.RUNNING)
+    before = session.newest().sequence
+    wait_until(lambda: session.newest().sequence > before)
+    assert process.restarts == 0 and not is_running(child) and child_of(process) != child
+
+
+_PARENT = """
+import json, sys, time
+from pathlib import Path
+sys.path[:0] = [{root!r}, {tests!r}]
+from rppm_addon.session.client import RendererProcess
+from rppm_addon.session.sessions import SessionKind
+from session.conftest import children, scene_of, wait_until
+process = RendererProcess([sys.executable, "-I"], sys.path, Path(sys.argv[1]))
+session = process.open(SessionKind.VIEWPORT)
+session.show(scene_of(100000, size=64), 1, False)
+wait_until(session.newest)
+print(json.dumps(sorted(children())), flush=True)
+{then}
+"""
+
+
+def start_parent(tmp_path, then):
+    """A process with a renderer process of its own, which does ``then`` once there is a picture; and both ids."""
+    code = _PARENT.format(root=str(ROOT), tests=str(ROOT / "tests"), then=then)
+    parent = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "log")], stdout=subprocess.PIPE)
+    (child,) = json.loads(parent.stdout.readline())
+    return parent, child
+
+
+@pytest.mark.parametrize(
+    "then",
+    [
+        "time.sleep(1000)",
+        "generation = 1\nwhile True:\n    generation += 1\n    session.show(scene_of(size=200 + generation % 50), generation, True)",
+    ],
+)
+def test_when_blender_is_killed_the_process_leaves(tmp_path, then):
+    """While it shows one scene, and while scenes and sizes change all the time."""
+    parent, child = start_parent(tmp_path, then)
+    with parent:
+        time.sleep(0.5)
+        assert is_running(child)
+        parent.kill()
+        killed = time.monotonic()
+    wait_until(lambda: not is_running(child), seconds=10.0)
+    assert time.monotonic() - killed < 2.0
+    assert not shared_blocks(parent.pid, child)
+
+
+@pytest.mark.parametrize("then", ["", "process.close()", "sys.exit(1)", "1 / 0"])
+def test_when_python_ends_the_process_leaves(tmp_path, then):
+    parent, child = start_parent(tmp_path, then)
+    with parent:
+        parent.communicate(timeout=30)
+        ended = time.monotonic()
+    wait_until(lambda: not is_running(child), seconds=10.0)
+    assert time.monotonic() - ended < 2.0
+    assert not shared_blocks(parent.pid, child)
+
+
+def test_leftovers_of_the_dead_are_removed(start):
+    from rppm_addon.session.shared_memory import SharedBlock
+
+    with subprocess.Popen([sys.executable, "-c", ""]) as ended:
+        pass
+    ours = SharedBlock.create(100)
+    theirs = Path("/dev/shm") / f"rppm-{ended.pid}-0"
+    theirs.touch()
+    start().open(SessionKind.VIEWPORT)
+    wait_until(lambda: not theirs.exists())
+    assert Path(ours.name).exists()
+    ours.unlink()
+
+
+class Job(RenderJob):
+    def __init__(self, stop_at=None, snapshots=()):
+        self.stop_at, self.snapshots, self.told = stop_at, snapshots, []
+
+    def should_stop(self):
+        return self.stop_at is not None and (self.stop_at == 0 or ("progress", self.stop_at) in self.told)
+
+    def on_start(self):
+        self.told.append("start")
+
+    def on_progress(self, progress):
+        self.told.append(("progress", progress.iteration))
+        return progress.iteration == 1
+
+    def on_frame(self, progress, frame):
+        self.told.append(("frame", frame.combined.shape))
+
+    def on_snapshot(self, seconds, frame):
+        self.told.append(("snapshot", seconds))
+
+
+@pytest.mark.parametrize("deep_cubemap_pass", [False, True])
+def test_a_render_in_the_process_is_the_same_picture(start, deep_cubemap_pass):
+    scene = scene_of(4, size=48)
+    scene.settings.deep_cubemap_pass = deep_cubemap_pass
+    job = Job(snapshots=(0.0, 0.001))
+    result = render(start(), scene, job, SessionKind.FINAL)
+    frame = expected(scene)
+    for name in ("combined", "depth", "normal", "deep_cubemap"):
+        np.testing.assert_array_equal(getattr(result.frame, name), getattr(frame, name))
+    assert not result.stopped and result.statistics.iterations == 4
+    assert result.statistics.flux_watts["emitted"] > 0.0
+    assert job.told[0] == "start" and [told[1] for told in job.told if told[0] == "progress"] == [0, 1, 2, 3, 4]
+    assert [told for told in job.told if told[0] == "snapshot"] == [("snapshot", 0.0), ("snapshot", 0.001)]
+    assert ("frame", (48, 48, 4)) in job.told
+
+
+def test_stopped_renders(start):
+    process = start()
+    result = render(process, scene_of(), Job(stop_at=0), SessionKind.FINAL)
+    assert result.stopped and result.statistics.iterations == 0 and not result.frame.combined.any()
+    result = render(process, scene_of(), Job(stop_at=3), SessionKind.FINAL)
+    assert result.stopped and 3 <= result.statistics.iterations < 1000 and result.frame.combined[..., :3].mean() > 0.0
+    assert not process.sessions
+
+
+def test_errors_of_renders(start):
+    process = start()
+    scene = scene_of()
+    bad = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, alpha=2.0))
+    with pytest.raises(SettingsError, match="alpha"):
+        render(process, bad, Job(), SessionKind.PREVIEW)
+    job = Job()
+    job.on_progress = lambda progress: 1 / 0
+    with pytest.raises(ZeroDivisionError):
+        render(process, scene, job, SessionKind.FINAL)
+    assert not process.sessions and process.restarts == 0
+    assert not render(process, scene_of(1), Job(), SessionKind.FINAL).stopped
+
+
+def test_a_render_survives_a_death_but_not_three(start):
+    process = start()
+    for deaths, iterations in ((1, 30), (2, 10**6)):
+        killed = []
+
+        class Killer(Job):
+            def on_progress(self, progress, killed=killed, deaths=deaths):
+                if progress.iteration == 1 and len(killed) < deaths:
+                    killed.append(child_of(process))
+                    os.kill(killed[-1], signal.SIGKILL)
+                return False
+
+        if deaths == 1:
+            assert render(process, scene_of(iterations), Killer(), SessionKind.FINAL).statistics.iterations == 30
+        else:
+            with pytest.raises(RendererError, match="SIGKILL"):
+                render(process, scene_of(iterations), Killer(), SessionKind.FINAL)
+
+
+def test_close_ends_a_render(start):
+    process = start()
+    job = Job()
+    job.on_progress = lambda progress: process.close()
+    with pytest.raises(RendererError, match="closed"):
+        render(process, scene_of(), job, SessionKind.FINAL)
+
+
+def test_a_viewport_goes_on_beside_a_render(start):
+    """By their weights the render gets three quarters of the device."""
+    process = start()
+    scene = scene_of(10**6)
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene, 1, False)
+    frame_of(session, 1)
+    counts = {}
+
+    class Watch(Job):
+        def on_progress(self, progress):
+            if progress.iteration in (5, 65):
+                counts[progress.iteration] = session.newest().sequence
+            return False
+
+    render(process, dataclasses.replace(scene), Watch(stop_at=65), SessionKind.FINAL)
+    assert 10 <= counts[65] - counts[5] <= 40, counts
