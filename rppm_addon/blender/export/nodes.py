@@ -43,12 +43,12 @@ def _geometry(exporter: GraphExporter, node, output, path: Path):
 
 @handles("UVMAP")
 def _uv_map(exporter: GraphExporter, node, output, path: Path):
-    return exporter.shared("uvmap", "uv", node.uv_map) if node.uv_map else exporter.shared("tex_coord", "uv")
+    return exporter.shared("uvmap", "uv", node.uv_map, node.name) if node.uv_map else exporter.shared("tex_coord", "uv")
 
 
 @handles("VERTEX_COLOR")
 def _color_attribute(exporter: GraphExporter, node, output, path: Path):
-    return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR)
+    return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR, node.name)
 
 
 @handles("ATTRIBUTE")
@@ -56,12 +56,12 @@ def _attribute(exporter: GraphExporter, node, output, path: Path):
     if node.attribute_type == "VIEW_LAYER":
         return _view_layer_attribute(exporter, node, output)
     name = node.attribute_name if node.attribute_type == "GEOMETRY" else f"{node.attribute_type}:{node.attribute_name}"
-    return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE)
+    return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE, node.name)
 
 
 def _view_layer_attribute(exporter: GraphExporter, node, output):
     """A property of the view layer, the scene or the world, which is one value for all surfaces."""
-    for owner in (bpy.context.view_layer, bpy.context.scene, getattr(bpy.context.scene, "world", None)):
+    for owner in exporter.context.owners:
         value = attribute_of(owner, node.attribute_name)
         if value is not None:
             color = (*value, *(1.0,) * 4)[:4] if len(value) > 1 else (value[0],) * 3 + (1.0,)

@@ -10,13 +10,12 @@ from mathutils import Vector
 from ...materials.sky_sun import sun_disc
 from ...scene import Light, LightKind, Link, NodeGraph, ShaderNode, World
 from ...scene.sky import Sky
+from .context import ExportContext
 from .graphs import GraphExporter
-from .images import ImageTable
 from .links import node_tree
-from .report import Report
 
 
-def export_world(world: bpy.types.World | None, report: Report, images: ImageTable) -> tuple[World, list[Light]]:
+def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple[World, list[Light]]:
     """The surroundings, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
         return World(), []
@@ -27,9 +26,9 @@ def export_world(world: bpy.types.World | None, report: Report, images: ImageTab
     output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
         return World(), []
-    exporter = GraphExporter(owner, report, images)
+    exporter = GraphExporter(owner, context)
     if output.inputs["Volume"].is_linked:
-        report.warn(f"{owner}: its volume is not rendered yet and is ignored")
+        context.report.warn(f"{owner}: its volume is not rendered yet and is ignored")
     exporter.graph.surface = exporter.surface(output)
     if exporter.graph.surface is None:
         return World(), []
