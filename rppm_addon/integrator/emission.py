@@ -171,10 +171,12 @@ class Emission:
         materials: MaterialTables,
         resolve: Resolve,
         keep_world: bool = False,
+        keep_lamps: bool = False,
     ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        keep_world: the world is that of the last call. Raises SceneError when all lights have a photon share of 0.
+        keep_world, keep_lamps: the world, or all light objects, are those of the last call.
+        Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
         names: list[str] = []
@@ -189,10 +191,11 @@ class Emission:
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(share, 0.0))
 
-        nodes_by_light = self.lamp_maps.build(scene.lights, scene.images, materials)
+        if not keep_lamps:
+            self.lamp_maps.build(scene.lights, scene.images, materials)
         for index, light in enumerate(scene.lights):
             entry, power = _light_entry(light, radius)
-            nodes = nodes_by_light.get(index)
+            nodes = self.lamp_maps.nodes.get(index)
             if nodes is not None:
                 entry["strength"] *= nodes.scale
                 entry["falloff"], entry["smoothing"] = nodes.falloff, nodes.smoothing

@@ -47,13 +47,15 @@ class LampMaps:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._texture: moderngl.Texture | None = None
+        self.nodes: dict[int, LampNodes] = {}
+        """By the index of their light."""
 
     @property
     def memory_bytes(self) -> int:
         return 0 if self._texture is None else 8 * self._texture.width * self._texture.height
 
-    def build(self, lights: list[Light], images: list[Image], materials: MaterialTables) -> dict[int, LampNodes]:
-        """Ask the nodes of all lights that have some; the result is by the light's index."""
+    def build(self, lights: list[Light], images: list[Image], materials: MaterialTables) -> None:
+        """Ask the nodes of all lights that have some."""
         with_nodes = {index: light for index, light in enumerate(lights) if light.graph is not None}
         varying = {index: lamp_variation(light.graph) for index, light in with_nodes.items()}
         shapes = {index: _shape(with_nodes[index], varies) for index, varies in varying.items() if varies}
@@ -61,9 +63,9 @@ class LampMaps:
         widest = min(int(self._context.limits["GL_MAX_TEXTURE_SIZE"]), 2 * (_WIDEST_MAP + 2))
         places, (width, height) = _packed(sizes, widest)
         texels = np.zeros((height, width, 4), np.float16)
-        found: dict[int, LampNodes] = {}
+        self.nodes = {}
         for index, light in with_nodes.items():
-            nodes = found[index] = _even(light, varying[index], shapes.get(index), materials)
+            nodes = self.nodes[index] = _even(light, varying[index], shapes.get(index), materials)
             if index not in places:
                 continue
             x, y, map_width, map_height = places[index]
@@ -78,7 +80,6 @@ class LampMaps:
         self.release()
         self._texture = self._context.moderngl.texture((width, height), 4, texels.tobytes(), dtype="f2")
         self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-        return found
 
     def use(self) -> None:
         """Bind the maps to texture unit 2, where lamp_maps.glsl reads them."""
