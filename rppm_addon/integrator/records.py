@@ -189,13 +189,16 @@ LIGHT = Record(
     cells="uvec4",
     falloff="float",
     smoothing="float",
-    unused1="float",
-    unused2="float",
+    map_shape="uint",
+    map_extent="float",
+    map="vec4",
 )
 """A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
 unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
 ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
-``first_cell`` those of integrator/guide.py."""
+``first_cell`` those of integrator/guide.py; ``map`` where its map lies among the lamps' maps, left, bottom, width
+and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
+``map_extent`` the tangent of half of what a cone's map shows."""
 
 EMISSIVE_TRIANGLE = Record(
     "EmissiveTriangle",

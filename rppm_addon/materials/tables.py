@@ -14,7 +14,7 @@ from ..scene.scene import Scene
 from . import albedo_tables
 from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
 from .emitted import Emits, emits
-from .evaluation import GraphEvaluator
+from .evaluation import GraphEvaluator, LampSurface
 from .records import IMAGE_ENTRY, MATERIAL
 
 
@@ -140,16 +140,17 @@ class MaterialTables:
         height: int = 1,
         from_camera: bool = False,
         ray_length: float = 0.0,
+        lamp: LampSurface | None = None,
     ) -> np.ndarray:
         """(height, width, 3) float32 emission of a graph of the scene that belongs to no surface.
 
         Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
-        ray_length: what Light Path tells, metres.
+        ray_length: what Light Path tells, metres; lamp: whose nodes they are, with a map of another shape.
         """
         text, first, owner = self._others[id(graph)]
         try:
             return self._evaluator.run(
-                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera
+                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera, lamp
             )
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")
