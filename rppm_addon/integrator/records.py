@@ -84,6 +84,11 @@ PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 with the volumes it is in (materials/medium.glsl)."""
 
+DEPARTURE = Record("Departure", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint")
+"""How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
+closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
+the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on."""
+
 PHOTON = Record(
     "Photon",
     position="vec3",

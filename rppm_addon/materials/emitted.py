@@ -97,10 +97,11 @@ def lamp_variation(graph: NodeGraph) -> LampVariation:
 
 def _may_emit(node: ShaderNode) -> bool:
     names = _EMITTING.get(node.kind, ())
-    return bool(names) and all(_is_positive(node, name) for name in names)
+    return bool(names) and all(is_positive(node, name) for name in names)
 
 
-def _is_positive(node: ShaderNode, name: str) -> bool:
+def is_positive(node: ShaderNode, name: str) -> bool:
+    """Whether an input of a node is, or may be, above 0."""
     value = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
     if isinstance(value, Link):
         return True
@@ -109,4 +110,4 @@ def _is_positive(node: ShaderNode, name: str) -> bool:
 
 def _is_layered(node: ShaderNode) -> bool:
     inputs = KINDS[node.kind].inputs
-    return any(name in inputs and _is_positive(node, name) for name in ("coat_weight", "sheen_weight"))
+    return any(name in inputs and is_positive(node, name) for name in ("coat_weight", "sheen_weight"))

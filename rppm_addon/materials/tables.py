@@ -16,6 +16,7 @@ from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile
 from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LampSurface
 from .records import IMAGE_ENTRY, MATERIAL
+from .view_dependence import depends_on_view
 
 
 def default_material() -> Material:
@@ -61,6 +62,8 @@ class MaterialTables:
         self.programs: list[str] = []
         self.attribute_names: list[str] = []
         self.emits: list[Emits] = []
+        self.any_depends_on_view = False
+        """Whether what a material scatters depends on where it is seen from."""
         self.users: dict[str, list[str]] = {}
         """By text, the names of the materials that it belongs to."""
         self._others: dict[int, tuple[str, int, str]] = {}
@@ -99,6 +102,8 @@ class MaterialTables:
             record["program"] = number[graph.text]
             record["first_constant"] = layout.add(material.graph, graph)
             record["opaque_shadow"] = not material.transparent_shadow
+            record["depends_on_view"] = depends_on_view(material.graph)
+        self.any_depends_on_view = bool(records["depends_on_view"].any())
         interiors = [material.interior for material in materials]
         others = [("The world", scene.world.graph)]
         others += [(f'Light "{light.name}"', light.graph) for light in scene.lights]
