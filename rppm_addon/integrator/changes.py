@@ -41,7 +41,8 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
     graphs_before = [light.graph for light in before.lights]
     lamps = images or _differ(before.lights, after.lights) or (camera and _asks_for_camera(graphs))
     return Changes(
-        materials=images or _differ(before.materials, after.materials)
+        materials=images
+        or _differ(before.materials, after.materials)
         or _differ([*graphs_before, before.world.graph], [*graphs, after.world.graph]),
         geometry=_differ(before.instances, after.instances)
         or _differ(before.meshes, after.meshes)
