@@ -10,7 +10,6 @@ import numpy as np
 from ..scene.node_graphs import Link, NodeGraph
 from ..scene.scene import Scene
 
-_CAMERA_NODES = {"camera", "vector_transform"}
 _CAMERA_OUTPUTS = {("tex_coord", "camera"), ("tex_coord", "window")}
 
 
@@ -25,6 +24,8 @@ class Changes:
     """Lights, the world, or how many photons they share."""
     world: bool
     """The world, its images, or the camera if its nodes ask for it."""
+    lamps: bool
+    """Light objects, their images, or the camera if their nodes ask for it."""
     cubemap: bool
     """Where the deep cubemap is asked to be, and how fine."""
 
@@ -32,22 +33,23 @@ class Changes:
 def changes_between(before: Scene | None, after: Scene) -> Changes:
     """Members are compared by identity, the settings by value; before None: all has changed."""
     if before is None:
-        return Changes(True, True, True, True, True)
+        return Changes(True, True, True, True, True, True)
     images = _differ(before.images, after.images)
     camera = before.camera is not after.camera
     world = images or before.world is not after.world or (camera and _asks_for_camera([after.world.graph]))
-    graphs = [light.graph for light in after.lights] + [after.world.graph]
-    graphs_before = [light.graph for light in before.lights] + [before.world.graph]
+    graphs = [light.graph for light in after.lights]
+    graphs_before = [light.graph for light in before.lights]
+    lamps = images or _differ(before.lights, after.lights) or (camera and _asks_for_camera(graphs))
     return Changes(
-        materials=images or _differ(before.materials, after.materials) or _differ(graphs_before, graphs),
+        materials=images
+        or _differ(before.materials, after.materials)
+        or _differ([*graphs_before, before.world.graph], [*graphs, after.world.graph]),
         geometry=_differ(before.instances, after.instances)
         or _differ(before.meshes, after.meshes)
         or len(before.materials) != len(after.materials),
-        lights=world
-        or _differ(before.lights, after.lights)
-        or (camera and _asks_for_camera(graphs))
-        or after.settings.photons != before.settings.photons,
+        lights=world or lamps or after.settings.photons != before.settings.photons,
         world=world,
+        lamps=lamps,
         cubemap=after.settings.cubemap_resolution != before.settings.cubemap_resolution
         or not np.array_equal(_point(before), _point(after), equal_nan=True),
     )
@@ -72,7 +74,8 @@ def _asks_for_camera(graphs: list[NodeGraph | None]) -> bool:
     """Whether a graph that is evaluated beforehand holds a node that may look at the camera."""
     nodes = [(graph, node) for graph in graphs if graph is not None for node in graph.nodes]
     return any(
-        node.kind in _CAMERA_NODES
+        node.kind == "camera"
+        or (node.kind == "vector_transform" and "CAMERA" in node.options.values())
         or any(
             isinstance(value, Link) and (graph.nodes[value.node].kind, value.output) in _CAMERA_OUTPUTS
             for value in node.inputs.values()

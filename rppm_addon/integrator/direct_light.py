@@ -63,7 +63,7 @@ class DirectLight:
         To be called before the paths scatter on.
         """
         parameters = stages.emission.parameters(stages.settings.seed, iteration, count)
-        stages.emission.environment.use()
+        stages.emission.use_maps()
         self._sample.run(
             count,
             {

@@ -20,6 +20,7 @@ from .emitters import Emitters
 from .environment import Environment
 from .geometry import Geometry
 from .guide import Guide, learns_after
+from .lamp_maps import LampMaps
 from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
 from .sources import SURFACES, SURROUNDINGS, source_name
@@ -28,8 +29,6 @@ from .targets import caustic_targets
 log = logging.getLogger(__name__)
 
 _SOFT = 32
-_LAMP_ROWS = 16
-"""Of the map of directions over which the nodes of a lamp are averaged."""
 
 LIGHT_PARAMETERS = {
     "scene_centre": "vec3",
@@ -108,6 +107,7 @@ class Emission:
         self._targets = GrowingBuffer(context, "photon targets")
         self._target_count = 0
         self.environment = Environment(context)
+        self.lamp_maps = LampMaps(context)
         self._guide = Guide(context, library)
         self._table = LIGHT.zeros(0)
         self._weights = np.zeros(0)
@@ -135,6 +135,7 @@ class Emission:
             **self.emitters.memory_bytes,
             "photon targets": self._targets.size,
             "environment": self.environment.memory_bytes,
+            "lamp maps": self.lamp_maps.memory_bytes,
             **self._guide.memory_bytes,
         }
 
@@ -154,6 +155,11 @@ class Emission:
             sums[name] = sums.get(name, 0) + value
         return sums
 
+    def use_maps(self) -> None:
+        """Bind the textures of programs that include emission/lights.glsl."""
+        self.environment.use()
+        self.lamp_maps.use()
+
     def parameters(self, seed: int, iteration: int, count: int) -> dict[str, object]:
         """Values of LIGHT_PARAMETERS."""
         return {**self._parameters, "seed": seed, "iteration": iteration, "count": count}
@@ -165,10 +171,12 @@ class Emission:
         materials: MaterialTables,
         resolve: Resolve,
         keep_world: bool = False,
+        keep_lamps: bool = False,
     ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        keep_world: the world is that of the last call. Raises SceneError when all lights have a photon share of 0.
+        keep_world, keep_lamps: the world, or all light objects, are those of the last call.
+        Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
         names: list[str] = []
@@ -183,12 +191,17 @@ class Emission:
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(share, 0.0))
 
-        for light in scene.lights:
+        if not keep_lamps:
+            self.lamp_maps.build(scene.lights, scene.images, materials)
+        for index, light in enumerate(scene.lights):
             entry, power = _light_entry(light, radius)
-            if light.graph is not None:
-                emitted, entry["falloff"], entry["smoothing"] = _nodes_of(light, materials)
-                entry["strength"] *= emitted
-                power = power * emitted / (1.0 + entry["smoothing"])
+            nodes = self.lamp_maps.nodes.get(index)
+            if nodes is not None:
+                entry["strength"] *= nodes.scale
+                entry["falloff"], entry["smoothing"] = nodes.falloff, nodes.smoothing
+                if nodes.shape is not None:
+                    entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
+                power = power * nodes.mean / (1.0 + nodes.smoothing)
             add(source_name(light.name), entry, power, light.photon_share)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
@@ -261,7 +274,7 @@ class Emission:
 
     def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
         """Emit ``count`` photons: their first rays and the flux they carry."""
-        self.environment.use()
+        self.use_maps()
         self._program.run(
             count,
             {
@@ -295,32 +308,13 @@ class Emission:
         self.emitters.release()
         self._targets.release()
         self._guide.release()
+        self.lamp_maps.release()
         self.environment.release()
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
     size = np.linalg.norm(vector)
     return vector / size if size > 0 else np.array([0.0, 0.0, 1.0])
-
-
-def _nodes_of(light: Light, materials: MaterialTables) -> tuple[np.ndarray, float, float]:
-    """What a light's nodes multiply its strength by: (3,) f, a power p and a smoothing s, of the distance d in metres
-    f d^p d^2 / (s + d^2), which the Light Falloff node's outputs are. What varies by direction counts by its mean."""
-    distances = (1.0, 2.0, 1e4, 2e4)
-    sine = np.sin(np.pi * (np.arange(_LAMP_ROWS) + 0.5) / _LAMP_ROWS)[:, None, None]
-
-    def mean(distance: float) -> np.ndarray:
-        emitted = materials.evaluate(light.graph, 2 * _LAMP_ROWS, _LAMP_ROWS, ray_length=distance)
-        return np.maximum((emitted * sine).mean(axis=(0, 1), dtype=np.float64) / sine.mean(), 0.0)
-
-    values = [mean(distance) for distance in distances]
-    near, twice, far, farther = (float(value.sum()) for value in values)
-    if light.kind is LightKind.SUN or min(near, twice, far, farther) <= 0.0:
-        return values[0], 0.0, 0.0
-    power = math.log2(farther / far)
-    grown = min(0.25 * twice / near / 2.0**power, 0.999)  # a quarter without smoothing
-    smoothing = (4.0 * grown - 1.0) / (1.0 - grown) if grown > 0.2501 else 0.0
-    return values[0] * (1.0 + smoothing), power, smoothing
 
 
 def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarray]:
@@ -352,6 +346,7 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     if light.kind is LightKind.SUN:
         entry["kind"] = SUN
         cosine = math.cos(0.5 * min(max(light.sun_angle, 0.0), math.pi))
+        entry["axis_u"], entry["axis_v"] = _unit(axes[:, 0]), _unit(axes[:, 1])
         # The irradiance counts cosines over the disk; GLSL takes radiance times its solid angle.
         entry["cosine_cone"], entry["strength"] = cosine, strength * 2.0 / (1.0 + cosine)
         return entry, entry["strength"] * math.pi * scene_radius**2

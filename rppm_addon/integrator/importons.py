@@ -96,7 +96,7 @@ class Importons:
     ) -> None:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
         settings = stages.settings
-        stages.emission.environment.use()
+        stages.emission.use_maps()
         self._scatter.run(
             count,
             {

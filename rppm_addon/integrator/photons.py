@@ -7,7 +7,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
-from .records import CLOSURE, HIT, PHOTON, PHOTON_ACTIVE, PHOTON_ESCAPED, PHOTON_PATH, RAY
+from .records import CLOSURE, DEPARTURE, HIT, PHOTON, PHOTON_ACTIVE, PHOTON_ESCAPED, PHOTON_PATH, RAY
 from .stages import Stages
 
 Record(
@@ -19,7 +19,9 @@ Record(
     seed="uint",
     iteration="uint",
     specular_alpha="float",
+    looks_back="uint",
 )
+Record("DepartParameters", count="uint", segment="uint")
 
 
 class Photons:
@@ -27,6 +29,7 @@ class Photons:
 
     def __init__(self, context: Context, library: ProgramLibrary, photon_count: int, segments: int) -> None:
         self._scatter = library.compute("photons/scatter.comp")
+        self._depart = library.compute("photons/depart.comp")
         self.photon_count, self.segments = photon_count, segments
         remedy = "lower the photons per iteration or the photon path length"
         self.photons = GrowingBuffer(context, "photons", remedy)
@@ -34,19 +37,24 @@ class Photons:
         self._rays = GrowingBuffer(context, "photon rays", remedy)
         self._hits = GrowingBuffer(context, "photon hits", remedy)
         self._closures = GrowingBuffer(context, "photon closures", remedy)
+        self._departures = GrowingBuffer(context, "photon departures", remedy)
         self.photons.require(PHOTON.size * photon_count * segments)
         for buffer, record in (
             (self._paths, PHOTON_PATH),
             (self._rays, RAY),
             (self._hits, HIT),
             (self._closures, CLOSURE),
+            (self._departures, DEPARTURE),
         ):
             buffer.require(record.size * photon_count)
 
     @property
+    def _buffers(self) -> tuple[GrowingBuffer, ...]:
+        return self.photons, self._paths, self._rays, self._hits, self._closures, self._departures
+
+    @property
     def memory_bytes(self) -> dict[str, int]:
-        buffers = (self.photons, self._paths, self._rays, self._hits, self._closures)
-        return {buffer.name: buffer.size for buffer in buffers}
+        return {buffer.name: buffer.size for buffer in self._buffers}
 
     def run(self, stages: Stages, iteration: int) -> None:
         """Emit the iteration's photons and trace them to the last segment."""
@@ -58,15 +66,9 @@ class Photons:
                 with timers.stage("photon tracing"):
                     stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
             with timers.stage("photon resolve"):
-                stages.resolve.run(
-                    self._rays.buffer,
-                    self._hits.buffer,
-                    self._closures.buffer,
-                    self.photon_count,
-                    iteration,
-                    segment,
-                    photon_paths=self._paths.buffer,
-                )
+                self._resolve(stages, iteration, segment, looks_back=False)
+            # Nothing goes on from the last segment's hits.
+            looks_back = stages.materials.any_depends_on_view and segment < self.segments - 1
             with timers.stage("photon scattering"):
                 self._scatter.run(
                     self.photon_count,
@@ -75,6 +77,7 @@ class Photons:
                         "Rays": self._rays.buffer,
                         "PhotonPaths": self._paths.buffer,
                         "Photons": self.photons.buffer,
+                        "Departures": self._departures.buffer,
                         "Materials": stages.materials.buffers["Materials"],
                     },
                     {
@@ -85,8 +88,40 @@ class Photons:
                         "seed": settings.seed,
                         "iteration": iteration,
                         "specular_alpha": settings.specular_roughness**2,
+                        "looks_back": looks_back,
                     },
                 )
+            if looks_back:
+                self._look_back(stages, iteration, segment)
+
+    def _resolve(self, stages: Stages, iteration: int, segment: int, looks_back: bool) -> None:
+        stages.resolve.run(
+            self._rays.buffer,
+            self._hits.buffer,
+            self._closures.buffer,
+            self.photon_count,
+            iteration,
+            segment,
+            photon_paths=self._paths.buffer,
+            looks_back=looks_back,
+        )
+
+    def _look_back(self, stages: Stages, iteration: int, segment: int) -> None:
+        """Photons get the flux that a viewer would see from where they go."""
+        with stages.timers.stage("photon resolve"):
+            self._resolve(stages, iteration, segment, looks_back=True)
+        with stages.timers.stage("photon scattering"):
+            self._depart.run(
+                self.photon_count,
+                {
+                    "Closures": self._closures.buffer,
+                    "Rays": self._rays.buffer,
+                    "PhotonPaths": self._paths.buffer,
+                    "Photons": self.photons.buffer,
+                    "Departures": self._departures.buffer,
+                },
+                {"count": self.photon_count, "segment": segment},
+            )
 
     def _emit(self, stages: Stages, iteration: int) -> None:
         """DirectPhotonHits: photons leave the lights and find their first hits."""
@@ -112,7 +147,7 @@ class Photons:
         return records.reshape(self.segments, self.photon_count)
 
     def release(self) -> None:
-        for buffer in (self.photons, self._paths, self._rays, self._hits, self._closures):
+        for buffer in self._buffers:
             buffer.release()
 
 

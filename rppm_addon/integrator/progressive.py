@@ -104,7 +104,9 @@ class ProgressivePhotonMapper:
             self._resolve.build(scene, self._geometry, self._materials)
         self._resolve.look_from(scene.camera, settings.seed)
         if changes.geometry or changes.materials or changes.lights:
-            self._emission.build(scene, self._geometry, self._materials, self._resolve, not changes.world)
+            self._emission.build(
+                scene, self._geometry, self._materials, self._resolve, not changes.world, not changes.lamps
+            )
         else:
             self._emission.begin()
         wanted = next(cubemap_centres(scene, self._geometry))

@@ -84,6 +84,11 @@ PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 with the volumes it is in (materials/medium.glsl)."""
 
+DEPARTURE = Record("Departure", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint")
+"""How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
+closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
+the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on."""
+
 PHOTON = Record(
     "Photon",
     position="vec3",
@@ -189,13 +194,16 @@ LIGHT = Record(
     cells="uvec4",
     falloff="float",
     smoothing="float",
-    unused1="float",
-    unused2="float",
+    map_shape="uint",
+    map_extent="float",
+    map="vec4",
 )
 """A light as integrator/emission.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
 unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
 ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
-``first_cell`` those of integrator/guide.py."""
+``first_cell`` those of integrator/guide.py; ``map`` where its map lies among the lamps' maps, left, bottom, width
+and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
+``map_extent`` the tangent of half of what a cone's map shows."""
 
 EMISSIVE_TRIANGLE = Record(
     "EmissiveTriangle",

@@ -34,6 +34,7 @@ Record(
     attribute_count="uint",
     orthographic="uint",
     pixel_size="float",
+    looks_back="uint",
 )
 
 _NO_PROGRAM = 0xFFFFFFFF
@@ -110,11 +111,13 @@ class Resolve:
         segment: int,
         camera_paths: moderngl.Buffer | None = None,
         photon_paths: moderngl.Buffer | None = None,
+        looks_back: bool = False,
     ) -> None:
         """Fill ``count`` closures; inactive rays and misses give closures without a triangle.
 
         The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
-        are of no kind.
+        are of no kind. looks_back: the same hits are seen once more, from where photons go; what chance decides is
+        decided anew.
         """
         self._order.require(4 * (_RANGE_SIZE * len(self._programs) + count))
         buffers = {
@@ -131,6 +134,7 @@ class Resolve:
             "iteration": iteration,
             "segment": segment,
             "program": _NO_PROGRAM,
+            "looks_back": looks_back,
             "path_kind": _CAMERA if camera_paths else _PHOTONS if photon_paths else _NO_PATHS,
         }
 

@@ -36,7 +36,7 @@ class ShadowCatcher:
         self, stages: Stages, importons: Importons, count: int, first_pixel: int, iteration: int, segment: int
     ) -> None:
         """Fill ``lit`` for the resolved vertices of ``count`` camera paths, before they scatter on."""
-        stages.emission.environment.use()
+        stages.emission.use_maps()
         self._program.run(
             count,
             {

@@ -105,6 +105,17 @@ def _fill(record: np.ndarray, instance: Instance, mesh: Mesh, first_triangle: in
             record[f"particle_{name}"] = getattr(particle, name)
 
 
+def object_record(matrix: np.ndarray) -> np.ndarray:
+    """() SHADING_INSTANCE of an object without a mesh, whose generated coordinates are those of the object."""
+    record = SHADING_INSTANCE.zeros(1)[0]
+    rows = _inverse(np.asarray(matrix, np.float64))
+    record["to_object0"], record["to_object1"], record["to_object2"] = rows[:3]
+    record["location"] = matrix[:3, 3]
+    record["texture_location"], record["texture_scale"] = 0.5, 1.0
+    record["color"] = 1.0
+    return record
+
+
 def _inverse(matrix: np.ndarray) -> np.ndarray:
     """(4, 4), all 0 where there is none, as for an instance without extent."""
     try:

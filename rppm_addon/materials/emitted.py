@@ -2,6 +2,7 @@
 """Which node graphs emit light."""
 
 import enum
+from dataclasses import dataclass
 
 from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 from .nodes import KINDS
@@ -48,12 +49,59 @@ def emits(graph: NodeGraph) -> Emits:
     return Emits.VARYING if varying else Emits.EVENLY
 
 
+@dataclass(frozen=True)
+class LampVariation:
+    """What of a lamp its emission depends on."""
+
+    place: bool
+    """Its normal or the place on it."""
+    direction: bool
+    """Where the light goes, which a normal may not tell."""
+    uv: bool
+    """Texture coordinates UV: places of an area light, directions of a spot."""
+    distance: bool
+    """How far off is what it lights."""
+
+    def __bool__(self) -> bool:
+        return self.place or self.direction or self.uv
+
+
+_SAME_EVERYWHERE = {
+    "light_path", "object_info", "particle_info", "attribute", "uvmap", "random_per_island", "vector_transform",
+}  # fmt: skip
+"""Nodes that tell the same of all places of a lamp, but for what feeds them."""
+_BY_DIRECTION = {("new_geometry", "incoming"), ("tex_coord", "reflection")}
+_BY_UV = {("tex_coord", "uv"), ("new_geometry", "parametric")}
+_BY_BOTH = {"fresnel", "layer_weight"}
+
+
+def lamp_variation(graph: NodeGraph) -> LampVariation:
+    """What the emission of a lamp's graph depends on."""
+    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
+    asked = {
+        (graph.nodes[value.node].kind, value.output)
+        for node in nodes
+        for value in node.inputs.values()
+        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
+    }
+    asked = {(kind, output) for kind, output in asked if kind not in _SAME_EVERYWHERE and kind != "tex_image"}
+    both = any(kind in _BY_BOTH for kind, _ in asked)
+    box = any(node.kind == "tex_image" and node.options.get("projection") == "BOX" for node in nodes)
+    return LampVariation(
+        place=both or box or bool(asked - _BY_DIRECTION - _BY_UV),
+        direction=both or bool(asked & _BY_DIRECTION),
+        uv=bool(asked & _BY_UV),
+        distance=any(node.kind == "light_path" for node in nodes),
+    )
+
+
 def _may_emit(node: ShaderNode) -> bool:
     names = _EMITTING.get(node.kind, ())
-    return bool(names) and all(_is_positive(node, name) for name in names)
+    return bool(names) and all(is_positive(node, name) for name in names)
 
 
-def _is_positive(node: ShaderNode, name: str) -> bool:
+def is_positive(node: ShaderNode, name: str) -> bool:
+    """Whether an input of a node is, or may be, above 0."""
     value = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
     if isinstance(value, Link):
         return True
@@ -62,4 +110,4 @@ def _is_positive(node: ShaderNode, name: str) -> bool:
 
 def _is_layered(node: ShaderNode) -> bool:
     inputs = KINDS[node.kind].inputs
-    return any(name in inputs and _is_positive(node, name) for name in ("coat_weight", "sheen_weight"))
+    return any(name in inputs and is_positive(node, name) for name in ("coat_weight", "sheen_weight"))

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Emission of node graphs that belong to no surface: worlds, lights and volumes."""
 
+import enum
+from dataclasses import dataclass
+
 import moderngl
 import numpy as np
 
@@ -24,9 +27,55 @@ Record(
     orthographic="uint",
     pixel_size="float",
     ray_length="float",
+    lamp_position="vec3",
+    lamp_radius="float",
+    lamp_u="vec3",
+    lamp_shape="uint",
+    lamp_v="vec3",
+    lamp_kind="uint",
+    lamp_normal="vec3",
 )
 
 _CHUNK = 1 << 18
+
+
+class MapShape(enum.IntEnum):
+    """What the pixels of a lamp's map stand for, as in shaders/materials/lamp_surface.glsl."""
+
+    NORMALS = 1
+    """Normals of a sphere, equirectangular."""
+    DIRECTIONS = 2
+    """Directions of the light, equirectangular."""
+    CONE = 3
+    """Directions of the light by where they meet a square before the lamp."""
+    PLACES = 4
+    """Places on an area light."""
+
+
+class LampKind(enum.IntEnum):
+    """Whose nodes are asked, as in shaders/materials/lamp_surface.glsl."""
+
+    SPHERE = 0
+    AREA = 1
+    SUN = 2
+    SUN_OF_A_WORLD = 3
+
+
+@dataclass(frozen=True)
+class LampSurface:
+    """A lamp before its nodes: vectors (3,) in world space, metres."""
+
+    kind: LampKind
+    shape: MapShape
+    position: np.ndarray
+    normal: np.ndarray
+    """Unit vector along which it shines."""
+    u: np.ndarray
+    v: np.ndarray
+    """Half extents of an area light; of a CONE, from the middle of the square at distance 1 to its edges."""
+    radius: float
+    instance: np.ndarray
+    """() ShadingInstance record: what nodes may ask about the object."""
 
 
 class GraphEvaluator:
@@ -37,6 +86,7 @@ class GraphEvaluator:
         self._emissions = GrowingBuffer(context, "emission by direction")
         self._nothing = context.moderngl.buffer(reserve=1024)
         """Stands for the geometry, which these graphs cannot ask about."""
+        self._instance = GrowingBuffer(context, "object of a lamp")
 
     def run(
         self,
@@ -48,8 +98,10 @@ class GraphEvaluator:
         from_camera: bool,
         ray_length: float,
         camera: Camera,
+        lamp: LampSurface | None = None,
     ) -> np.ndarray:
-        """(height, width, 3) float32 emission in the directions of an equirectangular map, row 0 at the bottom.
+        """(height, width, 3) float32 emission in the directions of an equirectangular map, or of a lamp over its map,
+        row 0 at the bottom.
 
         text: the compiled graph; first_constant: where its constants start in the buffer MaterialData.
         """
@@ -58,6 +110,11 @@ class GraphEvaluator:
         self._emissions.require(16 * width * min(rows, height))
         bound = {name: buffers.get(name, self._nothing) for name in program.blocks}
         bound["Emissions"] = self._emissions.buffer
+        names = ("position", "radius", "u", "v", "normal", "shape", "kind")
+        lamp_parameters = {f"lamp_{name}": 0 if lamp is None else getattr(lamp, name) for name in names}
+        if lamp is not None:
+            self._instance.upload(np.atleast_1d(lamp.instance))
+            bound |= {"ShadingInstances": self._instance.buffer} if "ShadingInstances" in bound else {}
         parts = []
         for first_row in range(0, height, rows):
             count = width * min(rows, height - first_row)
@@ -67,6 +124,7 @@ class GraphEvaluator:
                 "from_camera": from_camera,
                 "attribute_count": 0, "orthographic": camera.orthographic, "pixel_size": 0.0,
                 "ray_length": ray_length,
+                **lamp_parameters,
             }  # fmt: skip
             program.run(count, bound, parameters)
             parts.append(self._emissions.read(np.dtype("<f4"), 4 * count).reshape(-1, width, 4)[..., :3])
@@ -74,4 +132,5 @@ class GraphEvaluator:
 
     def release(self) -> None:
         self._emissions.release()
+        self._instance.release()
         self._nothing.release()

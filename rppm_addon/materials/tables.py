@@ -14,8 +14,9 @@ from ..scene.scene import Scene
 from . import albedo_tables
 from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
 from .emitted import Emits, emits
-from .evaluation import GraphEvaluator
+from .evaluation import GraphEvaluator, LampSurface
 from .records import IMAGE_ENTRY, MATERIAL
+from .view_dependence import depends_on_view
 
 
 def default_material() -> Material:
@@ -61,6 +62,8 @@ class MaterialTables:
         self.programs: list[str] = []
         self.attribute_names: list[str] = []
         self.emits: list[Emits] = []
+        self.any_depends_on_view = False
+        """Whether what a material scatters depends on where it is seen from."""
         self.users: dict[str, list[str]] = {}
         """By text, the names of the materials that it belongs to."""
         self._others: dict[int, tuple[str, int, str]] = {}
@@ -99,6 +102,8 @@ class MaterialTables:
             record["program"] = number[graph.text]
             record["first_constant"] = layout.add(material.graph, graph)
             record["opaque_shadow"] = not material.transparent_shadow
+            record["depends_on_view"] = depends_on_view(material.graph)
+        self.any_depends_on_view = bool(records["depends_on_view"].any())
         interiors = [material.interior for material in materials]
         others = [("The world", scene.world.graph)]
         others += [(f'Light "{light.name}"', light.graph) for light in scene.lights]
@@ -140,16 +145,17 @@ class MaterialTables:
         height: int = 1,
         from_camera: bool = False,
         ray_length: float = 0.0,
+        lamp: LampSurface | None = None,
     ) -> np.ndarray:
         """(height, width, 3) float32 emission of a graph of the scene that belongs to no surface.
 
         Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
-        ray_length: what Light Path tells, metres.
+        ray_length: what Light Path tells, metres; lamp: whose nodes they are, with a map of another shape.
         """
         text, first, owner = self._others[id(graph)]
         try:
             return self._evaluator.run(
-                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera
+                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera, lamp
             )
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")

@@ -5,6 +5,7 @@
 #include <Light>
 #include <EmissiveTriangle>
 #include "emission/environment.glsl"
+#include "emission/lamp_maps.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
 layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
@@ -251,9 +252,32 @@ LightSample sample_light_at_one_metre(Light light, vec3 point, float u_choice, v
     return result;
 }
 
+bool is_area_light(Light light) { return light.kind == LIGHT_RECTANGLE || light.kind == LIGHT_ELLIPSE; }
+
+// Whether the normals of a lamp are those of a sphere, and not the light's direction.
+bool is_sphere(Light light) { return light.kind <= LIGHT_SPOT && light.radius > 0.0 && (light.flags & LIGHT_SOFT) == 0u; }
+
+// What the nodes of a lamp give where light leaves it. from_centre: from the lamp's position to there.
+vec3 emitted_factor(Light light, vec3 from_centre, vec3 direction) {
+    if (light.map_shape == 0u) return vec3(1.0);
+    return lamp_factor(light, direction, is_sphere(light) ? normalize(from_centre) : direction,
+                       is_area_light(light) ? area_light_coordinates(light, from_centre) : vec2(0.0));
+}
+
+// Where the half of a sphere that faces a direction is met along it, evenly seen: from the sphere's centre.
+vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
+    vec3 t, b;
+    tangent_frame(direction, t, b);
+    vec2 disk = sample_disk(u);
+    float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
+    return radius * (disk.x * t + disk.y * b + forward * direction);
+}
+
 LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
     LightSample result = sample_light_at_one_metre(light, point, u_choice, u);
-    result.weight *= distance_factor(light, result.distance);
+    vec3 from_centre = point + result.distance * result.direction - light.position;
+    if (result.density == 0.0 && is_sphere(light)) from_centre = sample_facing_half(light.radius, -result.direction, u);
+    result.weight *= distance_factor(light, result.distance) * emitted_factor(light, from_centre, -result.direction);
     return result;
 }
 
@@ -274,10 +298,10 @@ float emissive_triangle_density(vec3 point, uint triangle) {
     return solid_angle > 0.0 ? parameters.mesh_selection * triangle_vertices[3u * triangle + 1u].w / solid_angle : 0.0;
 }
 
-// Radiance of a light object that a ray passes within its length, and the density in 1/sr with which
-// sample_light gives the ray's direction.
-vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float density) {
-    density = 0.0;
+// Radiance of a light object without nodes that a ray passes within its length, where it does, and the density in
+// 1/sr with which sample_light gives the ray's direction.
+vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance, out float density) {
+    density = distance = 0.0;
     if (light.kind == LIGHT_SUN) {
         float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
         if (maximum_distance < INFINITY_DISTANCE || solid_angle <= 0.0 || -dot(direction, light.normal) < light.cosine_cone)
@@ -288,7 +312,7 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
         if (light.radius <= 0.0) return vec3(0.0);
         vec3 to_centre = light.position - origin;
-        float distance2 = dot(to_centre, to_centre), radius2 = light.radius * light.radius, distance = 0.0;
+        float distance2 = dot(to_centre, to_centre), radius2 = light.radius * light.radius;
         if ((light.flags & LIGHT_SOFT) != 0u) {
             distance = soft_light_distance(light, origin, direction);
             density = 1.0 / (2.0 * PI * soft_light_cone(light, to_centre));
@@ -303,17 +327,25 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
             density = sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
         }
         if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
-        return radiant_strength(light, -direction) * (distance_factor(light, distance) / (PI * radius2));
+        return radiant_strength(light, -direction) / (PI * radius2);
     }
-    if (light.kind != LIGHT_RECTANGLE && light.kind != LIGHT_ELLIPSE) return vec3(0.0);
+    if (!is_area_light(light)) return vec3(0.0);
     float cosine = -dot(direction, light.normal);
     if (cosine <= 0.0) return vec3(0.0);
-    float distance = dot(origin - light.position, light.normal) / cosine;
+    distance = dot(origin - light.position, light.normal) / cosine;
     if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
     vec2 at = area_light_coordinates(light, origin + distance * direction - light.position);
     if (light.kind == LIGHT_ELLIPSE ? dot(at, at) > 1.0 : max(abs(at.x), abs(at.y)) > 1.0) return vec3(0.0);
     density = area_light_density(light, origin, distance * direction);
-    return light.strength * (spread_attenuation(light, cosine) * distance_factor(light, distance));
+    return light.strength * spread_attenuation(light, cosine);
+}
+
+// The same of a light that may have nodes.
+vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float density) {
+    float distance;
+    vec3 radiance = passed_plain_light(light, origin, direction, maximum_distance, distance, density);
+    vec3 from_centre = origin + distance * direction - light.position;
+    return radiance * distance_factor(light, distance) * emitted_factor(light, from_centre, -direction);
 }
 
 // Radiance of the light objects that a ray passes; they hide nothing.

@@ -45,11 +45,7 @@ Emission emit_from_lamp(Light light, EmissionChoice choice) {
     float aimed = seen ? target_direction_density(light.position, cones, direction) : 0.0;
     vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
     float density = mixed_density(light, plain, choice.place, square, aimed, seen, choice);
-    vec3 t, b;
-    tangent_frame(direction, t, b);
-    vec2 disk = sample_disk(choice.place);
-    float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
-    vec3 origin = light.position + light.radius * (disk.x * t + disk.y * b + forward * direction);
+    vec3 origin = light.position + sample_facing_half(light.radius, direction, choice.place);
     return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / density);
 }
 
@@ -83,7 +79,7 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
                     radiance * (cosine / (area_density * density)));
 }
 
-Emission emit_photon(Light light, EmissionChoice choice) {
+Emission emit_plain_photon(Light light, EmissionChoice choice) {
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_lamp(light, choice);
     if (light.kind == LIGHT_SUN)
         return emit_from_infinity(light, sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction), light.strength, choice);
@@ -99,4 +95,10 @@ Emission emit_photon(Light light, EmissionChoice choice) {
     vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;
     vec3 origin = light.position + place.x * light.axis_u + place.y * light.axis_v;
     return emit_from_surface(light, origin, light.normal, NO_TRIANGLE, light.strength, 1.0 / light.area, choice);
+}
+
+Emission emit_photon(Light light, EmissionChoice choice) {
+    Emission emission = emit_plain_photon(light, choice);
+    emission.flux *= emitted_factor(light, emission.origin - light.position, emission.direction);
+    return emission;
 }

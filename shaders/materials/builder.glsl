@@ -32,6 +32,7 @@ void set_shading_normal(inout ClosureBuilder builder, vec3 normal) {
 
 // True with a probability, and the random number is as good as new.
 bool chance(inout ClosureBuilder builder, float probability) {
+    if (probability > 0.0 && probability < 1.0) builder.closure.flags |= CLOSURE_CROWDED;
     bool chosen = builder.u_choice < probability;
     builder.u_choice = chosen ? builder.u_choice / probability : (builder.u_choice - probability) / (1.0 - probability);
     return chosen;

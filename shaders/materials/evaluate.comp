@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emission of a node graph that belongs to no surface, over the directions of an equirectangular map.
+// The emission of a node graph that belongs to no surface: of a world or a volume over the directions of an
+// equirectangular map, of a lamp over a map that suits it.
 
 layout(local_size_x = 64) in;
 
@@ -10,23 +11,21 @@ layout(std140, binding = 0) uniform Parameters { EvaluateParameters parameters; 
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
+#include "materials/lamp_surface.glsl"
 layout(std430, binding = 0) writeonly buffer Emissions { vec4 emissions[]; };
 
 #include "materials/generated.glsl"
 
-vec3 direction_of(uint index) {
-    uint row = parameters.first_row + index / parameters.width, column = index % parameters.width;
-    vec2 uv = (vec2(column, row) + 0.5) / vec2(parameters.width, parameters.height);
-    float azimuth = (0.5 - uv.x) * 2.0 * PI, polar = (1.0 - uv.y) * PI;
-    return vec3(sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar));
-}
-
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    vec3 direction = direction_of(index);
-    Surface surface = Surface(direction, -direction, -direction, -direction, vec2(0.0), vec3(0.0), NO_TRIANGLE, 0u, false,
+    uint row = parameters.first_row + index / parameters.width, column = index % parameters.width;
+    vec2 uv = (vec2(column, row) + 0.5) / vec2(parameters.width, parameters.height);
+    float azimuth = (0.5 - uv.x) * 2.0 * PI, polar = (1.0 - uv.y) * PI;
+    vec3 direction = vec3(sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar));
+    Surface surface = Surface(direction, -direction, -direction, -direction, vec2(0.0), vec3(0.0), NO_TRIANGLE, NO_INSTANCE, false,
                               parameters.from_camera != 0u ? RAY_CAMERA : RAY_DIFFUSE, parameters.ray_length, 0u);
+    if (parameters.lamp_shape != 0u) surface = lamp_surface(uv, direction);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, surface.normal, false, 0.0);
     evaluate_material(surface, parameters.first_constant, builder);
     emissions[index] = vec4(builder.closure.emission, 0.0);

@@ -10,6 +10,8 @@ layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attr
 layout(std430, binding = 10) readonly buffer ShadingInstances { ShadingInstance shading_instances[]; };
 layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
 
+const uint NO_INSTANCE = 0xffffffffu;
+
 struct Surface {
     vec3 position;      // world space, metres; of a world: the direction
     vec3 normal;        // shading normal, on the viewer's side
@@ -18,7 +20,7 @@ struct Surface {
     vec2 uv;            // of the UV map in use
     vec3 barycentrics;
     uint triangle;      // NO_TRIANGLE: a world or a light
-    uint instance;
+    uint instance;      // NO_INSTANCE: a world
     bool backfacing;
     uint ray;           // one or more of the bits of common/ray_kinds.glsl
     float ray_length;
@@ -41,26 +43,26 @@ vec3 triangle_normal(uint triangle, vec3 b) {
 }
 
 vec3 point_to_object(Surface surface, vec3 p) {
-    if (surface.triangle == NO_TRIANGLE) return p;
+    if (surface.instance == NO_INSTANCE) return p;
     ShadingInstance at = shading_instances[surface.instance];
     return vec3(dot(at.to_object0, vec4(p, 1.0)), dot(at.to_object1, vec4(p, 1.0)), dot(at.to_object2, vec4(p, 1.0)));
 }
 
 vec3 direction_to_object(Surface surface, vec3 d) {
-    if (surface.triangle == NO_TRIANGLE) return d;
+    if (surface.instance == NO_INSTANCE) return d;
     ShadingInstance at = shading_instances[surface.instance];
     return vec3(dot(at.to_object0.xyz, d), dot(at.to_object1.xyz, d), dot(at.to_object2.xyz, d));
 }
 
 // Normals and other vectors across the surface go by the transposed matrices.
 vec3 normal_to_world(Surface surface, vec3 n) {
-    if (surface.triangle == NO_TRIANGLE) return n;
+    if (surface.instance == NO_INSTANCE) return n;
     ShadingInstance at = shading_instances[surface.instance];
     return n.x * at.to_object0.xyz + n.y * at.to_object1.xyz + n.z * at.to_object2.xyz;
 }
 
 vec3 direction_to_world(Surface surface, vec3 d) {
-    if (surface.triangle == NO_TRIANGLE) return d;
+    if (surface.instance == NO_INSTANCE) return d;
     ShadingInstance at = shading_instances[surface.instance];
     vec3 x = cross(at.to_object1.xyz, at.to_object2.xyz), y = cross(at.to_object2.xyz, at.to_object0.xyz),
          z = cross(at.to_object0.xyz, at.to_object1.xyz);
@@ -68,7 +70,7 @@ vec3 direction_to_world(Surface surface, vec3 d) {
 }
 
 vec3 normal_to_object(Surface surface, vec3 n) {
-    if (surface.triangle == NO_TRIANGLE) return n;
+    if (surface.instance == NO_INSTANCE) return n;
     ShadingInstance at = shading_instances[surface.instance];
     vec3 x = cross(at.to_object1.xyz, at.to_object2.xyz), y = cross(at.to_object2.xyz, at.to_object0.xyz),
          z = cross(at.to_object0.xyz, at.to_object1.xyz);
@@ -114,7 +116,7 @@ Surface surface_beside(Surface surface, vec3 way) {
 
 // Generated coordinates of a mesh that nothing deforms; of a world, the direction.
 vec3 within_texture_space(Surface surface) {
-    if (surface.triangle == NO_TRIANGLE) return surface.position;
+    if (surface.instance == NO_INSTANCE) return surface.position;
     ShadingInstance at = shading_instances[surface.instance];
     return (point_to_object(surface, surface.position) - at.texture_location) * at.texture_scale + 0.5;
 }

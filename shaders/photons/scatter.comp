@@ -9,17 +9,18 @@ layout(local_size_x = 64) in;
 #include <ScatterPhotonsParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
-#include "common/bsdf/closure.glsl"
 #include "common/photon.glsl"
+#include "photons/parts.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
 layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 4) writeonly buffer Departures { Departure departures[]; };
 
 // unseen: a flag of direct photons from lights that do not take part in such events.
-struct Scattering { vec3 direction; vec3 weight; vec3 normal; bool transmitted; uint flags; uint unseen; };
+struct Scattering { vec3 direction; vec3 weight; vec3 normal; bool transmitted; uint flags; uint unseen; uint part; float ior; };
 
 // Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
 const float SHARPEST_ALPHA = 0.05;
@@ -27,7 +28,8 @@ const float SHARPEST_ALPHA = 0.05;
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
-    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE);
+    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE,
+                                   PART_DIFFUSE, 1.0);
     float scale = 1.0 / largest(flux);
     float share[5];
     share[0] = largest(flux * closure.diffuse) * scale;
@@ -57,10 +59,11 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
         result.direction = sample_cosine_hemisphere(-normal, u_direction);
         result.weight = closure.translucent * diffuse_factor(closure, normal, arrival, result.direction) * (norm / translucent);
         result.transmitted = true;
+        result.part = PART_TRANSLUCENT;
         return result;
     }
     u -= translucent;
-    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u, 0u);
+    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u, 0u, PART_TRANSPARENT, 1.0);
     u -= share[1];
     int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
     float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
@@ -69,7 +72,8 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     return Scattering(sampled.direction, sampled.weight * (lobe_shadowing(lobe, closure.shading_normal, sampled.direction) * norm / max(probability, 1e-20)), lobe_normal(lobe), sampled.transmitted,
                       (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_DIFFUSED)
                           | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
-                      sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY);
+                      sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
+                      lobe_part(lobe, sampled.transmitted), lobe.ior);
 }
 
 // Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
@@ -77,6 +81,20 @@ float adjoint_correction(vec3 arrival, vec3 departure, vec3 geometric, vec3 shad
     float above = abs(dot(arrival, shading)) * abs(dot(departure, geometric));
     float below = abs(dot(arrival, geometric)) * abs(dot(departure, shading));
     return min(above / max(below, 1e-6), 4.0);
+}
+
+// The ray is turned to look from where the photon goes, and waits where that does not matter (depart.comp). Of a closure
+// where one part stands for others, the view from there is no measure.
+void look_back(uint index, Closure closure, Scattering scattering, vec3 arrival, uint path_flags) {
+    bool matters = materials[closure.material].depends_on_view != 0u && (closure.flags & CLOSURE_CROWDED) == 0u;
+    Departure departure = Departure(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
+    if (matters) {
+        departure.part = scattering.part;
+        departure.share = part_share(closure, scattering.part, scattering.ior, arrival, scattering.direction);
+    } else photon_paths[index].flags = path_flags;
+    departures[index] = departure;
+    rays[index].direction = -scattering.direction;
+    rays[index].maximum_distance = matters ? INFINITY_DISTANCE : 0.0;
 }
 
 void main() {
@@ -127,9 +145,10 @@ void main() {
             if (!straight) path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
             if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
-            photon_paths[index].flags = path_flags;
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
             rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
+            if (parameters.looks_back != 0u) look_back(index, closure, scattering, photon.direction, path_flags);
+            else photon_paths[index].flags = path_flags;
         }
     }
     photons[slot] = photon;

@@ -31,6 +31,7 @@ const uint NO_PROGRAM = 0xffffffffu;
 
 // The kinds of rppm_addon/integrator/resolve.py.
 const uint PATH_OF_CAMERA = 1u, PATH_OF_PHOTON = 2u;
+const uint LOOKING_BACK = 64u;  // more than any segment's number
 
 uint path_flags(uint index) {
     if (parameters.path_kind == PATH_OF_CAMERA) return path_words[parameters.camera_stride * index + parameters.camera_flags];
@@ -79,7 +80,8 @@ void main() {
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
 
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment, index);
+    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
+                                            parameters.segment + (parameters.looks_back != 0u ? LOOKING_BACK : 0u), index);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, next_random(random));
     uint material = attributes[hit.triangle].material;
     ShadingInstance instance = shading_instances[surface.instance];

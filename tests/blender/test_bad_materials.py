@@ -4,10 +4,12 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_node, export, link, new_material, to_surface
+from blender_scenes import add_mesh, add_node, export, link, new_material, to_surface
 from rendering import picture, stage
 from test_export_images import new_image
 from test_export_materials import mixed
+
+from rppm_addon.blender.export import export_scene
 
 NAN, INFINITY = float("nan"), float("inf")
 
@@ -322,3 +324,71 @@ def test_worlds_that_are_broken(scene, renderer):
     background.inputs["Strength"].default_value = 1.0
     assert any('World "World": node "Lost sky"' in text for text in picture(renderer, scene)[1])
     assert export(scene).world.graph is not None
+
+
+MISSING = {
+    "ShaderNodeUVMap": ({"uv_map": "Lost"}, 'the attribute or UV map "Lost"'),
+    "ShaderNodeAttribute": ({"attribute_name": "Lost"}, 'the attribute or UV map "Lost"'),
+    "ShaderNodeVertexColor": ({}, "the colour attribute in use"),
+    "ShaderNodeNormalMap": ({"uv_map": "Lost"}, 'the UV map "Lost"'),
+}
+
+
+@pytest.mark.parametrize("kind", MISSING)
+def test_what_objects_do_not_have_is_told(scene, kind):
+    """Once for a material, however many objects there are; not of materials that no face has."""
+    properties, what = MISSING[kind]
+    material, unused = new_material(), new_material()
+    for one in (material, unused):
+        node = add_node(one.node_tree, kind, "Reader")
+        for name, value in properties.items():
+            setattr(node, name, value)
+        link(one.node_tree, node.outputs[0], diffuse(one).inputs["Normal" if "Normal" in kind else "Color"])
+    for number in range(2):
+        mesh = add_mesh(scene, f"Mesh {number}").data
+        mesh.materials.append(material)
+        mesh.materials.append(unused)
+    told = [text for text in export(scene).warnings if '"Reader"' in text]
+    assert len(told) == 1 and named(told, "Reader") and what in told[0] and told[0].count("such as") == 1
+
+
+def test_a_property_that_an_object_does_not_have(scene):
+    material = new_material()
+    tree = material.node_tree
+    node = add_node(tree, "ShaderNodeAttribute", "Reader")
+    node.attribute_name, node.attribute_type = "wear", "OBJECT"
+    link(tree, node.outputs["Fac"], diffuse(material).inputs["Color"])
+    owner = add_mesh(scene)
+    owner.data.materials.append(material)
+    assert any('the property "wear"' in text for text in export(scene).warnings)
+    owner["wear"] = 0.5
+    owner.update_tag()
+    assert export(scene).warnings == []
+
+
+def test_numbers_that_are_not_finite_are_told(scene):
+    material = new_material()
+    tree = material.node_tree
+    number = add_node(tree, "ShaderNodeValue", "Number")
+    number.outputs[0].default_value = NAN
+    link(tree, number.outputs[0], diffuse(material).inputs["Roughness"])
+    add_mesh(scene).data.materials.append(material)
+    assert named(export(scene).warnings, "Number")
+
+
+def test_attributes_of_the_view_layer_that_is_rendered(scene):
+    """Not of that in Blender's window."""
+    material = new_material()
+    tree = material.node_tree
+    node = add_node(tree, "ShaderNodeAttribute")
+    node.attribute_name, node.attribute_type = "wear", "VIEW_LAYER"
+    emission = add_node(tree, "ShaderNodeEmission")
+    link(tree, node.outputs["Fac"], emission.inputs["Strength"])
+    to_surface(material, emission)
+    add_mesh(scene).data.materials.append(material)
+    other = scene.view_layers.new("Other")
+    scene.view_layers[0]["wear"], other["wear"] = 0.25, 0.75
+    other.update()
+    exported = export_scene(other.depsgraph)
+    strength = [node.inputs["strength"] for node in exported.materials[0].graph.nodes if node.kind == "emission"]
+    assert strength == [0.75]

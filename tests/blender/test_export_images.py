@@ -7,6 +7,7 @@ import pytest
 from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, shaders, source, to_surface
 from test_export_lights import cycles_radiance
 
+from rppm_addon.blender.export.color_spaces import scene_linear, to_srgb
 from rppm_addon.blender.export.images import MISSING
 
 
@@ -180,3 +181,38 @@ def test_pixels_that_are_not_finite(scene):
     pixels[0, 0, 0], pixels[0, 1, 1] = np.nan, np.inf
     image, _, _ = exported_image(scene, textured(new_image("Broken", pixels, is_float=True)))
     assert np.isfinite(image.pixels).all()
+
+
+def test_movies(scene, tmp_path):
+    """The picture of the frame, from a copy that does not stay; a movie that is gone is missing."""
+    from PIL import Image
+
+    pictures = [Image.new("RGB", (4, 2), (50 * number, 20, 0)) for number in range(4)]
+    pictures[0].save(tmp_path / "shot.gif", save_all=True, append_images=pictures[1:], duration=40)
+    movie = bpy.data.images.load(str(tmp_path / "shot.gif"))
+    movie.source = "MOVIE"
+    material = textured(movie)
+    node = next(node for node in material.node_tree.nodes if node.type == "TEX_IMAGE")
+    node.image_user.frame_duration, node.image_user.frame_start = 4, 10
+    scene.frame_set(12)
+    image, _, warnings = exported_image(scene, material)
+    assert warnings == [] and len(bpy.data.images) == 1
+    np.testing.assert_array_equal(image.pixels[0, 0], (100, 20, 0, 255))
+    movie.filepath = str(tmp_path / "gone.gif")
+    assert any('"Picture"' in text and "gone.gif" in text for text in export(scene).warnings)
+
+
+SPACES = ["Linear Rec.2020", "ACEScg", "ACES2065-1", "Display P3", "Rec.1886", "Khronos PBR Neutral sRGB"]
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_grey_is_grey_in_all_spaces(scene, space):
+    grey = scene_linear(np.full((2, 3, 3), 0.4), space)
+    assert grey == pytest.approx(np.broadcast_to(grey[0, 0, 0], (2, 3, 3)), rel=1e-3)
+
+
+def test_places_of_colours_stay(scene):
+    """From bytes as from floats: Blender decodes both alike."""
+    colors = np.random.default_rng(3).random((3, 4, 3))
+    assert to_srgb(scene_linear(colors, "sRGB")) == pytest.approx(colors, abs=1e-5)
+    assert len(bpy.data.images) == 0

@@ -9,6 +9,7 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
 from emission import light_strength
 
+from rppm_addon.materials.emitted import lamp_variation
 from rppm_addon.scene import LightKind
 from rppm_addon.scene.meshes import RayVisibility
 
@@ -99,8 +100,22 @@ def test_light_nodes_multiply(scene):
         emission.inputs["Strength"],
     )
     exported = export(scene)
-    assert any('Light "Light": its nodes vary' in warning for warning in exported.warnings)
+    assert not exported.warnings and lamp_variation(exported.lights[0].graph).place
     assert 0.0 < light_strength(exported)[1] < 1.0
+
+
+def test_light_nodes_of_place_and_direction_at_once(scene):
+    """Maps have two axes: an area light whose emission depends on four numbers says what is left out."""
+    added = add_light(scene, "AREA")
+    added.data.use_nodes = True
+    tree = added.data.node_tree
+    geometry, product = (add_node(tree, f"ShaderNode{name}") for name in ("NewGeometry", "VectorMath"))
+    link(tree, geometry.outputs["Incoming"], product.inputs[0])
+    link(tree, product.outputs[0], tree.nodes["Emission"].inputs["Color"])
+    exported = export(scene)
+    assert not exported.warnings and lamp_variation(exported.lights[0].graph).direction
+    link(tree, geometry.outputs["Position"], product.inputs[1])
+    assert any('Light "Light": its nodes vary by place and by direction' in text for text in export(scene).warnings)
 
 
 @pytest.mark.parametrize("values", [{"energy": 0.0}, {"energy": -5.0}, {"color": (0.0, 0.0, 0.0)}])

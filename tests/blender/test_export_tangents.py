@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from rppm_addon.blender.export.color_spaces import from_srgb, linear_rec709, to_srgb
 from rppm_addon.blender.export.tangents import corner_tangents, sphere_uv
 from rppm_addon.scene import Mesh
 
@@ -52,17 +51,3 @@ def test_corners_share_a_mean_weighted_by_angles():
 
 def test_sphere_uv():
     assert sphere_uv(np.array([(0.0, 1.0, 0.0), (0.0, 0.0, 2.0)])) == pytest.approx(np.array([(0.5, 0.5), (0.0, 1.0)]))
-
-
-@pytest.mark.parametrize("space", ["Linear Rec.2020", "ACEScg", "ACES2065-1", "Display P3", "Rec.1886"])
-def test_white_is_white_in_all_spaces(space):
-    assert linear_rec709(np.ones((1, 3)), space) == pytest.approx(np.ones((1, 3)), abs=1e-4)
-
-
-def test_unknown_space():
-    assert linear_rec709(np.ones((1, 3)), "AgX Log") is None
-
-
-def test_srgb_curves_are_inverse():
-    values = np.linspace(0.0, 3.0, 50)
-    assert from_srgb(to_srgb(values)) == pytest.approx(values, abs=1e-6)

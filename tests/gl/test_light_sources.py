@@ -8,14 +8,38 @@ import pytest
 import scenes
 from lobes import Lobe, LobeKind, image_world, material
 
-from rppm_addon.scene import Camera, DirectLight, Image, Instance, Light, LightKind, RenderSettings, Scene, World
+from rppm_addon.scene import (
+    Camera,
+    DirectLight,
+    Image,
+    Instance,
+    Light,
+    LightKind,
+    NodeGraph,
+    RenderSettings,
+    Scene,
+    World,
+)  # fmt: skip
 
 
 def down(z: float) -> np.ndarray:
     return scenes.placed(0, 0, z)
 
 
+def by(kind: str, output: str) -> NodeGraph:
+    """Emission of a coordinate: 1 at its -1, 0 at its 1."""
+    graph = NodeGraph()
+    coordinate = graph.add(kind, output)
+    color = graph.add(
+        "vector_math", "vector", options={"operation": "MULTIPLY_ADD"},
+        vector=coordinate, vector_001=(-0.5, -0.5, -0.5), vector_002=(0.5, 0.5, 0.5),
+    )  # fmt: skip
+    graph.surface = graph.add("emission", "emission", color=color)
+    return graph
+
+
 ONE = np.ones(3)
+BY_NORMAL, BY_PLACE, BY_DIRECTION = by("tex_coord", "normal"), by("tex_coord", "object"), by("new_geometry", "incoming")
 LIGHTS = {
     "point": Light("point", LightKind.POINT, down(2), 3 * ONE),
     "sphere": Light("sphere", LightKind.POINT, down(2), 3 * ONE, radius=0.5),
@@ -26,6 +50,14 @@ LIGHTS = {
     "square": Light("square", LightKind.AREA, down(2), 5 * ONE, size=(0.8, 0.8)),
     "disk": Light("disk", LightKind.AREA, down(2), 5 * ONE, shape="DISK", size=(0.8, 0.8)),
     "spread": Light("spread", LightKind.AREA, down(2), 5 * ONE, size=(0.3, 0.3), spread=1.0),
+    "mapped point": Light("mapped point", LightKind.POINT, down(2), 3 * ONE, graph=BY_NORMAL),
+    "mapped sphere": Light("mapped sphere", LightKind.POINT, down(2), 3 * ONE, radius=0.5, graph=BY_NORMAL),
+    "mapped spot": Light("mapped spot", LightKind.SPOT, down(2), 3 * ONE, spot_angle=1.6, graph=BY_NORMAL),
+    "mapped sun": Light("mapped sun", LightKind.SUN, down(2), 2 * ONE, sun_angle=0.6, graph=BY_DIRECTION),
+    "mapped square": Light("mapped square", LightKind.AREA, down(2), 5 * ONE, size=(1.6, 1.6), graph=BY_PLACE),
+    "mapped disk": Light(
+        "mapped disk", LightKind.AREA, down(2), 5 * ONE, shape="DISK", size=(0.8, 0.8), graph=BY_DIRECTION
+    ),
 }
 IRRADIANCE = {  # on the floor straight below, W/m^2
     "point": 3 / 4,
@@ -35,6 +67,9 @@ IRRADIANCE = {  # on the floor straight below, W/m^2
     "sun": 2.0,
     "wide sun": 2.0,
     "disk": 5 * math.pi * 0.16 / (4 + 0.16),
+    # Straight down, the mean of the colours 0.5, 0.5 and 1 is 2/3.
+    "mapped point": 3 / 4 * 2 / 3,
+    "mapped spot": 3 / 4 * 2 / 3,
 }
 
 

@@ -9,7 +9,7 @@ import scenes
 from lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import Image, Scene
+from rppm_addon.scene import Image, NodeGraph, Scene
 
 
 def with_(scene: Scene, **members: object) -> Scene:
@@ -26,6 +26,10 @@ def first_scene() -> Scene:
     pixels = np.random.default_rng(1).integers(0, 255, (4, 8, 4), np.uint8)
     scene.images = [Image("sky", pixels, "LINEAR")]
     scene.world = image_world(0)
+    graph = NodeGraph()
+    shown = graph.add("tex_image", "color", image=0, vector=graph.add("tex_coord", "normal"))
+    graph.surface = graph.add("emission", "emission", color=shown)
+    scene.lights[0].graph = graph
     return scene
 
 

@@ -61,6 +61,20 @@ def test_white_glass_vanishes_in_a_white_sky(renderer, roughness):
     compare(f"white_glass_{roughness}", result.pictures, WHOLE, CONVERGED)
 
 
+def test_white_glass_that_stores_photons_vanishes_in_a_white_sky(renderer):
+    """Paths that are joined within the glass lose and gain no energy either."""
+    new_scene(resolution=32, world=1.0)
+    ball(1.0, material(GLASS, "MULTI_GGX", Color=1.0, Roughness=0.6, IOR=1.5), segments=48)
+    camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 18.0)
+    settings = {"specular_roughness": 0.0, "final_gather": False, "camera_path_length": 2, "photon_path_length": 24}
+    pictures = render_rppm(renderer, seeds=3, photons=16384, iterations=12, **settings).pictures
+    means = pictures.mean(axis=(1, 2, 3))
+    error = means.std(ddof=1) / np.sqrt(len(means))
+    print(f"\n{means.mean():.4f} +- {error:.4f}")
+    assert error < 0.025
+    assert abs(means.mean() - 1.0) < 4.0 * error
+
+
 @pytest.mark.parametrize("shader", [GLOSSY, PRINCIPLED])
 def test_white_metal_vanishes_in_a_white_sky(renderer, shader):
     new_scene(world=1.0)

@@ -18,8 +18,8 @@ import numpy as np
 import OpenEXR
 from mathutils import Euler, Matrix
 
+from rppm_addon.blender.export.context import ExportContext
 from rppm_addon.blender.export.graphs import GraphExporter
-from rppm_addon.blender.export.images import ImageTable
 from rppm_addon.blender.export.report import Report
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.sources import expand
@@ -140,7 +140,7 @@ def _material(case: Case) -> bpy.types.Material:
         is_float = case.kind.outputs[name] is FLOAT
         aov.aov_name = f"{'float' if is_float else 'vector'}_{index}"
         tree.links.new(_socket(node.outputs, case, name), aov.inputs["Value" if is_float else "Color"])
-    exporter = GraphExporter(case.name, Report(), ImageTable())
+    exporter = GraphExporter(case.name, ExportContext(Report()))
     link = exporter.value(aov.inputs["Value" if is_float else "Color"], ())
     case.exported = exporter.graph.nodes[link.node]
     case.idle = {

@@ -8,7 +8,7 @@ import bpy
 from ...scene import Scene
 from ...scene.errors import SceneError
 from .camera import export_camera
-from .images import ImageTable
+from .context import ExportContext
 from .objects import ObjectExporter
 from .report import ExportStopped, Report
 from .settings import export_cubemap_centre, export_exposure, export_settings, preview_settings
@@ -48,7 +48,8 @@ def export_scene(
     report = Report(stop, show)
     report.progress("Exporting the scene")
     source = depsgraph.scene_eval
-    images = ImageTable()
+    context = ExportContext(report)
+    context.read_from(depsgraph)
     scene = Scene(camera=export_camera(source, depsgraph, report))
     scene.settings = export_settings(source)
     if engine is not None and engine.is_preview:
@@ -56,15 +57,15 @@ def export_scene(
     scene.settings.validate()
     scene.cubemap_centre = export_cubemap_centre(depsgraph)
     scene.exposure = export_exposure(source)
-    objects = ObjectExporter(report, images)
+    objects = ObjectExporter(context)
     placed = objects.export(depsgraph)
     scene.meshes, scene.instances, scene.materials = (
         objects.meshes.meshes,
         placed.instances,
         objects.materials.materials,
     )
-    scene.world, suns = export_world(source.world, report, images)
+    scene.world, suns = export_world(source.world, context)
     scene.lights = placed.lights + suns
-    scene.images = images.images
+    scene.images = context.images.images
     scene.warnings = report.warnings
     return scene

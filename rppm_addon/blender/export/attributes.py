@@ -25,6 +25,18 @@ _FIELDS = {
 }  # fmt: skip
 
 
+def title_of(attribute: str) -> str:
+    """What users call an attribute that a graph reads."""
+    if attribute == ACTIVE_COLOR:
+        return "the colour attribute in use"
+    if attribute.startswith(TANGENT):
+        return f'the UV map "{attribute.removeprefix(TANGENT)}"'
+    domain, _, name = attribute.partition(":")
+    if name and domain in {"OBJECT", "INSTANCER"}:
+        return f'the property "{name}"'
+    return f'the attribute or UV map "{attribute}"'
+
+
 def attribute_of(owner: bpy.types.bpy_struct | None, name: str) -> tuple[float, ...] | None:
     """A custom property or a property of a datablock as up to four numbers; None when it has none of that name."""
     if owner is None or not name:

@@ -11,9 +11,8 @@ from ...materials.nodes import KINDS
 from ...scene import Link, NodeGraph
 from ...scene.sky import Sky
 from .attributes import GENERATED
-from .images import ImageTable
+from .context import ExportContext
 from .links import Path, Source, find_source, is_lost
-from .report import Report
 
 Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
 """Gives the value of an output: a Link, a number or a colour."""
@@ -67,23 +66,23 @@ class GraphExporter:
     What cannot be rendered gets a neutral value and a warning that names the node.
     """
 
-    def __init__(self, owner: str, report: Report, images: ImageTable, pass_index: int = 0) -> None:
+    def __init__(self, owner: str, context: ExportContext, pass_index: int = 0) -> None:
         """owner: what warnings name, such as 'Material "Glass"'; pass_index: the material's."""
         self.graph = NodeGraph()
         self.owner = owner
-        self.images = images
+        self.context = context
+        self.images = context.images
         self.pass_index = pass_index
         self.skies: dict[int, Sky] = {}
         """Sky textures by the index of their node."""
         self.is_world = owner.startswith("World")
-        self._report = report
         self._known: dict[tuple, object] = {}
         self._open: set[tuple] = set()
         self._waiting: set[tuple] = set()
 
     def warn(self, node: bpy.types.Node, text: str) -> None:
         """Tell the user what is done about a node."""
-        self._report.warn(f'{self.owner}: node "{node.name}" ({node.type}) {text}')
+        self.context.report.warn(f'{self.owner}: node "{node.name}" ({node.type}) {text}')
 
     def surface(self, output: bpy.types.Node) -> Link | None:
         """The shader of an output node; groups that are lost are named even where Blender cut their links."""
@@ -113,10 +112,22 @@ class GraphExporter:
         if not isinstance(source, Source):
             if source.broken is not None:
                 self.warn(source.broken, _LOST)
-            return _stored(source.socket)
+            return self.stored(source.socket)
         value = self._output(source)
         # What the user had chosen before plugging something in is the best guess for the unknown.
-        return _stored(socket) if value is None else value
+        return self.stored(socket) if value is None else value
+
+    def stored(self, socket: bpy.types.NodeSocket) -> object:
+        """The value in a socket: a number or a tuple of three; what is not finite counts as 0."""
+        stored = getattr(socket, "default_value", 0.0)
+        if isinstance(stored, str) or stored is None:
+            return 0.0
+        several = hasattr(stored, "__len__")
+        values = [float(v) for v in stored[:3]] if several else [float(stored)]
+        if not np.isfinite(values).all():
+            self.warn(socket.node, f'has a value in "{socket.name}" that is not finite; 0 is used')
+            values = [v if np.isfinite(v) else 0.0 for v in values]
+        return (*values, 0.0, 0.0)[:3] if several else values[0]
 
     def is_linked(self, socket: bpy.types.NodeSocket, path: Path) -> bool:
         """Whether a node's output feeds an input."""
@@ -241,11 +252,12 @@ class GraphExporter:
             return self.shared("new_geometry", "position")
         return self.shared("generated_coord", "generated", GENERATED)
 
-    def shared(self, kind: str, output: str, attribute: str = "") -> Link:
-        """An output of a node without inputs, of which the graph has one."""
+    def shared(self, kind: str, output: str, attribute: str = "", name: str = "") -> Link:
+        """An output of a node without inputs, of which the graph has one; ``name``: of the Blender node, for
+        messages."""
         key = (kind, attribute)
         if key not in self._known:
-            self._known[key] = self.graph.add(kind, attribute=attribute).node
+            self._known[key] = self.graph.add(kind, name=name, attribute=attribute).node
         return Link(self._known[key], output)
 
     def _stand_in(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
@@ -302,13 +314,3 @@ def _is_placed(node: bpy.types.Node) -> bool:
 
 _OLDER = {"factor": "fac", "fac": "factor"}
 """Identifiers that differ between versions of Blender."""
-
-
-def _stored(socket: bpy.types.NodeSocket) -> object:
-    """The value in a socket: a number or a tuple of three; what is not finite counts as 0."""
-    stored = getattr(socket, "default_value", 0.0)
-    if isinstance(stored, str) or stored is None:
-        return 0.0
-    if hasattr(stored, "__len__"):
-        return (*(float(v) if np.isfinite(v) else 0.0 for v in stored[:3]), 0.0, 0.0)[:3]
-    return float(stored) if np.isfinite(stored) else 0.0

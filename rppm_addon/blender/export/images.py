@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender images to pixels, each exported once."""
 
+import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
 from ...scene import Image
-from .color_spaces import linear_rec709, to_srgb
+from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 
 if TYPE_CHECKING:
     from .graphs import GraphExporter
@@ -17,10 +19,12 @@ _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"
 
 
 class ImageTable:
-    """The images of a scene under export."""
+    """The images of a scene under export, at a frame of the scene."""
 
     def __init__(self) -> None:
         self.images: list[Image] = []
+        self.frame = 1
+        """Of the scene, whose sequences and movies are shown."""
         self.frames = 0
         """How often an image was asked for that depends on the frame."""
         self._indices: dict[tuple, int] = {}
@@ -31,11 +35,12 @@ class ImageTable:
         if image is None:
             exporter.warn(node, "has no image and counts as magenta; choose one")
             return MISSING
-        if image.source != "SEQUENCE":
+        if image.source not in {"SEQUENCE", "MOVIE"}:
             return self._index((image.as_pointer(),), lambda: image, image, node, exporter)
         self.frames += 1
-        path = image.filepath_from_user(image_user=node.image_user)
-        return self._index((image.as_pointer(), path), lambda: _load(path, image), image, node, exporter)
+        number = frame_of(node.image_user, self.frame)
+        load = _of_movie if image.source == "MOVIE" else _of_sequence
+        return self._index((image.as_pointer(), number), lambda: load(image, number), image, node, exporter)
 
     def add(self, image: Image) -> int:
         """Index of an image that belongs to no datablock."""
@@ -77,7 +82,7 @@ class ImageTable:
                 self._indices[key] = MISSING
             else:
                 self._indices[key] = len(self.images)
-                self.images.append(_encoded(image, pixels, node, exporter))
+                self.images.append(_encoded(image, pixels))
         if self._indices[key] == MISSING:
             place = image.filepath or "no file"
             exporter.warn(node, f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
@@ -86,6 +91,39 @@ class ImageTable:
 
 MISSING = -1
 """Stands for an image without pixels; it is magenta."""
+
+
+def frame_of(user: bpy.types.ImageUser, scene_frame: int) -> int:
+    """The number of the file of a sequence, or of the picture of a movie, that is shown at a frame of the scene. As in
+    Cycles, whether the user refreshes by itself makes no difference."""
+    number = scene_frame - user.frame_start + 1
+    if user.use_cyclic:
+        number = (number - 1) % max(user.frame_duration, 1) + 1
+    return min(max(number, 0), user.frame_duration) + user.frame_offset
+
+
+def _of_sequence(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
+    """A file of a sequence: the last number in its name counts."""
+    path = Path(bpy.path.abspath(image.filepath, library=image.library))
+    digits = re.search(r"\d+(?=\D*$)", path.stem)
+    if digits is None or number < 0:
+        return _load(str(path), image) if digits is None else None
+    name = path.stem[: digits.start()] + f"{number:0{len(digits[0])}d}" + path.stem[digits.end() :]
+    return _load(str(path.with_name(name + path.suffix)), image)
+
+
+def _of_movie(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
+    """A picture of a movie, the first or last one beyond its ends, as a copy whose pixels are of that picture.
+
+    Blender's Python gives the pixels of the picture that was asked for last: scaling a copy to its own size changes
+    nothing else, and is what can name a picture without a window.
+    """
+    width, height = image.size
+    if width < 1 or height < 1:
+        return None
+    copied = image.copy()
+    copied.scale(width, height, frame=max(number, 1))
+    return copied
 
 
 def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
@@ -99,22 +137,21 @@ def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
     return image
 
 
-def _encoded(image: bpy.types.Image, pixels: np.ndarray, node: bpy.types.Node, exporter: "GraphExporter") -> Image:
+def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
     """Pixels as they are to be filtered: encoded where Cycles does it, and colours times alpha."""
     space = image.colorspace_settings.name
     if image.alpha_mode == "NONE":
         pixels[..., 3] = 1.0
     if image.is_float:
         # Blender has made them linear.
+        pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
         if space == "sRGB":
             pixels[..., :3] = to_srgb(pixels[..., :3])
         return Image(image.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
     if space != "sRGB" and space not in _LINEAR_SPACES:
-        linear = linear_rec709(pixels[..., :3].astype(np.float64), space)
-        if linear is not None:
-            pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
-            return Image(image.name, pixels, "LINEAR")
-        exporter.warn(node, f'has an image in the colour space "{space}", which is read as sRGB')
+        linear = scene_linear(pixels[..., :3], space) * WHITE_IN_CYCLES.get(space, 1.0)
+        pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
+        return Image(image.name, pixels, "LINEAR")
     encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
     pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
     if is_associated(image):

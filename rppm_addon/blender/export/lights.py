@@ -6,25 +6,23 @@ import math
 import bpy
 import numpy as np
 
-from ...materials.emitted import Emits, emits, reachable
-from ...materials.nodes import KINDS
+from ...materials.emitted import Emits, emits, lamp_variation
 from ...scene import Light, LightKind, NodeGraph
+from .context import ExportContext
 from .graphs import GraphExporter
-from .images import ImageTable
 from .report import Report
 from .visibility import visibility_of
 
 
-def export_light(
-    light_object: bpy.types.Object, matrix: np.ndarray, report: Report, images: ImageTable
-) -> Light | None:
+def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: ExportContext) -> Light | None:
     """A light object placed by ``matrix`` (4, 4); None when it gives no light."""
+    report = context.report
     data = light_object.data
     name = light_object.name
     power = _power(data, name, report)
     if not power.any():
         return None
-    graph = _graph(data, name, report, images)
+    graph = _graph(data, name, context)
     if graph is not None and emits(graph) is Emits.NOTHING:
         return None
     light = Light(
@@ -92,15 +90,21 @@ def _power(data: bpy.types.Light, name: str, report: Report) -> np.ndarray:
     return power
 
 
-def _graph(data: bpy.types.Light, name: str, report: Report, images: ImageTable) -> NodeGraph | None:
+def _graph(data: bpy.types.Light, name: str, context: ExportContext) -> NodeGraph | None:
     """What the light's nodes emit, as a factor of its power; None without nodes."""
     if not data.use_nodes or data.node_tree is None:
         return None
     output = data.node_tree.get_output_node("CYCLES") or data.node_tree.get_output_node("ALL")
-    exporter = GraphExporter(f'Light "{name}"', report, images)
+    exporter = GraphExporter(f'Light "{name}"', context)
     if output is not None:
         exporter.graph.surface = exporter.surface(output)
-    kinds = {exporter.graph.nodes[index].kind for index in reachable(exporter.graph, exporter.graph.surface)}
-    if any(KINDS[kind].surface for kind in kinds - {"light_path"}):
-        report.warn(f'Light "{name}": its nodes vary by place or direction, which is not rendered; their mean is used')
+    if exporter.graph.surface is None:
+        return exporter.graph
+    varies = lamp_variation(exporter.graph)
+    sphere = data.type in {"POINT", "SPOT"} and data.shadow_soft_size > 0.0 and not data.use_soft_falloff
+    by_place = varies.place or (varies.uv and data.type != "SPOT")
+    by_direction = varies.direction or (varies.uv and data.type == "SPOT")
+    if by_place and by_direction and (sphere or data.type == "AREA"):
+        kept = "they are rendered by place only"
+        context.report.warn(f'Light "{name}": its nodes vary by place and by direction; {kept}')
     return exporter.graph

@@ -6,21 +6,19 @@ import bpy
 from ...scene import Material, NodeGraph
 from . import nodes, value_nodes  # noqa: F401  register their handlers
 from .attributes import NO_ATTRIBUTE
+from .context import ExportContext
 from .graphs import GraphExporter
-from .images import ImageTable
 from .links import Path, node_tree
-from .report import Report
 
 
 class MaterialTable:
     """The materials of a scene under export, each exported once and as long as it does not change."""
 
-    def __init__(self, report: Report, images: ImageTable) -> None:
+    def __init__(self, context: ExportContext) -> None:
         self.materials: list[Material] = []
-        self.attributes: list[set[str]] = []
-        """Of each material, the names of the attributes that its nodes read."""
-        self._report = report
-        self._images = images
+        self.attributes: list[dict[str, str]] = []
+        """Of each material, the attributes that its nodes read, with the name of such a node."""
+        self._context = context
         self._places: dict[int, int] = {}
         self._of_frame: set[int] = set()
 
@@ -31,7 +29,7 @@ class MaterialTable:
         if key not in self._places:
             self._places[key] = len(self.materials)
             self.materials.append(Material(""))
-            self.attributes.append(set())
+            self.attributes.append({})
             self._export(key, material)
         return self._places[key]
 
@@ -49,16 +47,18 @@ class MaterialTable:
         return material.original.session_uid in self._of_frame
 
     def _export(self, key: int, material: bpy.types.Material | None) -> None:
-        frames = self._images.frames
-        with self._report.about(("material", key)):
+        frames = self._context.images.frames
+        with self._context.report.about(("material", key)):
             if material is None:
                 exported = Material("Default", default_surface())
             else:
-                exported = export_material(material, self._report, self._images)
-        (self._of_frame.add if self._images.frames > frames else self._of_frame.discard)(key)
+                exported = export_material(material, self._context)
+        (self._of_frame.add if self._context.images.frames > frames else self._of_frame.discard)(key)
         place = self._places[key]
         self.materials[place] = exported
-        self.attributes[place] = {node.attribute for node in exported.graph.nodes} - {"", NO_ATTRIBUTE}
+        self.attributes[place] = {
+            node.attribute: node.name for node in exported.graph.nodes if node.attribute not in {"", NO_ATTRIBUTE}
+        }
 
 
 def default_surface() -> NodeGraph:
@@ -75,7 +75,7 @@ def plain_surface(color: tuple[float, float, float]) -> NodeGraph:
     return graph
 
 
-def export_material(material: bpy.types.Material, report: Report, images: ImageTable) -> Material:
+def export_material(material: bpy.types.Material, context: ExportContext) -> Material:
     """The surface and the interior of a material; what has no counterpart is reported and left out."""
     tree = node_tree(material)
     if tree is None:
@@ -83,9 +83,9 @@ def export_material(material: bpy.types.Material, report: Report, images: ImageT
     owner = f'Material "{material.name}"'
     output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
-        report.warn(f"{owner}: it has no Material Output node and is black")
+        context.report.warn(f"{owner}: it has no Material Output node and is black")
         return Material(material.name)
-    exporter = GraphExporter(owner, report, images, material.pass_index)
+    exporter = GraphExporter(owner, context, material.pass_index)
     graph = exporter.graph
     if exporter.is_linked(output.inputs["Displacement"], ()):
         _bump(exporter, material, output)
@@ -93,7 +93,7 @@ def export_material(material: bpy.types.Material, report: Report, images: ImageT
     shadow = getattr(material, "use_transparent_shadow", True)
     exported = Material(material.name, graph, transparent_shadow=shadow)
     if exporter.is_linked(output.inputs["Volume"], ()):
-        exported.interior = _interior(owner, report, images, output)
+        exported.interior = _interior(owner, context, output)
         if not exporter.is_linked(output.inputs["Surface"], ()):
             # Only an interior: the boundary itself is not there.
             graph.surface = graph.add("bsdf_transparent", "bsdf")
@@ -110,7 +110,7 @@ def _bump(exporter: GraphExporter, material: bpy.types.Material, output: bpy.typ
     graph.normal = graph.add("bump", "normal", name=output.name, height=height)
 
 
-def _interior(owner: str, report: Report, images: ImageTable, output: bpy.types.Node) -> NodeGraph:
-    exporter = GraphExporter(owner, report, images)
+def _interior(owner: str, context: ExportContext, output: bpy.types.Node) -> NodeGraph:
+    exporter = GraphExporter(owner, context)
     exporter.graph.surface = exporter.shader(output.inputs["Volume"], Path())
     return exporter.graph

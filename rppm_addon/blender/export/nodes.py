@@ -6,6 +6,7 @@ import functools
 import bpy
 import numpy as np
 
+from ...materials.ies import FLAT_PROFILE, ProfileError, profile_table
 from ...materials.sky import sky_picture
 from ...scene import Image, Link
 from ...scene.sky import Sky
@@ -14,7 +15,7 @@ from .graphs import STAND_INS, GraphExporter, handles, snake_case
 from .images import is_associated
 from .links import Path
 
-STAND_INS |= {"SHADERTORGB": "", "TEX_IES": "Strength", "RADIAL_TILING": "Vector"}
+STAND_INS |= {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
 
 
 @handles("TEX_COORD")
@@ -44,12 +45,12 @@ def _geometry(exporter: GraphExporter, node, output, path: Path):
 
 @handles("UVMAP")
 def _uv_map(exporter: GraphExporter, node, output, path: Path):
-    return exporter.shared("uvmap", "uv", node.uv_map) if node.uv_map else exporter.shared("tex_coord", "uv")
+    return exporter.shared("uvmap", "uv", node.uv_map, node.name) if node.uv_map else exporter.shared("tex_coord", "uv")
 
 
 @handles("VERTEX_COLOR")
 def _color_attribute(exporter: GraphExporter, node, output, path: Path):
-    return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR)
+    return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR, node.name)
 
 
 @handles("ATTRIBUTE")
@@ -57,12 +58,12 @@ def _attribute(exporter: GraphExporter, node, output, path: Path):
     if node.attribute_type == "VIEW_LAYER":
         return _view_layer_attribute(exporter, node, output)
     name = node.attribute_name if node.attribute_type == "GEOMETRY" else f"{node.attribute_type}:{node.attribute_name}"
-    return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE)
+    return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE, node.name)
 
 
 def _view_layer_attribute(exporter: GraphExporter, node, output):
     """A property of the view layer, the scene or the world, which is one value for all surfaces."""
-    for owner in (bpy.context.view_layer, bpy.context.scene, getattr(bpy.context.scene, "world", None)):
+    for owner in exporter.context.owners:
         value = attribute_of(owner, node.attribute_name)
         if value is not None:
             color = (*value, *(1.0,) * 4)[:4] if len(value) > 1 else (value[0],) * 3 + (1.0,)
@@ -98,6 +99,8 @@ def _object_info(exporter: GraphExporter, node, output, path: Path):
 @handles("TEX_IMAGE")
 def _image_texture(exporter: GraphExporter, node, output, path: Path):
     tiles = exporter.images.tiles(node, exporter)
+    image = exporter.images.of_node(node, exporter) if tiles is None else -1
+    # Only now is the image loaded: before, a movie has no colour space.
     unassociate = is_associated(node.image) and any(
         socket.identifier == "Alpha" and socket.is_linked for socket in node.outputs
     )
@@ -106,7 +109,6 @@ def _image_texture(exporter: GraphExporter, node, output, path: Path):
     if tiles is not None:
         return exporter.add("tex_image_tiles", node, path, name, options=options, table=tiles,
                             inputs={"tiles": float(len(tiles))})  # fmt: skip
-    image = exporter.images.of_node(node, exporter)
     blend = {"projection_blend": node.projection_blend}
     return exporter.add("tex_image", node, path, name, options=options, image=image, inputs=blend)
 
@@ -114,6 +116,33 @@ def _image_texture(exporter: GraphExporter, node, output, path: Path):
 @handles("TEX_ENVIRONMENT")
 def _environment_texture(exporter: GraphExporter, node, output, path: Path):
     return exporter.add("tex_environment", node, path, "color", image=exporter.images.of_node(node, exporter))
+
+
+@handles("TEX_IES")
+def _ies_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path):
+    vector = next(socket for socket in node.inputs if socket.identifier == "Vector")
+    inputs = {}
+    if not exporter.is_linked(vector, path):
+        incoming = exporter.shared("new_geometry", "incoming")
+        inputs["vector"] = exporter.graph.add(
+            "vector_transform", "vector", name=node.name, vector=incoming,
+            options={"vector_type": "NORMAL", "convert_from": "WORLD", "convert_to": "OBJECT"},
+        )  # fmt: skip
+    try:
+        table = profile_table(_profile(node))
+    except (ProfileError, OSError) as error:
+        exporter.warn(node, f"has no IES profile that can be read ({error}); its value is 100, as in Cycles")
+        table = FLAT_PROFILE
+    return exporter.add("tex_ies", node, path, "fac", table=table, inputs=inputs)
+
+
+def _profile(node: bpy.types.Node) -> str:
+    """The text of a node's IES profile. Raises OSError."""
+    if node.mode == "INTERNAL":
+        return "" if node.ies is None else node.ies.as_string()
+    file = bpy.path.abspath(node.filepath, library=node.id_data.library)
+    with open(file, encoding="latin-1") as profile:
+        return profile.read()
 
 
 @handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")

@@ -8,15 +8,14 @@ import bpy
 import numpy as np
 
 from ...scene import Instance, Light, RayVisibility
-from .attributes import attribute_of
+from .attributes import GENERATED, ISLAND, TANGENT, attribute_of, title_of
+from .context import ExportContext
 from .hashing import hashed
-from .images import ImageTable
 from .lights import export_light
 from .materials import MaterialTable
 from .matrices import usable_matrices
 from .mesh_table import MeshTable
 from .particles import particle_of
-from .report import Report
 from .visibility import visibility_of
 
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
@@ -27,11 +26,11 @@ UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOL
 class ObjectExporter:
     """Reads a depsgraph's objects; meshes and materials that it knows are not exported again."""
 
-    def __init__(self, report: Report, images: ImageTable) -> None:
-        self.materials = MaterialTable(report, images)
-        self.meshes = MeshTable(report)
-        self._report = report
-        self._images = images
+    def __init__(self, context: ExportContext) -> None:
+        self.materials = MaterialTable(context)
+        self.meshes = MeshTable(context.report)
+        self._context = context
+        self._report = context.report
         self._frame = 0.0
 
     def export(
@@ -67,7 +66,7 @@ class ObjectExporter:
         if not np.isfinite(matrix).all():
             self._report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
             return None
-        return export_light(source, matrix, self._report, self._images)
+        return export_light(source, matrix, self._context)
 
     def _shading(
         self,
@@ -149,6 +148,8 @@ class _Pass:
         self._placed: list[tuple[Instance, np.ndarray, int]] = []
         self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object]]] = []
         self._converted: set[tuple[int, bytes]] = set()
+        self._missing: dict[tuple[str, str, str], dict[str, None]] = {}
+        """By names of material, node and attribute, the objects that do not have it."""
         self._multiple: set[int] = set()
         """Objects that are multiplied or multiply others."""
         self._result = Placed()
@@ -173,6 +174,7 @@ class _Pass:
                 self._export_instance(instance, source, stands_for, matrix)
         self._convert()
         self._keep_usable()
+        self._tell_missing()
         return self._result
 
     def _export_instance(
@@ -218,8 +220,30 @@ class _Pass:
     ) -> None:
         index = self._exporter._mesh_index(source, mesh, shading, owner)
         if index is not None:
+            self._note_missing(source.name, index, shading)
             uid = source.original.session_uid
             self._placed.append((_instance(index, source, matrix, shading), matrix, uid if mesh is not None else 0))
+
+    def _note_missing(self, name: str, index: int, shading: dict[str, object]) -> None:
+        """Attributes that the materials of an instance read and that it does not have."""
+        materials, mesh = self._exporter.materials, self._exporter.meshes.meshes[index]
+        known = {GENERATED, ISLAND, TANGENT, *mesh.attributes, *shading["attributes"]}
+        asked = [(slot, materials.attributes[material]) for slot, material in enumerate(shading["materials"])]
+        if all(attributes.keys() <= known for _, attributes in asked):
+            return
+        slots = np.unique(np.minimum(mesh.triangle_slots, len(asked) - 1))
+        for slot, attributes in asked:
+            for attribute in attributes.keys() - known if slot in slots else ():
+                material = materials.materials[shading["materials"][slot]].name
+                self._missing.setdefault((material, attributes[attribute], attribute), {})[name] = None
+
+    def _tell_missing(self) -> None:
+        for (material, node, attribute), objects in sorted(self._missing.items()):
+            first = next(iter(objects))
+            lack = f'object "{first}" lacks' if len(objects) == 1 else f'{len(objects)} objects lack, such as "{first}"'
+            self._report.warn(
+                f'Material "{material}": node "{node}" reads {title_of(attribute)}, which {lack}; it counts as 0'
+            )
 
     def _convert(self) -> None:
         """Place the curves, texts, surfaces and metaballs whose mesh did not come as an instance.

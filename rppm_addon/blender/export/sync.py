@@ -10,7 +10,7 @@ import numpy as np
 from ...scene import Camera, Instance, Scene, World
 from ...scene.lights import Light
 from ...scene.sharing import share
-from .images import ImageTable
+from .context import ExportContext
 from .objects import ObjectExporter, Placed
 from .report import Report
 from .settings import export_cubemap_centre, export_exposure, export_settings
@@ -76,8 +76,9 @@ class SceneSync:
 
     def _begin(self) -> None:
         self._report = Report()
-        self._images = ImageTable()
-        self._objects = ObjectExporter(self._report, self._images)
+        self._context = ExportContext(self._report)
+        self._images = self._context.images
+        self._objects = ObjectExporter(self._context)
         self._placed: Placed | None = None
         self._world: tuple[World, list[Light]] | None = None
         self._world_shows_frames = False
@@ -95,13 +96,14 @@ class SceneSync:
         source = depsgraph.scene_eval
         if edits.images or 0 < self._most_images < len(self._images.images):
             self._begin()
+        self._context.read_from(depsgraph)
         self._advance(source, depsgraph, edits)
         # Not any(): each is to be exported.
         asked = [self._objects.materials.renew(material) for material in edits.materials]
         if edits.world or self._world is None:
             frames = self._images.frames
             with self._report.about("world"):
-                self._world = export_world(source.world, self._report, self._images)
+                self._world = export_world(source.world, self._context)
             self._world_shows_frames = self._images.frames > frames
         self._objects.meshes.forget(edits.shapes)
         if self._placed is None or edits.others or any(asked) or not self._patch(edits):

@@ -11,12 +11,12 @@ from .tables import curve_table, extrapolates, ramp_table
 
 @handles("VALUE")
 def _value(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> float:
-    return float(output.default_value)
+    return exporter.stored(output)
 
 
 @handles("RGB")
 def _rgb(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> tuple:
-    return tuple(output.default_value[:3])
+    return exporter.stored(output)
 
 
 @handles("MIX")

@@ -10,13 +10,12 @@ from mathutils import Vector
 from ...materials.sky_sun import sun_disc
 from ...scene import Light, LightKind, Link, NodeGraph, ShaderNode, World
 from ...scene.sky import Sky
+from .context import ExportContext
 from .graphs import GraphExporter
-from .images import ImageTable
 from .links import node_tree
-from .report import Report
 
 
-def export_world(world: bpy.types.World | None, report: Report, images: ImageTable) -> tuple[World, list[Light]]:
+def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple[World, list[Light]]:
     """The surroundings, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
         return World(), []
@@ -27,9 +26,9 @@ def export_world(world: bpy.types.World | None, report: Report, images: ImageTab
     output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
         return World(), []
-    exporter = GraphExporter(owner, report, images)
+    exporter = GraphExporter(owner, context)
     if output.inputs["Volume"].is_linked:
-        report.warn(f"{owner}: its volume is not rendered yet and is ignored")
+        context.report.warn(f"{owner}: its volume is not rendered yet and is ignored")
     exporter.graph.surface = exporter.surface(output)
     if exporter.graph.surface is None:
         return World(), []
@@ -56,7 +55,7 @@ def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:
     matrix = np.eye(4)
     matrix[:3, :3] = np.array(Vector(backward).to_track_quat("Z", "Y").to_matrix())
     return Light(f"{owner} sun", LightKind.SUN, matrix, np.ones(3), sun_angle=disc.angle,
-                 graph=NodeGraph(nodes, graph.surface))  # fmt: skip
+                 graph=NodeGraph(nodes, graph.surface), of_world=True)  # fmt: skip
 
 
 def _finite(radiance: np.ndarray) -> np.ndarray:

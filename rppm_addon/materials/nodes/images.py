@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Image and environment textures."""
+"""Image and environment textures, and photometric profiles."""
 
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
@@ -33,5 +33,11 @@ KINDS = {
         outputs={"color": COLOR},
         options={"projection": ("EQUIRECTANGULAR", "MIRROR_BALL"), "interpolation": _INTERPOLATIONS},
         resources=("image",),
+    ),
+    "tex_ies": NodeKind(
+        "ies.glsl",
+        inputs={"vector": (VECTOR, 0.0), "strength": (FLOAT, 1.0)},
+        outputs={"fac": FLOAT},
+        resources=("table",),
     ),
 }

@@ -4,7 +4,8 @@
 
 const int CLOSURE_LOBES = 3;
 const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
-           CLOSURE_KEEPS_LIGHT = 8u;  // photons light it, but it sends none on
+           CLOSURE_KEEPS_LIGHT = 8u,  // photons light it, but it sends none on
+           CLOSURE_CROWDED = 16u;     // one part, chosen by chance, stands for others
 
 Closure empty_closure() {
     vec3 none = vec3(0.0);

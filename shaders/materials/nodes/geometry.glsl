@@ -17,7 +17,7 @@ float pixel_width(Surface surface) {
 
 void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object,
                     out vec3 camera, out vec3 window, out vec3 reflection) {
-    bool world = surface.triangle == NO_TRIANGLE;
+    bool world = surface.instance == NO_INSTANCE;
     object = point_to_object(surface, surface.position);
     vec3 n = normal_to_object(surface, surface.normal);
     normal = n / max(length(n), 1e-20);
@@ -71,7 +71,7 @@ void node_tangent(Surface surface, int direction_type, int axis, uint layer, out
 
 void node_object_info(Surface surface, float material_index, out vec3 location, out vec3 color, out float alpha,
                       out float object_index, out float material_index_out, out float random) {
-    ShadingInstance at = shading_instances[surface.instance];
+    ShadingInstance at = shading_instances[surface.instance == NO_INSTANCE ? 0u : surface.instance];
     location = at.location;
     color = at.color.rgb;
     alpha = at.color.a;
@@ -82,7 +82,7 @@ void node_object_info(Surface surface, float material_index, out vec3 location, 
 
 void node_particle_info(Surface surface, out float index, out float random, out float age, out float lifetime,
                         out vec3 location, out float size, out vec3 velocity, out vec3 angular_velocity) {
-    ShadingInstance at = shading_instances[surface.instance];
+    ShadingInstance at = shading_instances[surface.instance == NO_INSTANCE ? 0u : surface.instance];
     index = at.particle_index;
     random = at.particle_random;
     age = at.particle_age;

@@ -130,7 +130,7 @@ value(
     0.2,
     prepare=attribute_values("FLOAT", "EDGE", "value", 1),
 )
-value("Attribute", "missing", lambda net: net.out("Attribute", "Color", attribute_name="Nothing"), 1.0, 0.2)
+value("Attribute", "missing", lambda net: net.out("Attribute", "Color", attribute_name="Nothing"), 1.0, 0.2, warns=True)
 
 
 def _properties() -> None:

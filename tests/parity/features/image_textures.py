@@ -19,10 +19,11 @@ GROUP = "Image Texture"
 
 
 @cache
-def _folder() -> Path:
-    folder = Path(tempfile.mkdtemp(prefix="rppm_parity_"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
+def folder() -> Path:
+    """Where the pictures are until the program ends."""
+    made = Path(tempfile.mkdtemp(prefix="rppm_parity_"))
+    atexit.register(shutil.rmtree, made, ignore_errors=True)
+    return made
 
 
 def _pixels(width: int, height: int, seed: int) -> np.ndarray:
@@ -35,7 +36,7 @@ def _pixels(width: int, height: int, seed: int) -> np.ndarray:
 @cache
 def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
     """A small picture file: png, opaque (png without alpha), grey (png), deep (png with 16 bits), exr."""
-    path = _folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
+    path = folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
     pixels = _pixels(width, height, 5)
     if kind == "premultiplied":
         pixels[..., :3] *= pixels[..., 3:]
@@ -114,14 +115,22 @@ for _space in ("sRGB", "Non-Color", "Linear Rec.709"):
     value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"))
 for _space in ("ACEScg", "Linear Rec.2020", "Linear CIE-XYZ E", "Display P3", "Rec.1886"):
     value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.5, 0.8)
+for _space in (
+    "Filmic sRGB",
+    "Filmic Log",
+    "AgX Base sRGB",
+    "Khronos PBR Neutral sRGB",
+    "ACES 2.0 sRGB",
+    "Rec.2100-HLG",
+):
+    value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.05, 0.5)
 value(
     GROUP,
-    "colour space Filmic sRGB",
-    texture(space="Filmic sRGB", kind="opaque"),
-    warns=True,
-    mean=0.8,
-    block=1.0,
-    reason="read as sRGB",
+    "colour space Filmic sRGB, alpha",
+    texture(space="Filmic sRGB"),
+    0.1,
+    0.5,
+    reason="Cycles rounds to half floats before it multiplies by alpha",
 )
 for _space in ("Linear Rec.709", "Non-Color", "sRGB", "ACEScg"):
     value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3, 0.5)
@@ -170,12 +179,12 @@ value(GROUP, "packed", _packed_image)
 
 
 def _tiles(net):
-    folder = _folder()
+    tiles = folder()
     for number, seed in ((1001, 1), (1002, 2), (1011, 3)):
-        Image.fromarray(np.uint8(255 * _pixels(8, 8, seed)[..., :3])).save(folder / f"tiled.{number}.png")
-    made = bpy.data.images.load(str(folder / "tiled.1001.png"))
+        Image.fromarray(np.uint8(255 * _pixels(8, 8, seed)[..., :3])).save(tiles / f"tiled.{number}.png")
+    made = bpy.data.images.load(str(tiles / "tiled.1001.png"))
     made.source = "TILED"
-    made.filepath = str(folder / "tiled.<UDIM>.png")
+    made.filepath = str(tiles / "tiled.<UDIM>.png")
     for number in (1002, 1011):
         if number not in {tile.number for tile in made.tiles}:
             made.tiles.new(number)
@@ -185,6 +194,33 @@ def _tiles(net):
 
 
 value(GROUP, "UDIM tiles", _tiles)
+
+
+def _animated(movie: bool, frame: int, **user):
+    """A sequence of files, or a movie, at a frame of the scene; ``user`` of the node's image user."""
+
+    def give(net):
+        pictures = [Image.fromarray(np.uint8(255 * _pixels(8, 8, seed)[..., :3])) for seed in range(1, 7)]
+        for number, shown in enumerate(pictures, 1):
+            shown.save(folder() / f"shot_{number:03d}.png")
+        pictures[0].save(folder() / "shot.gif", save_all=True, append_images=pictures[1:], duration=40)
+        made = bpy.data.images.load(str(folder() / ("shot.gif" if movie else "shot_001.png")))
+        made.source = "MOVIE" if movie else "SEQUENCE"
+        node = net.node("TexImage", image=made)
+        for name, setting in ({"frame_duration": 6} | user).items():
+            setattr(node.image_user, name, setting)
+        bpy.context.scene.frame_set(frame)
+        return node.outputs["Color"]
+
+    return give
+
+
+for _movie, _what in ((False, "sequence"), (True, "movie")):
+    value(GROUP, f"{_what}, frame 3", _animated(_movie, 3, use_auto_refresh=True))
+    value(GROUP, f"{_what}, without auto refresh", _animated(_movie, 4))
+    value(GROUP, f"{_what}, start and offset", _animated(_movie, 5, frame_start=3, frame_offset=2))
+    value(GROUP, f"{_what}, cyclic", _animated(_movie, 12, frame_duration=4, use_cyclic=True, frame_offset=1))
+    value(GROUP, f"{_what}, after its end", _animated(_movie, 50))
 
 
 def _image_bump(net):

@@ -3,12 +3,16 @@
 
 import math
 
+from rppm_addon.scene import DirectLight
+
 from ..scenes import light, place
 from . import stage
 from .image_textures import texture
 from .net import Net, material
 from .rows import Row, add
 
+IN_VIEW = {"at": (1.25, 0.6, 1.2), "turn": (-70.0, 10.0, 20.0)}
+"""Beside the ball, towards the camera."""
 ABOVE = {"at": (0.7, -0.9, 2.8), "turn": (15.0, 20.0, 0.0)}
 
 
@@ -60,11 +64,12 @@ for _group, _rows in LAMPS.items():
         lamps(_group, _name, _lamp(_kind, **_properties), effort=2 if "spread" in _properties else 1)
 
 
-def _with_nodes(kind, feed, **properties):
-    """A lamp whose emission is fed by ``feed(net)``: colour and strength."""
+def lamp_with_nodes(kind, feed, where=None, **properties):
+    """A lamp whose emission is fed by ``feed(net)``: colour and strength; the camera sees it where a place is given."""
 
     def make() -> None:
-        made = light(kind, 60.0, place(**ABOVE), **properties)
+        made = light(kind, 60.0, place(**(where or ABOVE)), **properties)
+        made.visible_camera = where is not None
         if made.data.node_tree is None or not made.data.use_nodes:
             made.data.use_nodes = True
         tree = made.data.node_tree
@@ -76,14 +81,16 @@ def _with_nodes(kind, feed, **properties):
     return make
 
 
-lamps("Light nodes", "constant", _with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
+lamps("Light nodes", "constant", lamp_with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
 lamps(
-    "Light nodes", "blackbody", _with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8)
+    "Light nodes",
+    "blackbody",
+    lamp_with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8),
 )
 lamps(
     "Light nodes",
     "quadratic falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0})),
         shadow_soft_size=0.1,
@@ -92,7 +99,7 @@ lamps(
 lamps(
     "Light nodes",
     "smooth quadratic falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0, "Smooth": 1.0})),
         shadow_soft_size=0.1,
@@ -101,7 +108,7 @@ lamps(
 lamps(
     "Light nodes",
     "linear falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Linear", {"Strength": 0.4})),
         shadow_soft_size=0.1,
@@ -110,24 +117,74 @@ lamps(
 lamps(
     "Light nodes",
     "constant falloff",
-    _with_nodes(
+    lamp_with_nodes(
         "AREA", lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Constant", {"Strength": 0.2})), size=0.8
     ),
 )
-lamps(
-    "Light nodes",
-    "IES-like, by direction",
-    _with_nodes(
-        "SPOT",
-        lambda net: ((1.0, 1.0, 1.0), net.out("TexGradient", "Fac", {0: net.out("TexCoord", "Normal")})),
-        shadow_soft_size=0.0,
-        spot_size=2.0,
-    ),
-    warns=True,
-    mean=1.0,
-    block=100.0,
-    reason="nodes of lamps that vary by direction give their mean",
-)
+WHITE = (1.0, 1.0, 1.0)
+
+
+def _by(coordinates):
+    """A colour by a coordinate, from 0 to 1 where that goes from -1 to 1."""
+    return lambda net: (net.scaled(net.out("TexCoord", coordinates), 0.5, 0.5), 1.0)
+
+
+def _squares(net):
+    return net.out("TexChecker", "Color", {0: net.out("TexCoord", "Normal"), "Scale": 3.3}), 1.0
+
+
+def _gradient(net):
+    return WHITE, net.out("TexGradient", "Fac", {0: net.out("TexCoord", "Normal")})
+
+
+def _image(net):
+    return texture(kind="opaque")(net), 1.0
+
+
+def _incoming(net):
+    around = net.out("VectorMath", "Value", {0: net.out("NewGeometry", "Incoming"), 1: (0.5, -0.2, -0.9)},
+                     operation="DOT_PRODUCT")  # fmt: skip
+    return WHITE, net.out("Math", 0, {0: around, 1: 6.0}, operation="POWER")
+
+
+NARROW = {"spot_size": 1.0, "spot_blend": 0.3}
+DISK, SPHERE = {"shadow_soft_size": 0.3}, {"shadow_soft_size": 0.3, "use_soft_falloff": False}
+BY_DIRECTION = {
+    "spot, gradient by normal": ("SPOT", _gradient, {"shadow_soft_size": 0.0, "spot_size": 2.0}),
+    "spot, colour by normal": ("SPOT", _by("Normal"), {"shadow_soft_size": 0.1, **NARROW}),
+    "spot, image": ("SPOT", _image, {"shadow_soft_size": 0.0, **NARROW}),
+    "spot, image, wide": ("SPOT", _image, {"shadow_soft_size": 0.0, "spot_size": 2.7}),
+    "spot, sphere, colour by normal": ("SPOT", _by("Normal"), SPHERE | NARROW),
+    "point, colour by normal": ("POINT", _by("Normal"), DISK),
+    "point, checker by normal": ("POINT", _squares, {"shadow_soft_size": 0.0}),
+    "point, sphere, colour by normal": ("POINT", _by("Normal"), SPHERE),
+    "point, image": ("POINT", _image, {"shadow_soft_size": 0.2}),
+    "point, incoming": ("POINT", _incoming, {"shadow_soft_size": 0.1}),
+    "area, image": ("AREA", _image, {"size": 1.6}),
+    "area, ellipse, colour by generated": ("AREA", _by("Generated"), {"shape": "ELLIPSE", "size": 1.6, "size_y": 0.7}),
+    "area, incoming": ("AREA", _incoming, {"size": 0.6}),
+    "sun, image": ("SUN", _image, {"angle": 0.8}),
+}  # fmt: skip
+for _name, (_kind, _feed, _properties) in BY_DIRECTION.items():
+    lamps("Light nodes", _name, lamp_with_nodes(_kind, _feed, **_properties), effort=2)
+for _name in ("spot, image", "spot, sphere, colour by normal", "point, colour by normal", "area, incoming"):
+    _kind, _feed, _properties = BY_DIRECTION[_name]
+    lamps(
+        "Light nodes",
+        f"{_name}, by photons",
+        lamp_with_nodes(_kind, _feed, **_properties),
+        settings={"direct_light": DirectLight.PHOTONS, "photons": 16384},
+        effort=4,
+    )
+for _name, _where in {
+    "area, image": IN_VIEW,
+    "sun, image": {"turn": (-95.0, 10.0, 10.0)},
+    "point, sphere, colour by normal": IN_VIEW,
+    "point, image": IN_VIEW,
+}.items():
+    _kind, _feed, _properties = BY_DIRECTION[_name]
+    _size = {"AREA": {"size": 0.8}, "SUN": {}}.get(_kind, {"shadow_soft_size": 0.4})
+    lamps("Light nodes", f"{_name}, in view", lamp_with_nodes(_kind, _feed, _where, **(_properties | _size)), effort=3)
 
 
 def _two() -> None:
@@ -191,12 +248,12 @@ def _small_bulbs() -> None:
 lamps("Glowing mesh", "two bulbs", _small_bulbs, effort=2)
 
 
-def _unseen() -> None:
-    made = _lamp("AREA", 60.0, {"at": (0.0, 0.9, 1.9), "turn": (-40.0, 0.0, 0.0)}, size=0.8)()
-    made.visible_camera = False
+def _in_view(visible: bool):
+    def make() -> None:
+        _lamp("AREA", 60.0, IN_VIEW, size=0.8)().visible_camera = visible
+
+    return make
 
 
-lamps(
-    "Area Light", "in view", _lamp("AREA", 60.0, {"at": (0.0, 1.2, 2.2), "turn": (-40.0, 0.0, 0.0)}, size=0.8), effort=3
-)
-lamps("Area Light", "hidden from the camera", _unseen, effort=3)
+lamps("Area Light", "in view", _in_view(True), effort=3)
+lamps("Area Light", "hidden from the camera", _in_view(False), effort=3)

@@ -4,8 +4,9 @@
 from .image_textures import image, texture
 from .rows import lit
 
-LONG = {"camera_path_length": 24, "photon_path_length": 24}
-"""Settings where light runs through glass."""
+LONG = {"camera_path_length": 64, "photon_path_length": 24}
+"""Settings where light runs through glass: of white glass, roughness 0.2, in a white sky, 24 segments show 0.994, and
+48 show 0.9975 as Cycles does."""
 NOISE = {"Scale": 3.0, "Detail": 1.0}
 
 

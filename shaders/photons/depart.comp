@@ -1,0 +1,38 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Photons carry what a viewer would get who looks back along their way: the adjoint of the BSDF (Veach 1997, section
+// 3.7). The closures are those that such viewers see.
+
+layout(local_size_x = 64) in;
+
+#include <Ray>
+#include <PhotonPath>
+#include <DepartParameters>
+#include "common/invocation.glsl"
+#include "common/photon.glsl"
+#include "photons/parts.glsl"
+layout(std140, binding = 0) uniform Parameters { DepartParameters parameters; };
+layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
+layout(std430, binding = 1) buffer Rays { Ray rays[]; };
+layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
+layout(std430, binding = 3) buffer Photons { Photon photons[]; };
+layout(std430, binding = 4) readonly buffer Departures { Departure departures[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    vec3 flux = photon_paths[index].flux, viewer = -rays[index].direction;
+    if (!(largest(flux) > 0.0)) return;
+    Departure departure = departures[index];
+    if (departure.part != PART_NONE) {
+        uint slot = parameters.segment * parameters.count + index;
+        float ior = departure.part == PART_SHARP_TRANSMITTING ? 1.0 / departure.ior : 1.0;
+        vec3 share = part_share(closures[index], departure.part, ior, viewer, photons[slot].direction);
+        // What is too little to be compared stays as it is.
+        flux *= mix(vec3(1.0), share / max(departure.share, 1e-20), greaterThan(departure.share, vec3(1e-20)));
+        photon_paths[index].flux = photons[slot].scattered_flux = flux;
+        photon_paths[index].flags = departure.flags;
+    }
+    rays[index].direction = viewer;
+    rays[index].maximum_distance = largest(flux) > 0.0 ? INFINITY_DISTANCE : 0.0;
+}

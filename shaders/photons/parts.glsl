@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of a closure by which photons go on, and what they scatter of light from one direction to a viewer in
+// another.
+
+#include <Departure>
+#include "common/bsdf/closure.glsl"
+
+// NONE: the other side need not be asked.
+const uint PART_NONE = 0u, PART_DIFFUSE = 1u, PART_TRANSLUCENT = 2u, PART_TRANSPARENT = 3u, PART_REFLECTING = 4u,
+           PART_TRANSMITTING = 5u, PART_SHARP_REFLECTING = 6u, PART_SHARP_TRANSMITTING = 7u;
+
+// Of sharper lobes, rounding leaves no density to be compared: they send light one way.
+const float SHARPEST_COMPARED = 1e-3;
+
+uint lobe_part(MicrofacetLobe lobe, bool transmitted) {
+    if (lobe.alpha <= SHARPEST_COMPARED) return transmitted ? PART_SHARP_TRANSMITTING : PART_SHARP_REFLECTING;
+    return transmitted ? PART_TRANSMITTING : PART_REFLECTING;
+}
+
+// Of sharp microfacets, whose normal is that which links both directions.
+vec3 sharp_share(MicrofacetLobe lobe, bool transmitted, vec3 viewer, vec3 light) {
+    vec3 h = transmitted ? lobe.ior * light + viewer : light + viewer;
+    float size = length(h), cosine = size > 1e-4 ? abs(dot(viewer, h)) / size : 1.0;
+    return transmitted ? lobe_transmittance(lobe, cosine) : lobe.weight * lobe_reflectance(lobe, cosine);
+}
+
+// Sum of all lobes that may send light this way, as is their probability. ior: of a sharp refraction.
+// Seen from the other side, the BSDF of a refraction is that times the squared index: its root is left to each side.
+vec3 lobes_share(Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
+    bool transmitted = part == PART_TRANSMITTING || part == PART_SHARP_TRANSMITTING;
+    vec3 share = vec3(0.0);
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (lobe.kind == LOBE_NONE || lobe_part(lobe, transmitted) != part) continue;
+        if (part <= PART_TRANSMITTING)
+            share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
+                   * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? lobe.ior : 1.0));
+        else if (!transmitted || abs(lobe.ior - ior) <= 1e-3 * ior) share += sharp_share(lobe, transmitted, viewer, light);
+    }
+    return share;
+}
+
+vec3 part_share(Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
+    if (part == PART_TRANSPARENT) return closure.transparent;
+    if (part >= PART_REFLECTING) return lobes_share(closure, part, ior, viewer, light);
+    return (part == PART_DIFFUSE ? closure.diffuse : closure.translucent)
+        * diffuse_factor(closure, unpack_unit_vector(closure.diffuse_normal), viewer, light);
+}

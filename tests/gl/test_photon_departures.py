@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photons leave a surface by what it shows to those who look from where they go, not from where they came."""
+
+import math
+
+import numpy as np
+import pytest
+import scenes
+from lobes import Lobe, LobeKind, material
+
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
+
+ANGLE = math.radians(50.0)
+"""Of the sun to the floor's normal."""
+
+LOBES = {
+    "diffuse": [Lobe(LobeKind.DIFFUSE, color=(0.9, 0.6, 0.3))],
+    "translucent": [Lobe(LobeKind.TRANSLUCENT)],
+    "transparent": [Lobe(LobeKind.TRANSPARENT)],
+    "mirror": [Lobe(LobeKind.GLOSSY)],
+    "rough metal": [Lobe(LobeKind.GLOSSY, roughness=0.5, multiscatter=False)],
+    "clear glass": [Lobe(LobeKind.GLASS)],
+    "rough glass": [Lobe(LobeKind.GLASS, roughness=0.5, multiscatter=False)],
+    "rough refraction": [Lobe(LobeKind.REFRACTION, roughness=0.3)],
+    "coated": [
+        Lobe(LobeKind.DIFFUSE, weight=0.5),
+        Lobe(LobeKind.GLOSSY, weight=0.3, roughness=0.3, multiscatter=False),
+        Lobe(LobeKind.GLOSSY, weight=0.2),
+    ],
+}
+
+
+def facing_mix(lobes: list[Lobe]) -> Material:
+    """A surface that shows its lobes by one minus the cosine to the viewer, and black by the rest."""
+    made = material("facing", *lobes)
+    graph = made.graph
+    facing = graph.add("layer_weight", "facing", blend=0.5)
+    graph.surface = graph.add("mix_shader", "shader", fac=facing, shader_001=graph.surface)
+    return made
+
+
+def scattered(mapper, surface: Material) -> tuple[np.ndarray, np.ndarray]:
+    """(photons, 3) flux that goes on from a sunlit floor over that which comes to it, and the cosines to its normal."""
+    floor = scenes.rectangle("floor", (-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0))
+    camera = Camera(scenes.looking((0, -1, 3), (0, 0, 0)), (-0.3, 0.3, -0.3, 0.3), 8, 8)
+    sun = scenes.looking((0, 0, 0), (math.sin(ANGLE), 0, -math.cos(ANGLE)))
+    mapper.build(
+        Scene(
+            camera,
+            [floor],
+            [Instance(0, np.eye(4), [0])],
+            [surface],
+            [Light("sun", LightKind.SUN, sun, np.ones(3))],
+            settings=RenderSettings(photons=131072, photon_path_length=2),
+        )
+    )
+    mapper.iterate()
+    first, second = mapper.read_photons()
+    arrived = (first["flags"] & 1 != 0) & (first["flags"] & 4 == 0)
+    share = first["scattered_flux"][arrived] / first["flux"][arrived].mean(axis=0)
+    return share.astype(np.float64), np.abs(second["direction"][arrived, 2])
+
+
+@pytest.mark.parametrize("name", LOBES)
+def test_light_leaves_by_what_is_seen_from_there(mapper, name):
+    """Of light that a facing mix scatters, each direction gets the share that a viewer there sees."""
+    plain, cosines = scattered(mapper, material("plain", *LOBES[name]))
+    expected = plain * (1 - cosines[:, None])
+    shown, _ = scattered(mapper, facing_mix(LOBES[name]))
+    error = np.sqrt(expected.var(axis=0) / len(expected) + shown.var(axis=0) / len(shown))
+    print(f"\n{name}: {shown.mean(axis=0)}, expected {expected.mean(axis=0)} +- {error}")
+    assert np.all(error <= 0.01 * expected.mean(axis=0))
+    assert np.all(np.abs(shown.mean(axis=0) - expected.mean(axis=0)) <= 4 * error)
