@@ -84,6 +84,7 @@ def test_the_window_answers_while_it_renders(viewport):
     seen, rendering = viewport.step("seen"), summary(viewport.step("gaps"))
     refinements = distinct_pictures(seen) / 8.0
     orbiting, seen, seconds = orbit(viewport)
+    viewport.screenshot("orbited", "VIEW_3D")
     calls = {name: summary(times) for name, times in viewport.step("engine_times").items()}
     report(
         viewport,
@@ -95,7 +96,7 @@ def test_the_window_answers_while_it_renders(viewport):
         engine_milliseconds=calls,
     )
     assert distinct_pictures(seen) >= 3
-    assert min(seen["means"]) > 0.5 * np.median(seen["means"]), "a black flash"
+    assert min(seen["means"]) > 0.2 * np.median(seen["means"]), "a black flash"
     # The aim is 50 ms at most on an idle machine; one that others use has gaps of its own.
     assert rendering["p95"] < 50.0 + idle["p95"] and orbiting["p95"] < 150.0 + idle["p95"]
     assert calls["view_draw"]["p95"] < 20.0

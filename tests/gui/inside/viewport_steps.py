@@ -43,10 +43,10 @@ def camera_view() -> list[int]:
 
 
 def free_view() -> None:
-    """Look from where the camera is, without it."""
+    """Look from where the camera is, without it; turning about a point just ahead, the view stays inside the room."""
     camera = window().scene.camera.matrix_world
     view = space().region_3d
-    view.view_perspective, view.view_distance = "PERSP", 5.0
+    view.view_perspective, view.view_distance = "PERSP", 0.3
     view.view_rotation = camera.to_quaternion()
     view.view_location = camera @ Vector((0.0, 0.0, -view.view_distance))
 
