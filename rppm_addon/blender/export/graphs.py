@@ -60,6 +60,10 @@ class _TooDeep(Exception):
         self.source = source
 
 
+_OTHER_NAMES = {"RANDOM_WALK_LEGACY": "RANDOM_WALK"}
+"""What Blender 5.2 calls choices of older files."""
+
+
 class GraphExporter:
     """Builds the graph of one material, world or light.
 
@@ -229,6 +233,7 @@ class GraphExporter:
         options: dict[str, object] = {}
         for name, values in kind.options.items():
             value = getattr(node, name, values[0])
+            value = _OTHER_NAMES.get(value, value)
             if value == "":  # a choice of a newer version of Blender, which shows it as none
                 value = values[0]
             if value not in values:
