@@ -15,11 +15,12 @@ struct ClosureBuilder {
     vec3 smooth_normal;  // the same without bump
     bool backfacing;
     float u_choice;    // a random number in [0, 1), renewed by each choice
+    bool seen_by_camera;  // by its ray, at most through what is transparent
     int lobes;
 };
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice, 0);
+    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice, false, 0);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
 }
