@@ -74,8 +74,8 @@ void add_diffuse_parts(inout ClosureBuilder builder, vec3 diffuse, vec3 transluc
     uint packed_normal = pack_unit_vector(given_normal(builder, normal));
     vec3 held_diffuse = builder.closure.diffuse, held_translucent = builder.closure.translucent;
     float held = largest(held_diffuse) + largest(held_translucent);
-    if (largest(diffuse) <= 0.0) roughness = builder.closure.diffuse_roughness;
-    bool free = largest(held_diffuse) <= 0.0;
+    if (largest(diffuse) <= 0.0 && roughness == 0u) roughness = builder.closure.diffuse_roughness;
+    bool free = largest(held_diffuse) <= 0.0 && (builder.closure.diffuse_roughness & ROUGH_BEHIND) == 0u;
     bool alike = packed_normal == builder.closure.diffuse_normal && (free || roughness == builder.closure.diffuse_roughness);
     if (held <= 0.0 || alike) {
         builder.closure.diffuse_normal = packed_normal;

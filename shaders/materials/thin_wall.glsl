@@ -17,14 +17,16 @@ float sheet_alpha(float alpha, float ior) {
 // Reflected and passed share of a sheet: Fresnel's at both sides, absorption along the way between them (color at
 // normal incidence), and all that goes to and fro within.
 void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out vec3 reflected, out vec3 passed) {
-    // From within a side reflects as much as from without.
-    vec3 side = film.thickness > THINNEST_FILM ? thin_film_reflectance(cosine, film.thickness, 1.0, film.ior, ior, vec3(-1.0))
-                                               : tinted_dielectric(cosine, ior, tint);
     float within2 = 1.0 - (1.0 - cosine * cosine) / (ior * ior);
-    vec3 kept = within2 > 0.0 ? pow(color, vec3(inversesqrt(within2))) : vec3(0.0);
-    vec3 returned = side * kept;
-    passed = kept * (1.0 - side) * (1.0 - side) / max(1.0 - returned * returned, 1e-6);
-    reflected = side + passed * returned;
+    vec3 outside = tinted_dielectric(cosine, ior, tint), inside = outside;
+    if (film.thickness > THINNEST_FILM) {
+        outside = thin_film_reflectance(cosine, film.thickness, 1.0, film.ior, ior, vec3(-1.0));
+        // As in Cycles with indices relative to the sheet's, by which the film seems thinner from within.
+        inside = thin_film_reflectance(sqrt(max(within2, 0.0)), film.thickness, 1.0, film.ior / ior, 1.0 / ior, vec3(-1.0));
+    }
+    vec3 kept = within2 > 0.0 ? pow(color, vec3(inversesqrt(within2))) : vec3(0.0), returned = inside * kept;
+    passed = kept * (1.0 - outside) * (1.0 - inside) / max(1.0 - returned * returned, 1e-6);
+    reflected = outside + passed * returned;
 }
 
 // Facets have the reflectance of the whole; the lost energy is always restored.
@@ -42,6 +44,7 @@ void add_thin_glass(inout ClosureBuilder builder, Microfacets at, vec3 weight, v
 
 // Subsurface scattering within the sheet leaves on both sides; anisotropy 1: all behind, -1: all in front.
 void add_thin_subsurface(inout ClosureBuilder builder, vec3 scattered, vec3 diffuse, float anisotropy, vec3 normal, uint roughness) {
+    if (roughness != 0u) roughness |= ROUGH_BEHIND;
     float behind = clamp(0.5 + 0.5 * anisotropy, 0.0, 1.0);
     add_diffuse_parts(builder, diffuse + (1.0 - behind) * scattered, behind * scattered, normal, roughness);
 }

@@ -70,13 +70,11 @@ vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
     return lobe_transmits(lobe.kind) ? albedo + lobe_transmittance(lobe, cosine) : albedo;
 }
 
-vec3 mirrored(vec3 direction, vec3 n) { return direction - 2.0 * dot(direction, n) * n; }
-
 // A sheet is asked as the mirror that it is for light from the other side. wi: where light comes from.
 void face_sheet(inout MicrofacetLobe lobe, vec3 n, inout vec3 wi) {
     if (lobe.kind != LOBE_SHEET) return;
     lobe.kind = LOBE_MIRROR;
-    wi = mirrored(wi, n);
+    wi = reflect(wi, n);
 }
 
 // What sampling a lobe gives: a direction and f cos / pdf. weight is zero when nothing is scattered.
@@ -125,7 +123,7 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
         result.weight *= ratio * (1.0 + ggx_lambda(local_wo, frame.alpha)) / (1.0 + lambda_o + lambda_i);
     }
     if (sheet) {
-        result.direction = mirrored(result.direction, n);
+        result.direction = reflect(result.direction, n);
         result.transmitted = true;
     }
     return result;
