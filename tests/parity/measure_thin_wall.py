@@ -162,7 +162,8 @@ def main() -> None:
             share_cases.append(case | {"reflected": rounded(reflected), "passed": rounded(passed)})
     measured = {
         "blender": [bpy.app.version_string], "cameras": [CAMERAS], "lamps": [LAMPS],
-        "points": [{camera: rounded(points) for camera, points in places.items()}], "lit": lit_cases, "shares": share_cases,
+        "points": [{camera: rounded(points) for camera, points in places.items()}],
+        "lit": lit_cases, "shares": share_cases,
     }  # fmt: skip
     rows = ",\n".join(f'"{key}": [\n' + ",\n".join(map(json.dumps, rows)) + "\n]" for key, rows in measured.items())
     folder = Path(sys.argv[sys.argv.index("--") + 1]) if "--" in sys.argv else Path(__file__).parent

@@ -39,7 +39,8 @@ layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    vec3 up = vec3(0.0, 0.0, 1.0), normal = up, wo = vec3(sqrt(1.0 - cosines[index] * cosines[index]), 0.0, cosines[index]);
+    float cosine = cosines[index];
+    vec3 up = vec3(0.0, 0.0, 1.0), normal = up, wo = vec3(sqrt(1.0 - cosine * cosine), 0.0, cosine);
     ClosureBuilder builder = closure_builder(wo, up, up, parameters.below != 0u, 0.5);
     builder.seen_by_camera = parameters.seen_by_camera != 0u;
     CALL
@@ -84,7 +85,9 @@ def test_lit(context, tmp_path, case):
     view = View(CAMERAS[case["camera"]], LAMPS[case["lamp"]])
     points, cycles = np.array(POINTS[case["camera"]]), np.array(case["radiance"])
     with context.moderngl:
-        ours = closures.by_closure(context, tmp_path, "bsdf_principled", view, points, OPTIONS, case["inputs"], choices=256)
+        ours = closures.by_closure(
+            context, tmp_path, "bsdf_principled", view, points, OPTIONS, case["inputs"], choices=256
+        )
     if not cycles.any():
         assert not ours.any()
         return
@@ -106,7 +109,12 @@ def shares(context, folder, case: dict, seen_by_camera: bool) -> np.ndarray:
             "Results": gl.buffer(reserve=48 * len(cosines)),
             "AlbedoTables": gl.buffer(albedo_tables.load().tobytes()),
         }
-        values = {"count": len(cosines), "seen_by_camera": seen_by_camera, "below": case["camera"] == "below", "unused": 0}
+        values = {
+            "count": len(cosines),
+            "seen_by_camera": seen_by_camera,
+            "below": case["camera"] == "below",
+            "unused": 0,
+        }
         library.compute(str(file)).run(len(cosines), buffers, values)
         results = np.frombuffer(buffers["Results"].read(), np.float32).reshape(-1, 3, 4).astype(np.float64)
         for buffer in buffers.values():
