@@ -31,7 +31,9 @@ def _makes_caustics(node: ShaderNode) -> bool:
         return False
     if node.kind != "bsdf_principled":
         return True
-    share = max(_number(node, name, 1.0) for name in ("metallic", "transmission_weight"))
+    # A thin wall bends no light.
+    bright = ("metallic",) if node.options.get("thin_wall") else ("metallic", "transmission_weight")
+    share = max(_number(node, name, 1.0) for name in bright)
     return _number(node, "alpha", 1.0) * share > 2 * _LEAST
 
 

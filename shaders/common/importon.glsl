@@ -13,8 +13,8 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
     float cosine = dot(normal, wi);
     vec3 value = vec3(0.0);
     if ((cosine > 0.0) == front) {
-        value = front ? importon.diffuse * rough_diffuse_factor(importon.diffuse_roughness, normal, importon.direction, wi)
-                      : importon.translucent;
+        value = (front ? importon.diffuse : importon.translucent)
+              * rough_diffuse_factor(importon.diffuse_roughness, normal, importon.direction, wi);
         value *= bump_shadowing(unpack_unit_vector(importon.shading_normal), normal, wi) * shading_correction(cosine, geometric_cosine);
     }
     uint kind = unpack_kind(importon.lobe_kind);

@@ -15,11 +15,12 @@ struct ClosureBuilder {
     vec3 smooth_normal;  // the same without bump
     bool backfacing;
     float u_choice;    // a random number in [0, 1), renewed by each choice
+    bool seen_by_camera;  // by its ray, at most through what is transparent
     int lobes;
 };
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice, 0);
+    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice, false, 0);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
 }
@@ -73,8 +74,8 @@ void add_diffuse_parts(inout ClosureBuilder builder, vec3 diffuse, vec3 transluc
     uint packed_normal = pack_unit_vector(given_normal(builder, normal));
     vec3 held_diffuse = builder.closure.diffuse, held_translucent = builder.closure.translucent;
     float held = largest(held_diffuse) + largest(held_translucent);
-    if (largest(diffuse) <= 0.0) roughness = builder.closure.diffuse_roughness;
-    bool free = largest(held_diffuse) <= 0.0;
+    if (largest(diffuse) <= 0.0 && roughness == 0u) roughness = builder.closure.diffuse_roughness;
+    bool free = largest(held_diffuse) <= 0.0 && (builder.closure.diffuse_roughness & ROUGH_BEHIND) == 0u;
     bool alike = packed_normal == builder.closure.diffuse_normal && (free || roughness == builder.closure.diffuse_roughness);
     if (held <= 0.0 || alike) {
         builder.closure.diffuse_normal = packed_normal;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Principled BSDF's layers, from the top: sheen, coat, emission, then metal, transmission and a dielectric over
-// a diffuse base. A layer takes the light that its albedo says and leaves the rest to those below.
+// a diffuse base; as a thin wall the same on both sides of a sheet. A layer takes the light that its albedo says and leaves the rest to those below.
 
-#include "materials/lobes.glsl"
+#include "materials/thin_wall.glsl"
 
 struct Principled {
     vec3 base_color;
     float metallic, roughness, ior, alpha;
     vec3 normal;
-    float diffuse_roughness, specular_level;
+    float diffuse_roughness, subsurface, subsurface_anisotropy, specular_level;
     vec3 specular_tint;
     float anisotropic, anisotropic_rotation;
     vec3 tangent;
@@ -17,14 +17,8 @@ struct Principled {
     float sheen, sheen_roughness;
     vec3 sheen_tint, emission;
     Film film;
-    bool multiscatter;
+    bool multiscatter, thin_wall;
 };
-
-// What only few have.
-Principled plain_principled(ClosureBuilder builder) {
-    return Principled(vec3(0.8), 0.0, 0.5, 1.5, 1.0, builder.shading, 0.0, 0.5, vec3(1.0), 0.0, 0.0, vec3(0.0), 0.0,
-                      0.0, 0.03, 1.5, vec3(1.0), builder.shading, 0.0, 0.5, vec3(1.0), vec3(0.0), Film(0.0, 1.33), true);
-}
 
 float index_from_reflectance(float f0) {
     float root = sqrt(clamp(f0, 0.0, 0.99));
@@ -67,7 +61,9 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     if (p.transmission > 0.0) {
         vec3 share = weight * p.transmission, passed = sqrt(max(p.base_color, vec3(0.0)));
         Microfacets even = Microfacets(at.normal, at.packed_normal, ISOTROPIC, p.roughness * p.roughness, at.cosine);
-        if (p.film.thickness > THINNEST_FILM)
+        if (p.thin_wall)
+            add_thin_glass(builder, even, share, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior);
+        else if (p.film.thickness > THINNEST_FILM)
             add_glass_with_film(builder, even, share, share * passed, p.film, p.ior);
         else add_glass(builder, even, share, share * passed, p.specular_tint, min(passed, 1.0), p.ior, p.multiscatter);
         weight *= 1.0 - p.transmission;
@@ -94,5 +90,9 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior));
         weight = beneath(weight, albedo);
     }
-    add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
+    if (p.thin_wall && p.subsurface > 0.0) {
+        vec3 scattered = weight * p.subsurface * min(p.base_color, 1.0);
+        add_thin_subsurface(builder, scattered, weight * (1.0 - p.subsurface) * p.base_color, p.subsurface_anisotropy,
+                            p.normal, pack_diffuse_roughness(p.base_color, p.diffuse_roughness));
+    } else add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
 }

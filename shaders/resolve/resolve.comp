@@ -83,6 +83,7 @@ void main() {
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
                                             parameters.segment + (parameters.looks_back != 0u ? LOOKING_BACK : 0u), index);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, next_random(random));
+    builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;
     uint material = attributes[hit.triangle].material;
     ShadingInstance instance = shading_instances[surface.instance];
     bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;

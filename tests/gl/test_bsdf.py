@@ -17,7 +17,7 @@ Record(
     aspect="float", radiance="uint", beckmann="uint",
 )  # fmt: skip
 SHADER = str(Path(__file__).with_name("lobe_albedo.comp"))
-MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEEN, VELVET = range(1, 9)
+MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET = range(1, 10)
 COUNT = 1 << 18
 
 
@@ -81,7 +81,7 @@ def assert_sampled_as_evaluated(lobe: Lobe, what: str) -> None:
 COLORS = {"f0": (0.3, 0.5, 0.9), "weight": (0.9, 0.8, 0.7)}
 
 
-@pytest.mark.parametrize("kind", [MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION])
+@pytest.mark.parametrize("kind", [MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, SHEET])
 @pytest.mark.parametrize("alpha", [0.2, 0.6, 1.0])
 @pytest.mark.parametrize("ior", [1.5, 1 / 1.5])
 def test_sampling_has_the_mean_of_evaluation(context, library, kind, alpha, ior):
@@ -160,3 +160,14 @@ def test_lobes_are_reciprocal(context, library, kind, aspect):
         through = pairs[(pairs[:, 2] == 1) & (pairs[:, 0] > 1e-4)]
         assert len(through) > 1000
         np.testing.assert_allclose(through[:, 0] * ior**2, through[:, 1], rtol=5e-3)
+
+
+def test_a_sheet_is_a_mirror_on_the_other_side(context, library):
+    """The same from both sides, without a change of radiance, whatever its index."""
+    sheet, mirror = (run(context, library, kind, 0.5, 1.5, 0.6, **COLORS) for kind in (SHEET, MIRROR))
+    through = sheet.pairs[sheet.pairs[:, 2] == 1]
+    assert (through[:, 0] > 1e-4).sum() > 1000
+    np.testing.assert_allclose(through[:, 0], through[:, 1], rtol=2e-3, atol=1e-4)
+    passed, reflected = sheet.sampled, mirror.sampled
+    assert (passed[:, 3] == 1).all() and (reflected[:, 3] == 0).all()
+    np.testing.assert_array_equal(passed[:, :3], reflected[:, :3])

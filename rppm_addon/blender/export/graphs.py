@@ -198,14 +198,15 @@ class GraphExporter:
         of the outputs."""
         key = (kind, *node_key(node, path))
         if key not in self._known:
-            self._known[key] = self._append(kind, node, path, **members).node
+            self._known[key] = self.append(kind, node, path, output, **members).node
         return Link(self._known[key], output)
 
-    def _append(self, kind: str, node: bpy.types.Node, path: Path, **members: object) -> Link:
+    def append(self, kind: str, node: bpy.types.Node, path: Path, output: str = "", **members: object) -> Link:
+        """As ``add``, but one more node at each call."""
         declared = KINDS[kind]
         inputs = self._inputs(declared, node, path) | members.pop("inputs", {})
         options = self._options(declared, node) | members.pop("options", {})
-        return self.graph.add(kind, name=node.name, options=options, **members, **inputs)
+        return self.graph.add(kind, output, name=node.name, options=options, **members, **inputs)
 
     def _inputs(self, kind: NodeKind, node: bpy.types.Node, path: Path) -> dict[str, object]:
         sockets = {snake_case(socket.identifier): socket for socket in node.inputs}

@@ -18,6 +18,21 @@ from .links import Path
 STAND_INS |= {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
 
 
+@handles("BSDF_PRINCIPLED")
+def _principled(exporter: GraphExporter, node, output, path: Path):
+    wall = next((socket for socket in node.inputs if socket.identifier == "Thin Wall"), None)
+    value = False if wall is None else exporter.value(wall, path)  # sockets of Blender 5.2 on
+    if not isinstance(value, Link):
+        return exporter.add("bsdf_principled", node, path, "bsdf", options={"thin_wall": bool(np.max(value) > 0.0)})
+    # What varies chooses one of two surfaces. As in Cycles it is cut to an integer before it is asked whether it is 0.
+    thick, thin = (
+        exporter.append("bsdf_principled", node, path, "bsdf", options={"thin_wall": thin}) for thin in (False, True)
+    )
+    for operation in ("TRUNC", "ABSOLUTE"):
+        value = exporter.graph.add("math", "value", name=node.name, options={"operation": operation}, value=value)
+    return exporter.graph.add("mix_shader", "shader", name=node.name, fac=value, shader=thick, shader_001=thin)
+
+
 @handles("TEX_COORD")
 def _coordinates(exporter: GraphExporter, node, output, path: Path):
     name = snake_case(output.identifier)

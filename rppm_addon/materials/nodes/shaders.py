@@ -6,7 +6,7 @@ for toon shading, whose glossy part is GGX; for hair, GGX stretched across the f
 conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
 """
 
-from ..node_kinds import COLOR, FLOAT, SHADER, VECTOR, NodeKind
+from ..node_kinds import BOOLEAN, COLOR, FLOAT, SHADER, VECTOR, NodeKind
 
 
 def _shader(output: str, inputs: dict | None = None, options: dict | None = None) -> NodeKind:
@@ -116,6 +116,6 @@ KINDS = {
             "emission_strength": (FLOAT, 0.0),
             **_FILM,
         },
-        {"distribution": ("GGX", "MULTI_GGX"), "subsurface_method": _SUBSURFACE_METHODS},
+        {"distribution": ("GGX", "MULTI_GGX"), "subsurface_method": _SUBSURFACE_METHODS, "thin_wall": BOOLEAN},
     ),
 }

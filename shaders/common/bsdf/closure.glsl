@@ -49,8 +49,8 @@ const float SMOOTHEST_LIT = 1e-4;
 
 // BSDF of the diffuse and translucent parts over that of smooth ones without a normal map; normal is unpacked.
 vec3 diffuse_factor(Closure closure, vec3 normal, vec3 wo, vec3 wi) {
-    vec3 factor = vec3(bump_shadowing(unpack_unit_vector(closure.shading_normal), normal, wi));
-    return dot(normal, wi) > 0.0 ? factor * rough_diffuse_factor(closure.diffuse_roughness, normal, wo, wi) : factor;
+    return bump_shadowing(unpack_unit_vector(closure.shading_normal), normal, wi)
+        * rough_diffuse_factor(closure.diffuse_roughness, normal, wo, wi);
 }
 
 // Diffuse and translucent BSDF times cosine. front: wi is on the geometric normal's side.

@@ -4,10 +4,13 @@
 
 #include "common/geometry.glsl"
 
+// Light that passes is scattered as if it had come from the mirrored direction. The lowest bit of blue.
+const uint ROUGH_BEHIND = 0x10000u;
+
 // Albedo (8 bits a channel) and roughness in one word; 0 is a smooth surface.
 uint pack_diffuse_roughness(vec3 albedo, float roughness) {
     uint bits = packUnorm4x8(vec4(albedo, roughness));
-    return bits < 0x01000000u ? 0u : bits;
+    return bits < 0x01000000u ? 0u : bits & ~ROUGH_BEHIND;
 }
 
 // Integral of Fujii's facet term over the hemisphere, less its albedo at normal incidence.
@@ -18,9 +21,11 @@ float fujii_integral(float cosine) {
     return sine * (acos(clamp(cosine, 0.0, 1.0)) - 2.0 / 3.0 - sine * cosine) + grazing;
 }
 
-// BSDF over that of a smooth surface of the same colour; v and l are on the normal's side.
+// BSDF over that of a smooth surface of the same colour; v is on the normal's side.
 vec3 rough_diffuse_factor(uint packed_roughness, vec3 n, vec3 v, vec3 l) {
-    if (packed_roughness == 0u) return vec3(1.0);
+    bool behind = dot(n, l) < 0.0;
+    if (packed_roughness == 0u || (behind && (packed_roughness & ROUGH_BEHIND) == 0u)) return vec3(1.0);
+    if (behind) l = reflect(l, n);
     vec4 parts = unpackUnorm4x8(packed_roughness);
     float nv = max(dot(n, v), 0.0), nl = max(dot(n, l), 0.0);
     float a = 1.0 / (1.0 + parts.w * (0.5 - 2.0 / (3.0 * PI))), b = a * parts.w / PI;

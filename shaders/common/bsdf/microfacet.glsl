@@ -14,10 +14,11 @@ const uint LOBE_DIELECTRIC = 3u;   // reflection of a dielectric, f0 tinted
 const uint LOBE_GLASS = 4u;        // reflects and refracts, tint is of the reflectance at normal incidence
 const uint LOBE_REFRACTION = 5u;   // refracts only, without Fresnel's loss
 const uint LOBE_COATED_GLASS = 6u; // glass whose reflectance at normal incidence is the tint
-const uint LOBE_SHEEN = 7u;        // f0.xy are the coefficients of sheen_density
-const uint LOBE_VELVET = 8u;       // f0.x is sigma
+const uint LOBE_SHEET = 7u;        // passes all through a sheet without thickness: a mirror's light, on the other side
+const uint LOBE_SHEEN = 8u;        // f0.xy are the coefficients of sheen_density
+const uint LOBE_VELVET = 9u;       // f0.x is sigma
 
-bool lobe_transmits(uint kind) { return kind >= LOBE_GLASS && kind <= LOBE_COATED_GLASS; }
+bool lobe_transmits(uint kind) { return kind >= LOBE_GLASS && kind <= LOBE_SHEET; }
 bool lobe_is_sheen(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_VELVET; }
 
 // Of these lobes f0 is a share of the light, as weight is of the others'.
@@ -42,7 +43,7 @@ vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); 
 float reflected_share(MicrofacetLobe lobe, float cosine) {
     if (lobe.kind == LOBE_GLASS) return fresnel_dielectric(cosine, lobe.ior);
     if (lobe.kind == LOBE_COATED_GLASS) return mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, dielectric_interpolation(cosine, lobe.ior));
-    return lobe.kind == LOBE_REFRACTION ? 0.0 : 1.0;
+    return lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET ? 0.0 : 1.0;
 }
 
 // Reflected share per channel at a microfacet, without the lobe's weight.
@@ -59,7 +60,7 @@ vec3 lobe_reflectance(MicrofacetLobe lobe, float cosine) {
 // Tint and share of what passes a microfacet, without total internal reflection.
 vec3 lobe_transmittance(MicrofacetLobe lobe, float cosine) {
     if (lobe.kind == LOBE_GLASS || lobe.kind == LOBE_COATED_GLASS) return lobe.f0 * (1.0 - lobe_reflectance(lobe, cosine));
-    if (lobe.kind == LOBE_REFRACTION) return lobe.weight;
+    if (lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET) return lobe.weight;
     return vec3(0.0);
 }
 
@@ -69,11 +70,20 @@ vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
     return lobe_transmits(lobe.kind) ? albedo + lobe_transmittance(lobe, cosine) : albedo;
 }
 
+// A sheet is asked as the mirror that it is for light from the other side. wi: where light comes from.
+void face_sheet(inout MicrofacetLobe lobe, vec3 n, inout vec3 wi) {
+    if (lobe.kind != LOBE_SHEET) return;
+    lobe.kind = LOBE_MIRROR;
+    wi = reflect(wi, n);
+}
+
 // What sampling a lobe gives: a direction and f cos / pdf. weight is zero when nothing is scattered.
 struct LobeSample { vec3 direction; vec3 weight; bool transmitted; };
 
 LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_event, bool radiance) {
     LobeSample result = LobeSample(n, vec3(0.0), false);
+    bool sheet = lobe.kind == LOBE_SHEET;
+    if (sheet) lobe.kind = LOBE_MIRROR;
     if (dot(wo, n) <= 0.0) return result;
     if (lobe_is_sheen(lobe.kind)) {
         SheenFrame sheen = sheen_frame(n, wo);
@@ -112,6 +122,10 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
         float ratio = frame.beckmann ? beckmann_ratio(local_h, frame.alpha) : 1.0;
         result.weight *= ratio * (1.0 + ggx_lambda(local_wo, frame.alpha)) / (1.0 + lambda_o + lambda_i);
     }
+    if (sheet) {
+        result.direction = reflect(result.direction, n);
+        result.transmitted = true;
+    }
     return result;
 }
 
@@ -136,6 +150,7 @@ bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, o
 
 // BSDF for radiance that arrives from wi and leaves to wo (unit vectors away from the surface), 1/sr.
 vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    face_sheet(lobe, n, wi);
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
     if (lobe_is_sheen(lobe.kind)) {
         if (cosine_o <= 0.0 || cosine_i <= 0.0) return vec3(0.0);
@@ -158,6 +173,7 @@ vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 
 // Density with which sample_lobe gives a direction, 1/sr.
 float lobe_density(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    face_sheet(lobe, n, wi);
     if (lobe_is_sheen(lobe.kind))
         return lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, n, wo, wi) : max(dot(n, wi), 0.0) / PI;
     vec3 h;

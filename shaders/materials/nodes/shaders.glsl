@@ -116,9 +116,9 @@ void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, v
     }
 }
 
-// Subsurface scattering adds to the diffuse base.
-void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method, vec3 base_color,
-                          float metallic, float roughness, float ior, float alpha, vec3 normal, float diffuse_roughness,
+// Subsurface scattering adds to the diffuse base, of a thin wall on both sides.
+void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method, int thin_wall,
+                          vec3 base_color, float metallic, float roughness, float ior, float alpha, vec3 normal, float diffuse_roughness,
                           float subsurface_weight, vec3 subsurface_radius, float subsurface_scale, float subsurface_ior,
                           float subsurface_anisotropy, float specular_ior_level, vec3 specular_tint, float anisotropic,
                           float anisotropic_rotation, vec3 tangent, float transmission_weight, float coat_weight,
@@ -127,10 +127,10 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
                           float thin_film_thickness, float thin_film_ior) {
     add_principled(builder, weight, Principled(
         max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal, unit(diffuse_roughness),
-        max(specular_ior_level, 0.0), max(specular_tint, 0.0), unit(anisotropic), anisotropic_rotation, tangent,
+        unit(subsurface_weight), subsurface_anisotropy, max(specular_ior_level, 0.0), max(specular_tint, 0.0), unit(anisotropic), anisotropic_rotation, tangent,
         unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0), coat_normal,
         unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0), max(emission_color * emission_strength, 0.0),
-        Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1));
+        Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1, thin_wall == 1));
 }
 
 // What absorbs is not seen: its coefficient takes the place of the emission.
