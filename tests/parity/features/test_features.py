@@ -12,7 +12,6 @@ from .flip import flip
 from .measure import measure, shortcomings
 from .suite import ROWS
 
-
 QUICK = [row for row in ROWS if row.effort == 1]
 
 
