@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-gui lint pairs parity bench clean
+.PHONY: help setup render sample extension test test-long test-gui lint pairs parity bench clean
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
@@ -23,8 +23,11 @@ extension: setup ## Build the zip that Blender installs, to build/extension/ (EX
 	.venv/bin/python extension/build.py $(EXTENSION)
 
 # Two at a time: most tests compile, or wait for one of the two engines, on a single core.
-test: setup ## Run the tests
-	timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=2 --dist=worksteal
+test: setup ## Run the tests, but for those that take half a minute and more
+	timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=2 --dist=worksteal -m 'not long'
+
+test-long: setup ## Run the tests that take long
+	timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=2 --dist=worksteal -m long
 
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
 	timeout --kill-after=10 2400 .venv/bin/python -m pytest tests/gui

@@ -31,7 +31,7 @@ def reachable(graph: NodeGraph, start: Link | None) -> set[int]:
     pending = [] if start is None else [start.node]
     while pending:
         index = pending.pop()
-        if index not in found:
+        if index not in found and 0 <= index < len(graph.nodes):  # the compiler reports links to nowhere
             found.add(index)
             pending += [value.node for value in graph.nodes[index].inputs.values() if isinstance(value, Link)]
     return found

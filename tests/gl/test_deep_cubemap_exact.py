@@ -110,6 +110,7 @@ def tried_one_by_one(scene: Scene, rays: np.ndarray) -> np.ndarray:
     return best
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SCENES)
 def test_hits_equal_those_of_boxes(context, library, tmp_path, name):
     """Where they differ all triangles are tested: it must be the boxes that missed one by rounding."""

@@ -27,6 +27,7 @@ def _box_with_coloured_side(shader: str, **inputs) -> None:
     camera((0.0, -0.95, 0.0), (0.0, 1.0, -0.1), 75.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
 def test_closed_diffuse_box(renderer, mode):
     new_scene()
@@ -37,6 +38,7 @@ def test_closed_diffuse_box(renderer, mode):
     compare(f"box_{mode.lower()}", result.pictures, reference, CONVERGED)
 
 
+@pytest.mark.long
 def test_closed_principled_box(renderer):
     """Plastic walls: diffuse below a rough dielectric coat, light stored and gathered on both."""
     new_scene()

@@ -51,6 +51,7 @@ MODES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("name", SURFACES)
 def test_scattering(renderer, name, mode):

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Features of materials, lights, worlds and cameras against Cycles.
 
-`make parity` measures, prints and draws the same, and the rows that need more samples than the others as well: those
-would take a third of all tests' time.
+`make parity` measures, prints and draws the same. Rows that need more samples than the others run with the long tests.
 """
 
 import numpy as np
@@ -12,10 +11,10 @@ from .flip import flip
 from .measure import measure, shortcomings
 from .suite import ROWS
 
-QUICK = [row for row in ROWS if row.effort == 1]
+PARAMETERS = [pytest.param(row, id=row.id, marks=[pytest.mark.long] if row.effort > 1 else []) for row in ROWS]
 
 
-@pytest.mark.parametrize("row", QUICK, ids=[row.id for row in QUICK])
+@pytest.mark.parametrize("row", PARAMETERS)
 def test_feature(renderer, row):
     found = measure(row, renderer)
     print(
