@@ -4,6 +4,7 @@
 import dataclasses
 
 import numpy as np
+import pytest
 import scenes
 from lobes import material
 from parity.comparison import write_pair
@@ -32,6 +33,7 @@ def all_kinds(mode: DirectLight) -> Scene:
     return scene
 
 
+@pytest.mark.long
 def test_direct_light_by_photons_or_by_rays_is_the_same_picture(mapper):
     """Block by block; light that photons alone bring is the same in both and cancels.
 

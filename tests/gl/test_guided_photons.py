@@ -87,6 +87,7 @@ def lit_through_a_hole() -> Scene:
     return scene
 
 
+@pytest.mark.long
 def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
     """The picture's mean stays, its variance falls, and so does the radius that the diffused photons need."""
     results = {}

@@ -180,6 +180,7 @@ PROJECTIONS = {
 }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("projection", "opening"),
     [("perspective", opening) for opening in OPENINGS]
@@ -244,6 +245,7 @@ def test_depth_of_field_in_a_room(renderer):
     compare("dof_room", result.pictures, reference, CONVERGED)
 
 
+@pytest.mark.long
 def test_light_by_photons_alone(renderer):
     """Photons on the first surfaces, direct light as well, in a panorama and through a lens."""
     data = room().data

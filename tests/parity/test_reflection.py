@@ -27,6 +27,7 @@ def _floor_wall_and_light() -> None:
     camera((0.0, -4.5, 2.0), (0.0, 0.5, 0.9), 40.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
 def test_mirror(renderer, mode):
     """A flat mirror that shows floor, wall and light, and throws light back onto the floor."""

@@ -29,7 +29,7 @@ OBJECTS = [
     ("visible_diffuse", "RAYS"),
     ("visible_glossy", "RAYS"),
     ("visible_shadow", "RAYS"),
-    ("visible_shadow", "PHOTONS"),
+    pytest.param("visible_shadow", "PHOTONS", marks=pytest.mark.long),
 ]
 
 
