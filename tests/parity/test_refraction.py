@@ -27,7 +27,7 @@ def _clear_glass(**inputs):
     return material(GLASS, **({"Color": 1.0, "Roughness": 0.0, "IOR": 1.5} | inputs))
 
 
-@pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
+@pytest.mark.parametrize("mode", ["RAYS", pytest.param("PHOTONS", marks=pytest.mark.long)])
 def test_glass_slab(renderer, mode):
     """A thick pane over a diffuse floor: all that is below it is lit and seen through glass."""
     new_scene(world=0.3)
@@ -54,7 +54,7 @@ def _caustic_blocks(reference: np.ndarray, factor: float = 1.3) -> np.ndarray:
     return found
 
 
-@pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
+@pytest.mark.parametrize("mode", ["RAYS", pytest.param("PHOTONS", marks=pytest.mark.long)])
 def test_caustic_of_a_glass_ball(renderer, mode):
     new_scene()
     _ball_over_floor()
@@ -64,7 +64,7 @@ def test_caustic_of_a_glass_ball(renderer, mode):
     compare(f"caustic_{mode.lower()}", result.pictures, reference, CAUSTIC, _caustic_blocks(reference))
 
 
-@pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
+@pytest.mark.parametrize("mode", ["RAYS", pytest.param("PHOTONS", marks=pytest.mark.long)])
 def test_caustic_seen_through_glass(renderer, mode):
     """The ball's caustic lies behind a pane between it and the camera: specular, diffuse, specular."""
     new_scene()
