@@ -32,7 +32,7 @@ class Viewport:
     """One viewport in Rendered mode."""
 
     def __init__(self, engine: bpy.types.RenderEngine) -> None:
-        self._engine = engine
+        self.engine = engine
         self._sync = SceneSync()
         self._scene: Scene | None = None
         self._session = renderer_process().open(SessionKind.VIEWPORT)
@@ -68,7 +68,7 @@ class Viewport:
             try:
                 self._follow(context, depsgraph)
             except RppmError as error:
-                self._engine.update_stats("RPPM", str(error))
+                self.engine.update_stats("RPPM", str(error))
         frame = self._session.newest()
         if frame is not None:
             x, y, width, height = self._regions.get(frame.generation, (0.0, 0.0, 1.0, 1.0))
@@ -114,13 +114,13 @@ class Viewport:
         status = self._session.status
         error = self._error or status.error or (process.error if process.state is ProcessState.FAILED else "")
         if error:
-            self._engine.update_stats("RPPM", error)
+            self.engine.update_stats("RPPM", error)
         elif process.state is ProcessState.STARTING:
-            self._engine.update_stats("RPPM", "Starting the renderer")
+            self.engine.update_stats("RPPM", "Starting the renderer")
         elif not status.iterations:
-            self._engine.update_stats("RPPM", "Compiling shaders and building the scene")
+            self.engine.update_stats("RPPM", "Compiling shaders and building the scene")
         else:
-            self._engine.update_stats("", status_text(status, context.scene.rppm.viewport_paused))
+            self.engine.update_stats("", status_text(status, context.scene.rppm.viewport_paused))
         self._record(context, status)
 
     def _record(self, context: bpy.types.Context, status: SessionStatus) -> None:
@@ -147,9 +147,9 @@ class Viewport:
 
     def poll(self) -> None:
         """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""
-        _ = self._engine.is_preview  # any property tells; its __del__ is not called while it is held here
+        _ = self.engine.is_preview  # any property tells; its __del__ is not called while it is held here
         if self._state() != self._seen:
-            self._engine.tag_redraw()
+            self.engine.tag_redraw()
 
     def close(self) -> None:
         """Render this no more."""
@@ -190,6 +190,8 @@ _viewports: dict[int, Viewport] = {}
 def of_engine(engine: bpy.types.RenderEngine) -> Viewport:
     """The viewport that an engine draws."""
     key = engine.as_pointer()
+    if key in _viewports and _viewports[key].engine is not engine:
+        close(key)  # freed, and another one lies where it was
     if key not in _viewports:
         _viewports[key] = Viewport(engine)
     return _viewports[key]

@@ -2,13 +2,13 @@
 """What differs between two scenes that share the members that did not change."""
 
 import dataclasses
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..scene.node_graphs import Link, NodeGraph
 from ..scene.scene import Scene
+from ..scene.sharing import LISTS, same_members
 
 _CAMERA_OUTPUTS = {("tex_coord", "camera"), ("tex_coord", "window")}
 
@@ -34,18 +34,18 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
     """Members are compared by identity, the settings by value; before None: all has changed."""
     if before is None:
         return Changes(True, True, True, True, True, True)
-    images = _differ(before.images, after.images)
+    images = not same_members(before.images, after.images)
     camera = before.camera is not after.camera
     world = images or before.world is not after.world or (camera and _asks_for_camera([after.world.graph]))
     graphs = [light.graph for light in after.lights]
     graphs_before = [light.graph for light in before.lights]
-    lamps = images or _differ(before.lights, after.lights) or (camera and _asks_for_camera(graphs))
+    lamps = images or not same_members(before.lights, after.lights) or (camera and _asks_for_camera(graphs))
     return Changes(
         materials=images
-        or _differ(before.materials, after.materials)
-        or _differ([*graphs_before, before.world.graph], [*graphs, after.world.graph]),
-        geometry=_differ(before.instances, after.instances)
-        or _differ(before.meshes, after.meshes)
+        or not same_members(before.materials, after.materials)
+        or not same_members([*graphs_before, before.world.graph], [*graphs, after.world.graph]),
+        geometry=not same_members(before.instances, after.instances)
+        or not same_members(before.meshes, after.meshes)
         or len(before.materials) != len(after.materials),
         lights=world or lamps or after.settings.photons != before.settings.photons,
         world=world,
@@ -57,13 +57,8 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
 
 def snapshot(scene: Scene) -> Scene:
     """The scene as it is now, to be compared with later: its lists may grow afterwards."""
-    lists = ("meshes", "instances", "materials", "lights", "images")
-    copies = {name: list(getattr(scene, name)) for name in lists}
+    copies = {name: list(getattr(scene, name)) for name in LISTS}
     return dataclasses.replace(scene, settings=dataclasses.replace(scene.settings), **copies)
-
-
-def _differ(before: Sequence, after: Sequence) -> bool:
-    return len(before) != len(after) or any(old is not new for old, new in zip(before, after, strict=True))
 
 
 def _point(scene: Scene) -> np.ndarray:

@@ -12,6 +12,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..scene.meshes import Instance, Mesh, RayVisibility
 from ..scene.scene import Scene
+from ..scene.sharing import same_members
 from .records import TRIANGLE_ATTRIBUTES
 
 log = logging.getLogger(__name__)
@@ -116,7 +117,7 @@ class Geometry:
         used = sorted({instance.mesh for instance in scene.instances})
         meshes = [scene.meshes[index] for index in used]
         place = {index: position for position, index in enumerate(used)}
-        unchanged = len(meshes) == len(self._meshes) and all(new is old for new, old in zip(meshes, self._meshes))
+        unchanged = same_members(meshes, self._meshes)
         bounds = self._mesh_bounds if unchanged else [finite_bounds(mesh) for mesh in meshes]
 
         def starts(lengths: list[int]) -> np.ndarray:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """DirectPhotonHits and TracePhotons: photons from the lights through the scene."""
 
+import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
@@ -53,6 +54,17 @@ class Photons:
         return self.photons, self._paths, self._rays, self._hits, self._closures, self._departures
 
     @property
+    def _blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of the programs that send photons on."""
+        return {
+            "Closures": self._closures.buffer,
+            "Rays": self._rays.buffer,
+            "PhotonPaths": self._paths.buffer,
+            "Photons": self.photons.buffer,
+            "Departures": self._departures.buffer,
+        }
+
+    @property
     def memory_bytes(self) -> dict[str, int]:
         return {buffer.name: buffer.size for buffer in self._buffers}
 
@@ -72,14 +84,7 @@ class Photons:
             with timers.stage("photon scattering"):
                 self._scatter.run(
                     self.photon_count,
-                    {
-                        "Closures": self._closures.buffer,
-                        "Rays": self._rays.buffer,
-                        "PhotonPaths": self._paths.buffer,
-                        "Photons": self.photons.buffer,
-                        "Departures": self._departures.buffer,
-                        "Materials": stages.materials.buffers["Materials"],
-                    },
+                    {**self._blocks, "Materials": stages.materials.buffers["Materials"]},
                     {
                         "count": self.photon_count,
                         "photon_count": self.photon_count,
@@ -111,17 +116,7 @@ class Photons:
         with stages.timers.stage("photon resolve"):
             self._resolve(stages, iteration, segment, looks_back=True)
         with stages.timers.stage("photon scattering"):
-            self._depart.run(
-                self.photon_count,
-                {
-                    "Closures": self._closures.buffer,
-                    "Rays": self._rays.buffer,
-                    "PhotonPaths": self._paths.buffer,
-                    "Photons": self.photons.buffer,
-                    "Departures": self._departures.buffer,
-                },
-                {"count": self.photon_count, "segment": segment},
-            )
+            self._depart.run(self.photon_count, self._blocks, {"count": self.photon_count, "segment": segment})
 
     def _emit(self, stages: Stages, iteration: int) -> None:
         """DirectPhotonHits: photons leave the lights and find their first hits."""

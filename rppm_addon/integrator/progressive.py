@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rasterization-based progressive photon mapping: the paper's Algorithm 1."""
 
+import contextlib
+import itertools
 import logging
 import math
 import time
@@ -27,7 +29,7 @@ from .bandwidth import (
     widest_radius,
 )
 from .camera_view import camera_view, is_rasterized
-from .changes import Changes, changes_between, snapshot
+from .changes import changes_between, snapshot
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
@@ -68,7 +70,8 @@ class ProgressivePhotonMapper:
         self.build_seconds = 0.0
         self._built: Scene | None = None
         """What stands on the device; None is nothing that a change could be told from."""
-        self._warnings: list[str] = []
+        self._warnings: dict[str, list[str]] = {}
+        """What was said when a part was built, which holds for scenes after it as well."""
         self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
         self._wide_radius = 0.0
@@ -95,18 +98,21 @@ class ProgressivePhotonMapper:
         changes = changes_between(self._built, scene)
         self._built = None
         self._restart(scene)
-        known = list(scene.warnings)
+        self._materials.follow(scene)
         if changes.materials:
-            self._materials.build(scene)
+            with self._hearing("materials"):
+                self._materials.build(scene)
         if changes.geometry:
             self._geometry.build(scene, self._materials.default_material)
         if changes.geometry or changes.materials:
-            self._resolve.build(scene, self._geometry, self._materials)
+            with self._hearing("resolve"):
+                self._resolve.build(scene, self._geometry, self._materials)
         self._resolve.look_from(scene.camera, settings.seed)
         if changes.geometry or changes.materials or changes.lights:
-            self._emission.build(
-                scene, self._geometry, self._materials, self._resolve, not changes.world, not changes.lamps
-            )
+            with self._hearing("emission"):
+                self._emission.build(
+                    scene, self._geometry, self._materials, self._resolve, not changes.world, not changes.lamps
+                )
         else:
             self._emission.begin()
         wanted = next(cubemap_centres(scene, self._geometry))
@@ -114,19 +120,21 @@ class ProgressivePhotonMapper:
         if changes.geometry or changes.cubemap or moved:
             with self.timers.stage("deep cubemap"):
                 self._build_deep_cubemap()
-        self._keep_warnings(scene, known, changes)
+        for text in itertools.chain(*self._warnings.values()):
+            scene.warn(text)
         self._open_views()
         self._built = snapshot(scene)
         self.build_seconds = time.perf_counter() - start
 
-    def _keep_warnings(self, scene: Scene, known: list[str], changes: Changes) -> None:
-        """What was said of parts that stay as they are holds for the new scene as well."""
-        said = [text for text in scene.warnings if text not in known]
-        if not (changes.geometry or changes.materials or changes.lights):
-            for text in self._warnings:
-                scene.warn(text)
-        else:
-            self._warnings = said
+    @contextlib.contextmanager
+    def _hearing(self, part: str) -> Iterator[None]:
+        """Keep what is said while a part is built."""
+        before, self.scene.warnings = self.scene.warnings, []
+        try:
+            yield
+            self._warnings[part] = self.scene.warnings
+        finally:
+            self.scene.warnings = before
 
     def _open_views(self) -> None:
         """What the camera's side of an iteration needs, for the scene's camera and settings."""
@@ -175,8 +183,9 @@ class ProgressivePhotonMapper:
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
-        self._wanted_centre = next(cubemap_centres(self.scene, self._geometry))
-        for centre in cubemap_centres(self.scene, self._geometry):
+        centres = list(cubemap_centres(self.scene, self._geometry))
+        self._wanted_centre = centres[0]
+        for centre in centres:
             self.centre = centre
             self._deep_cubemap.build(
                 self._geometry.triangles.buffer,

@@ -11,6 +11,7 @@ from ..scene.images import Image
 from ..scene.materials import Material
 from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
+from ..scene.sharing import same_members
 from . import albedo_tables
 from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
 from .emitted import Emits, emits
@@ -85,7 +86,7 @@ class MaterialTables:
         A graph that is not well formed is replaced by a grey surface, or gives no light, with a warning in
         scene.warnings.
         """
-        self._scene = scene
+        self.follow(scene)
         self.default_material = len(scene.materials)
         materials = [*scene.materials, default_material()]
         compiled, self.emits, self.users = [], [], {}
@@ -121,9 +122,13 @@ class MaterialTables:
                 record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
         self._buffers["Materials"].upload(records)
 
+    def follow(self, scene: Scene) -> None:
+        """Warn in this scene and evaluate as its camera sees, though what was built may have come with another."""
+        self._scene = scene
+
     def _upload_images(self, images: list[Image]) -> None:
         """Those that are the very objects of the last build are there. Whoever changes an image gives a new one."""
-        if len(images) == len(self._images) and all(new is old for new, old in zip(images, self._images, strict=True)):
+        if same_members(images, self._images):
             return
         self._images = []  # should an upload fail
         entries, texels = _image_records(images)

@@ -2,12 +2,13 @@
 """Scenes that follow each other share what is equal, so that it is known by identity what has changed."""
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
 from .scene import Scene
 
-_LISTS = ("meshes", "instances", "materials", "lights", "images")
+LISTS = ("meshes", "instances", "materials", "lights", "images")
 _LARGE = {"meshes", "images"}
 _MEMBERS = ("camera", "world", "settings")
 
@@ -36,12 +37,13 @@ def _shared_list(before: list, after: list, by_identity: bool) -> list:
     if not by_identity:
         shared = [old if equal(old, new) else new for old, new in zip(before, after, strict=False)]
         shared += after[len(before) :]
-    if _same(before, shared):
+    if same_members(before, shared):
         return before
-    return after if _same(after, shared) else shared
+    return after if same_members(after, shared) else shared
 
 
-def _same(a: list, b: list) -> bool:
+def same_members(a: Sequence, b: Sequence) -> bool:
+    """Whether two lists hold the very same objects."""
     return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
 
 
@@ -54,7 +56,7 @@ def share(before: Scene | None, after: Scene) -> Scene:
     if before is None:
         return after
     values: dict[str, object] = {}
-    for name in _LISTS:
+    for name in LISTS:
         values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE)
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)

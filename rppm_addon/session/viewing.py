@@ -121,7 +121,7 @@ class Viewing:
                     photons_per_second=mapper.photons_emitted / (now - built),
                     source_watts=mapper.source_watts,
                     source_photons=mapper.source_photons,
-                    warnings=list(dict.fromkeys([*scene.warnings, *mapper.scene.warnings])),
+                    warnings=mapper.scene.warnings,
                     settled=level == 1.0 and mapper.iteration >= settings.iterations,
                 )
             )

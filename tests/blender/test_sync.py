@@ -236,6 +236,22 @@ def test_scenes_that_were_handed_out_stay_as_they_were(synced):
     assert not any(mesh.attributes for mesh in before.meshes)
 
 
+def test_what_objects_lack_is_told_until_they_have_it(synced):
+    tree = bpy.data.materials["Red"].node_tree
+    attribute = tree.nodes.new("ShaderNodeAttribute")
+    attribute.attribute_name = "Rust"
+    tree.links.new(attribute.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    bpy.context.view_layer.update()
+    before = synced.scene
+    assert any("Rust" in text for text in before.warnings)
+    bpy.data.objects["Other"].select_set(True)  # lists all instances again, and changes nothing
+    bpy.context.view_layer.update()
+    assert synced.scene is before
+    move()
+    bpy.context.view_layer.update()
+    assert synced.scene.warnings == before.warnings
+
+
 def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
     """What an edit costs does not grow with the scene: the depsgraph's instances are not listed again."""
     passes = []

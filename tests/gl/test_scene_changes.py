@@ -9,7 +9,7 @@ import scenes
 from lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import Image, NodeGraph, Scene
+from rppm_addon.scene import Image, NodeGraph, Scene, World
 
 
 def with_(scene: Scene, **members: object) -> Scene:
@@ -173,6 +173,26 @@ def test_warnings_stay_with_the_scene(mapper):
     moved = moved_camera(scene)
     mapper.update(moved)
     assert moved.warnings == scene.warnings
+    for change in (moved_object, moved_camera, brighter_light, other_resolution):
+        moved = change(moved)
+        mapper.update(moved)
+        assert moved.warnings == scene.warnings
+
+
+def test_a_world_that_looks_at_the_camera_follows_it(mapper, other_mapper):
+    scene = first_scene()
+    graph = NodeGraph()
+    color = graph.add("tex_coord", "camera")
+    graph.surface = graph.add("background", "background", color=color, strength=1.0)
+    scene = with_(scene, world=World(np.ones(3), graph))
+    mapper.build(scene)
+    before = pictures(mapper)[0]
+    moved = moved_camera(scene)
+    mapper.update(moved)
+    other_mapper.build(moved)
+    updated = pictures(mapper)[0]
+    np.testing.assert_array_equal(updated, pictures(other_mapper)[0])
+    assert not np.array_equal(before, updated)
 
 
 def test_an_iteration_that_is_dropped_leaves_nothing_behind(mapper, other_mapper):

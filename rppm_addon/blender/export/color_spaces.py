@@ -6,7 +6,6 @@ import tempfile
 
 import bpy
 import numpy as np
-import OpenEXR
 
 WHITE_IN_CYCLES = {"Rec.2100-HLG": 2.03, "Rec.2100-PQ": 2.03}
 """By space, how much brighter Cycles takes images than Blender itself: 100 nits are 1, not 203."""
@@ -22,6 +21,8 @@ def scene_linear(colors: np.ndarray, space: str) -> np.ndarray:
 
     Python cannot ask Blender for a conversion, but Blender makes one when it reads a file of floats.
     """
+    import OpenEXR  # late: Blender loads this module when it starts
+
     height, width = colors.shape[:2]
     planes = {name: np.ascontiguousarray(colors[::-1, :, k], np.float32) for k, name in enumerate("RGB")}
     header = {"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}

@@ -168,6 +168,7 @@ class _Pass:
             kept = None if instance.is_instance else self._unchanged.get(stands_for.session_uid)
             if kept is not None:
                 self._exporter.meshes.keep(kept.mesh)
+                self._note_missing(kept)
                 self._placed.append((kept, kept.matrix, stands_for.session_uid))
             else:
                 matrix = np.array(instance.matrix_world, np.float64)
@@ -220,22 +221,24 @@ class _Pass:
     ) -> None:
         index = self._exporter._mesh_index(source, mesh, shading, owner)
         if index is not None:
-            self._note_missing(source.name, index, shading)
+            instance = _instance(index, source, matrix, shading)
+            self._note_missing(instance)
             uid = source.original.session_uid
-            self._placed.append((_instance(index, source, matrix, shading), matrix, uid if mesh is not None else 0))
+            self._placed.append((instance, matrix, uid if mesh is not None else 0))
 
-    def _note_missing(self, name: str, index: int, shading: dict[str, object]) -> None:
+    def _note_missing(self, instance: Instance) -> None:
         """Attributes that the materials of an instance read and that it does not have."""
-        materials, mesh = self._exporter.materials, self._exporter.meshes.meshes[index]
-        known = {GENERATED, ISLAND, TANGENT, *mesh.attributes, *shading["attributes"]}
-        asked = [(slot, materials.attributes[material]) for slot, material in enumerate(shading["materials"])]
+        materials, mesh = self._exporter.materials, self._exporter.meshes.meshes[instance.mesh]
+        known = {GENERATED, ISLAND, TANGENT, *mesh.attributes, *instance.attributes}
+        asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
         if all(attributes.keys() <= known for _, attributes in asked):
             return
         slots = np.unique(np.minimum(mesh.triangle_slots, len(asked) - 1))
         for slot, attributes in asked:
             for attribute in attributes.keys() - known if slot in slots else ():
-                material = materials.materials[shading["materials"][slot]].name
-                self._missing.setdefault((material, attributes[attribute], attribute), {})[name] = None
+                material = materials.materials[instance.materials[slot]].name
+                objects = self._missing.setdefault((material, attributes[attribute], attribute), {})
+                objects[instance.object_name] = None
 
     def _tell_missing(self) -> None:
         for (material, node, attribute), objects in sorted(self._missing.items()):

@@ -92,12 +92,10 @@ def _crop(
     context: bpy.types.Context, frame: tuple[float, float, float, float] | None, width: int, height: int
 ) -> tuple[int, int, int, int] | None:
     """Pixels of the render border: in the camera's view that of the scene, else that of the viewport."""
-    render = context.scene.render
-    source = context.space_data if frame is None else render
-    if not (source.use_render_border if frame is None else source.use_border):
+    source, border = (context.space_data, "render_border") if frame is None else (context.scene.render, "border")
+    if not getattr(source, f"use_{border}"):
         return None
-    names = [f"{'render_' if frame is None else ''}border_{name}" for name in ("min_x", "max_x", "min_y", "max_y")]
-    x_min, x_max, y_min, y_max = (getattr(source, name) for name in names)
+    x_min, x_max, y_min, y_max = (getattr(source, f"{border}_{edge}") for edge in ("min_x", "max_x", "min_y", "max_y"))
     if frame is not None:
         left, right, bottom, top = frame
         x_min, x_max = (left + x * (right - left) for x in (x_min, x_max))
