@@ -53,6 +53,7 @@ def animated(scene, tmp_path):
     scene.render.image_settings.file_format = "PNG"
     scene.render.filepath = str(tmp_path / "frame_")
     scene.rppm.iterations, scene.rppm.photons, scene.rppm.cubemap_resolution = ITERATIONS, 1024, 64
+    scene.rppm.viewport_photons = scene.rppm.photons
     scene.rppm.camera_path_length = scene.rppm.photon_path_length = 4
     stage(scene)
     return scene
@@ -127,7 +128,7 @@ def test_playback_shows_what_a_fresh_viewport_does(animated, animation, device, 
     context, library = device
     with context.moderngl:
         mapper = ProgressivePhotonMapper(context, library)
-    for number in (*FRAMES, *reversed(FRAMES), 3, 1):
+    for number in (*FRAMES, 2, 1):
         animated.frame_set(number)
         fresh = SceneSync().update(bpy.context.evaluated_depsgraph_get(), camera)
         with context.moderngl:
