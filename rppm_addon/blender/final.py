@@ -19,6 +19,7 @@ from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
 
 if TYPE_CHECKING:
+    from ..session.continuation import Continuation
     from ..session.results import Frame, Progress, RenderResult, RenderStatistics
 
 logger = logging.getLogger(__name__)
@@ -157,6 +158,10 @@ class _FinalJob(RenderJob):
     @property
     def snapshots(self) -> tuple[float, ...]:
         return self._observer.snapshots
+
+    @property
+    def continuation(self) -> "Continuation | None":
+        return self._observer.continuation
 
     def should_stop(self) -> bool:
         return self._engine.test_break() or self._observer.should_stop()
