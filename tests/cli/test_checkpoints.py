@@ -24,11 +24,14 @@ LAST = LEARNING_ITERATIONS + 3
 
 @pytest.fixture(scope="module")
 def two_floors(tmp_path_factory):
-    """The floor, and another above it that sends light back, as a .npz."""
+    """The floor, another above it that sends light back, and a lamp of less use far away, as a .npz."""
     scene = floor_scene()
     above = np.diag([1.0, -1.0, -1.0, 1.0])
     above[2, 3] = 4.5
     scene.instances.append(Instance(0, above, [0], "Ceiling"))
+    far = scene.lights[0].matrix.copy()
+    far[0, 3] = -8.0
+    scene.lights.append(dataclasses.replace(scene.lights[0], name="Far", matrix=far))
     path = tmp_path_factory.mktemp("scene") / "floors.npz"
     save_scene(scene, path)
     return path
@@ -123,7 +126,7 @@ def test_what_cannot_be_gone_on_with_is_refused(tmp_path, rppm, two_floors, save
     again = ("--checkpoint", checkpoint, "--iterations", 3)
     before = checkpoint.read_bytes()
     assert "is there already; go on from it with --resume" in refusal(two_floors, *again)
-    assert "of another scene than this render (other instances)" in refusal(saved_scene, *again, "--resume")
+    assert "of another scene than this render (other instances, lights)" in refusal(saved_scene, *again, "--resume")
     assert "(other camera)" in refusal(two_floors, *again, "--resume", "--resolution", "8x8")
     settings = refusal(two_floors, *again, "--resume", "--photons", 999, "--set", "rppm.alpha=0.6")
     assert "(photons 1024 instead of 999, alpha 0.7 instead of 0.6)" in settings
