@@ -251,9 +251,7 @@ def _render(options: argparse.Namespace, bar: ProgressBar) -> int:
     print(recorder.summary())
     if interruption.asked:
         resume = "; go on with --resume" if options.checkpoint else ""
-        done = "nothing was done yet that could be kept"
-        if recorder.files:
-            done = "the files hold what was done until then"
+        done = "the files hold what was done until then" if recorder.files else "nothing was done yet"
         sys.stderr.write(f"rppm: interrupted; {done}{resume}\n")
         return interruption.status
     return 0
