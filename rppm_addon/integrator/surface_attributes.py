@@ -79,8 +79,9 @@ class SurfaceAttributes:
         places: dict[tuple, tuple[int, int]] = {}
         values: dict[int, tuple[MeshAttribute, Mesh]] = {}
         end = table.size
-        for number, name in enumerate(names):
-            for index, instance in enumerate(instances):
+        for number, name in enumerate(names if instances else ()):
+            column = []
+            for instance in instances:
                 own = instance.attributes.get(name) if instance.attributes else None
                 key = (instance.mesh, name) if own is None else (name, *own)
                 if key not in places:
@@ -91,7 +92,8 @@ class SurfaceAttributes:
                         places[key] = (end, attribute.values.shape[1])
                         values[end] = attribute, mesh
                         end += 3 * mesh.triangle_count * attribute.values.shape[1]
-                table[index, number] = places[key]
+                column.append(places[key])
+            table[:, number] = column
         before, self._sources = self._sources, {}  # should an upload fail
         if self._values.require(4 * end):
             before = {}
