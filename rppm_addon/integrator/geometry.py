@@ -36,9 +36,9 @@ INSTANCE_ENTRY = Record(
 Record("GatherParameters", fallback_point="vec3", triangle_count="uint", instance_count="uint")
 
 
-def finite_bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
-    """Lowest and highest finite coordinates of a mesh in object space, each (3,); None without any."""
-    positions = mesh.positions.reshape(-1, 3)
+def finite_bounds(positions: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Lowest and highest finite coordinates of points (..., 3), each (3,); None without any."""
+    positions = positions.reshape(-1, 3)
     lowest, highest = positions.min(axis=0, initial=np.inf), positions.max(axis=0, initial=-np.inf)
     if not np.isfinite([lowest, highest]).all():
         finite = positions[np.isfinite(positions).all(axis=1)]
@@ -46,6 +46,16 @@ def finite_bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
             return None
         lowest, highest = finite.min(axis=0), finite.max(axis=0)
     return lowest.astype(np.float64), highest.astype(np.float64)
+
+
+def box_corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(3, 8) corners of a box."""
+    return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1)
+
+
+def fits(corners: np.ndarray) -> np.ndarray:
+    """Whether boxes (..., 3, 8) are finite and not too far away for their triangles to be rendered."""
+    return (np.abs(corners) < 1e15).all(axis=(-2, -1))  # false for NaN as well
 
 
 @dataclass
@@ -107,8 +117,11 @@ class Geometry:
         buffers = [*self._inputs.values(), self.triangles, self.attributes]
         return {buffer.name: buffer.size for buffer in buffers}
 
-    def build(self, scene: Scene, default_material: int) -> None:
-        """Upload the meshes and gather all instances. ``default_material`` serves empty slots.
+    def build(
+        self, scene: Scene, default_material: int, swept: tuple[np.ndarray, np.ndarray] | None = None
+    ) -> None:
+        """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
+        bounds enclose in any case, each (3,), low and high.
 
         Meshes that are the very objects of the last build are not uploaded again: moving instances
         uploads the instances only. Whoever changes a mesh gives a new one.
@@ -118,7 +131,7 @@ class Geometry:
         meshes = [scene.meshes[index] for index in used]
         place = {index: position for position, index in enumerate(used)}
         unchanged = same_members(meshes, self._meshes)
-        bounds = self._mesh_bounds if unchanged else [finite_bounds(mesh) for mesh in meshes]
+        bounds = self._mesh_bounds if unchanged else [finite_bounds(mesh.positions) for mesh in meshes]
 
         def starts(lengths: list[int]) -> np.ndarray:
             return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
@@ -147,10 +160,9 @@ class Geometry:
             slots.extend(materials or [default_material])
             entry["shadowless"] = not instance.visibility & RayVisibility.SHADOW
             first += meshes[mesh].triangle_count
-            corners = np.array(np.meshgrid(*zip(*bounds[mesh], strict=True))).reshape(3, -1)
-            world = instance.matrix[:3, :3] @ corners + instance.matrix[:3, 3:]
+            world = instance.matrix[:3, :3] @ box_corners(*bounds[mesh]) + instance.matrix[:3, 3:]
             placements.append(Placement(instance, int(entry["first_triangle"]), world.min(axis=1), world.max(axis=1)))
-            if np.isfinite(world).all() and np.abs(world).max() < 1e15:
+            if fits(world):
                 low, high = np.minimum(low, world.min(axis=1)), np.maximum(high, world.max(axis=1))
             else:
                 log.warning(
@@ -158,6 +170,8 @@ class Geometry:
                 )
         self.triangle_count = first
         self.placements = placements
+        if swept is not None:
+            low, high = np.minimum(low, swept[0]), np.maximum(high, swept[1])
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
