@@ -9,7 +9,8 @@ from ..scene.motion import MovingScene
 from ..scene.scene import Scene
 from .geometry import box_corners, finite_bounds, fits
 
-_GOLDEN = 0.6180339887498949
+_MASK = (1 << 32) - 1
+_SCRAMBLE = (0x6C50B47C, 0xB82F1E52, 0xC7AFE638, 0x8D22F6E6)
 _MOMENTS = 17
 """Evenly over the time of the shutter: where what moves is looked for beforehand."""
 
@@ -17,12 +18,16 @@ _MOMENTS = 17
 def moment(iteration: int, seed: int) -> float:
     """Share, 0 to 1, of the light that the shutter lets pass, by which an iteration (from 1) has its time.
 
-    Multiples of the golden ratio from a start of the seed's own: however few iterations there are, they lie spread
-    evenly. The points on the lens and where photons leave are Sobol's, whose binary digits these share nothing with;
-    with van der Corput's sequence each part of the lens would see a part of the time only.
+    Van der Corput's sequence, scrambled as the points of shaders/common/low_discrepancy.glsl are: of 2^k iterations
+    each has a 2^k-th of the time, and a random place in it. That those points go through their indices in a shuffled
+    order keeps what they decide, such as the place on the lens, independent of the time.
     """
-    start = np.random.default_rng((seed, 1)).random()
-    return float((start + iteration * _GOLDEN) % 1.0)
+    scramble = int(np.random.default_rng((seed, 1)).integers(1 << 32))
+    bits = iteration - 1
+    bits = (bits + scramble) & _MASK
+    for factor in _SCRAMBLE:
+        bits ^= (bits * factor) & _MASK
+    return int(f"{bits:032b}"[::-1], 2) / 2.0**32
 
 
 def swept_bounds(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

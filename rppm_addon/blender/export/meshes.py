@@ -27,10 +27,7 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report) -> Mesh | None:
     slots = _attribute(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
     triangle_slots = np.zeros(len(triangles), np.int32) if slots is None else np.maximum(slots[:, 0], 0)[polygons]
 
-    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
-    corner_vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)[:, 0]
-    corner_normals = _read(mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32)
-
+    positions, corner_vertices, corner_normals = read_shape(mesh)
     finite = (np.abs(positions) < FARTHEST).all(axis=1)  # false for NaN as well
     if not finite.all():
         good = finite[corner_vertices[triangles]].all(axis=1)
@@ -42,7 +39,6 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report) -> Mesh | None:
         positions[~finite] = 0.0
         if len(triangles) == 0:
             return None
-    _make_unit(corner_normals)
     return Mesh(
         name=name,
         positions=positions,
@@ -54,6 +50,15 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report) -> Mesh | None:
         texture_location=tuple(mesh.texspace_location),
         texture_size=tuple(mesh.texspace_size),
     )
+
+
+def read_shape(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions (vertices, 3), the vertex of each corner (corners,) and unit normals of corners (corners, 3)."""
+    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
+    corner_vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)[:, 0]
+    corner_normals = _read(mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32)
+    _make_unit(corner_normals)
+    return positions, corner_vertices, corner_normals
 
 
 def render_uv_name(mesh: bpy.types.Mesh) -> str | None:
