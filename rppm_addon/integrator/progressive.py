@@ -14,6 +14,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
+from ..scene.motion import MovingScene
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
 from .bands import bands_of
@@ -29,7 +30,7 @@ from .bandwidth import (
     widest_radius,
 )
 from .camera_view import camera_view, is_rasterized
-from .changes import changes_between, snapshot
+from .changes import Changes, changes_between, snapshot
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
@@ -46,12 +47,14 @@ from .placement import cubemap_centres, radius_about
 from .primary_rays import PrimaryRays
 from .resolve import Resolve
 from .shadow_catcher import ShadowCatcher
+from .shutter import moment, swept_bounds
 from .splatting import Splatting, radiance_quantum
 from .stages import Stages
 
 log = logging.getLogger(__name__)
 
 _MOST_CORE_TRIANGLES = 64
+_NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
 class ProgressivePhotonMapper:
@@ -68,10 +71,17 @@ class ProgressivePhotonMapper:
         self._resolve = Resolve(context, library)
         self.iteration = 0
         self.build_seconds = 0.0
+        self.scene: Scene | None = None
+        """With a shutter, as it is at the iteration's moment."""
+        self._given: Scene | None = None
+        """The scene, its shutter included."""
         self._built: Scene | None = None
         """What stands on the device; None is nothing that a change could be told from."""
         self._warnings: dict[str, list[str]] = {}
         """What was said when a part was built, which holds for scenes after it as well."""
+        self._moving: MovingScene | None = None
+        self._swept = _NOWHERE
+        """What things move through while the shutter is open (swept_bounds)."""
         self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
         self._wide_radius = 0.0
@@ -93,38 +103,69 @@ class ProgressivePhotonMapper:
         as build does; what is built then is built anew the next time.
         """
         start = time.perf_counter()
-        settings = scene.settings
-        settings.validate()
+        scene.settings.validate()
         changes = changes_between(self._built, scene)
         self._built = None
         self._restart(scene)
-        self._materials.follow(scene)
-        if changes.materials:
-            with self._hearing("materials"):
-                self._materials.build(scene)
-        if changes.geometry:
-            self._geometry.build(scene, self._materials.default_material)
-        if changes.geometry or changes.materials:
-            with self._hearing("resolve"):
-                self._resolve.build(scene, self._geometry, self._materials)
-        self._resolve.look_from(scene.camera, settings.seed)
-        if changes.geometry or changes.materials or changes.lights:
-            with self._hearing("emission"):
-                self._emission.build(
-                    scene, self._geometry, self._materials, self._resolve, not changes.world, not changes.lamps
-                )
-        else:
-            self._emission.begin()
+        self._moving = MovingScene(scene) if scene.shutter is not None else None
+        swept = swept_bounds(scene) if scene.shutter is not None else _NOWHERE
+        changes.geometry |= not np.array_equal(swept, self._swept)
+        self._swept = swept
+        self._build_parts(changes)
         wanted = next(cubemap_centres(scene, self._geometry))
         moved = not keep_centre and not np.array_equal(wanted, self._wanted_centre)
         if changes.geometry or changes.cubemap or moved:
-            with self.timers.stage("deep cubemap"):
-                self._build_deep_cubemap()
+            self._build_deep_cubemap()
         for text in itertools.chain(*self._warnings.values()):
             scene.warn(text)
         self._open_views()
         self._built = snapshot(scene)
         self.build_seconds = time.perf_counter() - start
+
+    def _build_parts(self, changes: Changes, keep_learned: bool = False) -> None:
+        """What rests on the scene's members that have changed, but for the deep cubemap.
+
+        keep_learned: go on with what was learned of the lights.
+        """
+        scene = self.scene
+        self._materials.follow(scene)
+        if changes.materials:
+            with self._hearing("materials"):
+                self._materials.build(scene)
+        if changes.geometry:
+            self._geometry.build(scene, self._materials.default_material, self._swept)
+        if changes.geometry or changes.materials:
+            with self._hearing("resolve"):
+                self._resolve.build(scene, self._geometry, self._materials)
+        self._resolve.look_from(scene.camera, scene.settings.seed)
+        if changes.geometry or changes.materials or changes.lights:
+            with self._hearing("emission"):
+                self._emission.build(
+                    scene,
+                    self._geometry,
+                    self._materials,
+                    self._resolve,
+                    not changes.world,
+                    not changes.lamps,
+                    keep_learned,
+                )
+        elif not keep_learned:
+            self._emission.begin()
+
+    def _move(self) -> None:
+        """Take the scene as it is at the iteration's moment, and build anew what rests on what has moved.
+
+        The deep cubemap's centre stays: it changes no picture, and a camera that moves alone costs nothing.
+        """
+        given = self._given
+        self.scene = self._moving.at(given.shutter.time_of(moment(self.iteration, given.settings.seed)))
+        changes = changes_between(self._built, self.scene)
+        self._built = None
+        with self.timers.stage("motion"):
+            self._build_parts(changes, keep_learned=True)
+        if changes.geometry:
+            self._build_deep_cubemap()
+        self._built = snapshot(self.scene)
 
     @contextlib.contextmanager
     def _hearing(self, part: str) -> Iterator[None]:
@@ -179,23 +220,24 @@ class ProgressivePhotonMapper:
         self.iteration = 0
         self._diffused_photons = []
         self._wide_radius = 0.0
-        self.scene = scene
+        self.scene = self._given = scene
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
-        centres = list(cubemap_centres(self.scene, self._geometry))
+        centres = list(cubemap_centres(self._given, self._geometry))
         self._wanted_centre = centres[0]
-        for centre in centres:
-            self.centre = centre
-            self._deep_cubemap.build(
-                self._geometry.triangles.buffer,
-                self._geometry.triangle_count,
-                centre,
-                radius_about(centre, self._geometry),
-                self.scene.settings.cubemap_resolution,
-            )
-            if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
-                return
+        with self.timers.stage("deep cubemap"):
+            for centre in centres:
+                self.centre = centre
+                self._deep_cubemap.build(
+                    self._geometry.triangles.buffer,
+                    self._geometry.triangle_count,
+                    centre,
+                    radius_about(centre, self._geometry),
+                    self.scene.settings.cubemap_resolution,
+                )
+                if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
+                    return
 
     def iterate(self) -> None:
         """One iteration of Algorithm 1."""
@@ -208,6 +250,12 @@ class ProgressivePhotonMapper:
         An iteration that is not run to its end leaves the film unfinished: go on with update or build.
         """
         self.iteration += 1
+        if 1 < self.iteration <= LEARNING_ITERATIONS + 1:
+            with self.timers.stage("learning"):
+                self._learn()
+        if self._moving is not None:
+            self._move()
+            yield
         self._trace_photons()
         yield
         for first_row, rows in self._bands:
@@ -337,9 +385,6 @@ class ProgressivePhotonMapper:
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
-        if 1 < self.iteration <= LEARNING_ITERATIONS + 1:
-            with self.timers.stage("learning"):
-                self._learn()
         self._photons.run(self._stages, self.iteration)
         # With next-event rays direct photons would count direct light twice.
         indirect_only = self.scene.settings.direct_light is DirectLightMode.RAYS
