@@ -57,7 +57,8 @@ _BLOCK = 256
 
 
 def finite_bounds(positions: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Lowest and highest finite coordinates of (n, 3) positions, each (3,); None without any."""
+    """Lowest and highest finite coordinates of points (..., 3), each (3,); None without any."""
+    positions = positions.reshape(-1, 3)
     lowest, highest = (_by_column(reduce, positions) for reduce in (np.minimum.reduce, np.maximum.reduce))
     if not np.isfinite([lowest, highest]).all():
         finite = positions[np.isfinite(positions).all(axis=1)]
@@ -75,6 +76,16 @@ def _by_column(reduce: Callable[..., np.ndarray], positions: np.ndarray) -> np.n
         blocks = np.ascontiguousarray(positions[:whole]).reshape(-1, 3 * _BLOCK)
         parts.append(reduce(blocks, axis=0).reshape(-1, 3))
     return reduce(np.concatenate(parts), axis=0)
+
+
+def box_corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(3, 8) corners of a box."""
+    return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1)
+
+
+def fits(corners: np.ndarray) -> np.ndarray:
+    """Whether boxes (..., 3, 8) are finite and not too far away for their triangles to be rendered."""
+    return (np.abs(corners) < 1e15).all(axis=(-2, -1))  # false for NaN as well
 
 
 @dataclass(slots=True)
@@ -133,8 +144,9 @@ class Geometry:
         buffers = [*self._inputs.values(), self.triangles, self.attributes]
         return {buffer.name: buffer.size for buffer in buffers}
 
-    def build(self, scene: Scene, default_material: int) -> None:
-        """Upload the meshes and gather all instances. ``default_material`` serves empty slots.
+    def build(self, scene: Scene, default_material: int, swept: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+        """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
+        bounds enclose in any case, each (3,), low and high.
 
         Arrays that are the very objects of the last build are not uploaded again: moving instances uploads the
         instances only, bending a mesh its positions and normals. Whoever changes an array gives a new one.
@@ -142,23 +154,26 @@ class Geometry:
         """
         used = sorted({instance.mesh for instance in scene.instances})
         meshes = [scene.meshes[index] for index in used]
-        known = self._bounds
-        self._bounds = {
-            id(mesh.positions): (mesh.positions, known[id(mesh.positions)][1])
-            if id(mesh.positions) in known
-            else (mesh.positions, finite_bounds(mesh.positions.reshape(-1, 3)))
-            for mesh in meshes
-        }
-        bounds = [self._bounds[id(mesh.positions)][1] for mesh in meshes]
-        visible = {
+        bounds = self._bounds_of(meshes)
+        places = {
             index: place
             for place, index in enumerate(used)
             if bounds[place] is not None and meshes[place].triangle_count
         }
-        instances = [instance for instance in scene.instances if instance.mesh in visible]
-        entries, slots = self._lay_out(
-            scene, instances, meshes, bounds, [visible[instance.mesh] for instance in instances], default_material
-        )
+        instances = [instance for instance in scene.instances if instance.mesh in places]
+        which = np.array([places[instance.mesh] for instance in instances], np.int64)
+        lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which]
+        ends = np.cumsum(lengths)
+        self.triangle_count = int(ends[-1]) if len(ends) else 0
+        entries = INSTANCE_ENTRY.zeros(len(instances))
+        entries["first_triangle"] = ends - lengths
+        slots: list[int] = []
+        if instances:
+            for field, member in _STARTS.items():
+                entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
+            entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
+            slots = _fill(entries, instances, len(scene.materials), default_material)
+        self._enclose(instances, entries["first_triangle"].tolist(), [bounds[place] for place in which], swept)
         self._upload_meshes(meshes)
         self._inputs["Instances"].upload(entries)
         self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
@@ -172,61 +187,38 @@ class Geometry:
             {"fallback_point": self.centre, "triangle_count": self.triangle_count, "instance_count": len(instances)},
         )
 
-    def _lay_out(
-        self,
-        scene: Scene,
-        instances: list[Instance],
-        meshes: list[Mesh],
-        bounds: list[tuple[np.ndarray, np.ndarray] | None],
-        places: list[int],
-        default_material: int,
-    ) -> tuple[np.ndarray, list[int]]:
-        """Place the instances, each of the mesh at its place among ``meshes``; their entries and all their slots."""
-        count = len(instances)
-        entries = INSTANCE_ENTRY.zeros(count)
-        slots: list[int] = []
-        low, high = np.full(3, np.inf), np.full(3, -np.inf)
-        lows = highs = np.zeros((0, 3))
-        self.triangle_count = 0
-        if count:
-            place = np.array(places)
-            matrices = np.array([instance.matrix for instance in instances], np.float64)
-            for row in range(3):
-                entries[f"row{row}"] = matrices[:, row]
-            lengths = np.array([mesh.triangle_count for mesh in meshes])[place]
-            ends = np.cumsum(lengths)
-            self.triangle_count = int(ends[-1])
-            entries["first_triangle"] = ends - lengths
-            for field, member in _STARTS.items():
-                entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][place]
-            entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[place]] = _NO_UV
-            ranges: dict[tuple[int, ...], tuple[int, int]] = {}
-            chosen = []
-            for instance in instances:
-                key = tuple(instance.materials)
-                if key not in ranges:
-                    ranges[key] = len(slots), max(1, len(key))
-                    slots += [m if 0 <= m < len(scene.materials) else default_material for m in key]
-                    slots += [] if key else [default_material]
-                chosen.append(ranges[key])
-            entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
-            visibility = np.array([int(instance.visibility) for instance in instances])
-            entries["shadowless"] = visibility & int(RayVisibility.SHADOW) == 0
+    def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
+        """Finite bounds of each mesh, found once for each array of positions."""
+        known, self._bounds = self._bounds, {}
+        for positions in (mesh.positions for mesh in meshes):
+            if id(positions) not in self._bounds:
+                self._bounds[id(positions)] = known.get(id(positions)) or (positions, finite_bounds(positions))
+        return [self._bounds[id(mesh.positions)][1] for mesh in meshes]
 
-            corners = np.array([_box_corners(box) for box in bounds])[place]
-            world = matrices[:, :3, :3] @ corners + matrices[:, :3, 3:]
-            lows, highs = world.min(axis=2), world.max(axis=2)
-            good = np.isfinite(world).all(axis=(1, 2)) & (np.abs(world).max(axis=(1, 2)) < 1e15)
-            if good.any():
-                low, high = lows[good].min(axis=0), highs[good].max(axis=0)
+    def _enclose(
+        self,
+        instances: list[Instance],
+        first_triangles: list[int],
+        boxes: list[tuple[np.ndarray, np.ndarray]],
+        swept: tuple[np.ndarray, np.ndarray] | None,
+    ) -> None:
+        """List the placements of instances, whose meshes lie in these boxes, and enclose them."""
+        low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
+        self.placements = []
+        if instances:
+            corners = {id(box): box_corners(*box) for box in boxes}
+            matrices = np.array([instance.matrix for instance in instances], np.float64)
+            world = matrices[:, :3, :3] @ np.array([corners[id(box)] for box in boxes]) + matrices[:, :3, 3:]
+            lows, highs, good = world.min(axis=2), world.max(axis=2), fits(world)
+            self.placements = list(map(Placement, instances, first_triangles, lows, highs))
+            low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
+            high = np.maximum(high, highs[good].max(axis=0, initial=-np.inf))
             for index in np.flatnonzero(~good):
                 name = instances[index].object_name
                 log.warning("object %s has a matrix that is not finite; its triangles are left out", name)
-        self.placements = list(map(Placement, instances, entries["first_triangle"].tolist(), lows, highs))
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
-        return entries, slots
 
     def _upload_meshes(self, meshes: list[Mesh]) -> None:
         """Write the arrays that were not written to their places before, together where they lie together."""
@@ -246,6 +238,24 @@ class Geometry:
     def release(self) -> None:
         for buffer in [*self._inputs.values(), self.triangles, self.attributes]:
             buffer.release()
+
+
+def _fill(entries: np.ndarray, instances: list[Instance], materials: int, default_material: int) -> list[int]:
+    """Matrices, shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
+    matrices = np.array([instance.matrix for instance in instances], np.float64)
+    for row in range(3):
+        entries[f"row{row}"] = matrices[:, row]
+    visibility = np.array([int(instance.visibility) for instance in instances])
+    entries["shadowless"] = visibility & int(RayVisibility.SHADOW) == 0
+    slots: list[int] = []
+    ranges: dict[tuple[int, ...], tuple[int, int]] = {}
+    for key in map(tuple, [instance.materials for instance in instances]):
+        if key not in ranges:
+            ranges[key] = len(slots), max(1, len(key))
+            slots += [m if 0 <= m < materials else default_material for m in key] or [default_material]
+    chosen = [ranges[tuple(instance.materials)] for instance in instances]
+    entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
+    return slots
 
 
 def _starts(lengths: list[int]) -> np.ndarray:
@@ -274,10 +284,3 @@ def _runs(indices: list[int]) -> list[list[int]]:
         else:
             runs.append([index])
     return runs
-
-
-def _box_corners(bounds: tuple[np.ndarray, np.ndarray] | None) -> np.ndarray:
-    """(3, 8) corners of a box; zeros where there is none."""
-    if bounds is None:
-        return np.zeros((3, 8))
-    return np.array(np.meshgrid(*zip(*bounds, strict=True))).reshape(3, -1)

@@ -63,7 +63,7 @@ class SurfaceAttributes:
     def build(self, scene: Scene, geometry: Geometry, names: list[str]) -> None:
         """Upload what the nodes of the scene's materials need. ``names``: the attributes that they read.
 
-        Values are not written again where they lie in the same place as at the last build and come from the very arrays.
+        Values that come from the very arrays of the last build and have the same place are not written again.
         """
         self.count = len(names)
         instances = [placement.instance for placement in geometry.placements]

@@ -39,11 +39,7 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report, before: Mesh | 
     arrays = {
         "triangle_corners": _kept(before.triangle_corners, elements(mesh.loop_triangles, "loops", count, 3, np.int32)),
         "triangle_slots": _triangle_slots(mesh, before.triangle_slots),
-        "corner_vertices": _kept(
-            before.corner_vertices, _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)
-        ),
-        "positions": _kept(before.positions, _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)),
-        "corner_normals": _corner_normals(mesh, before.corner_normals),
+        **dict(zip(("positions", "corner_vertices", "corner_normals"), read_shape(mesh, before), strict=True)),
         "corner_uv": _render_uv(mesh, before.corner_uv),
     }
     if not _all_near(arrays["positions"]):
@@ -56,6 +52,18 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report, before: Mesh | 
         texture_location=tuple(mesh.texspace_location),
         texture_size=tuple(mesh.texspace_size),
     )
+
+
+def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions (vertices, 3), the vertex of each corner (corners,) and unit normals of corners (corners, 3).
+
+    before: as for export_mesh.
+    """
+    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
+    positions = _kept(before.positions, positions)
+    corner_vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)
+    corner_vertices = _kept(before.corner_vertices, corner_vertices)
+    return positions, corner_vertices, _corner_normals(mesh, before.corner_normals)
 
 
 def _kept(before: np.ndarray, view: np.ndarray) -> np.ndarray:
