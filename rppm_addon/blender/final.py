@@ -14,7 +14,7 @@ from ..session.observers import RenderObserver, current_observer
 from ..session.render_job import RenderJob
 from ..session.sessions import SessionKind
 from . import broken_frames, renderer_process, renderer_thread
-from .export import ExportStopped, FrameExporter, export_scene
+from .export import ExportStopped, FrameExporter, export_scene, is_blurred
 from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
 
@@ -78,11 +78,12 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
 def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> Scene:
     if engine.is_preview:
         return export_scene(depsgraph, engine, observer.should_stop)
-    if not depsgraph.scene.render.use_persistent_data:
+    # With persistent data Blender keeps engine and depsgraph, and tells what has changed. A shutter goes through frames
+    # in between, of which it tells as well.
+    if not depsgraph.scene.render.use_persistent_data or is_blurred(depsgraph, engine):
+        engine.exporter = None
         return follow(export_scene(depsgraph, engine, observer.should_stop))
-    # Blender keeps engine and depsgraph, and tells what has changed.
-    if not hasattr(engine, "exporter"):
-        engine.exporter = FrameExporter()
+    engine.exporter = getattr(engine, "exporter", None) or FrameExporter()
     return follow(
         engine.exporter.export(
             depsgraph,

@@ -27,6 +27,7 @@ __all__ = [
     "export_scene",
     "export_settings",
     "export_view",
+    "is_blurred",
 ]
 
 
