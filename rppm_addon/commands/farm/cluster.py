@@ -6,12 +6,11 @@ import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import cloudpickle
 import dask
 import distributed
 from distributed.security import Security
 
-from . import admission
+from .by_value import identity_function
 from .errors import FarmError
 from .identity import identity
 
@@ -33,14 +32,13 @@ class Cluster:
         self._identity = identity()
         self._known: dict[str, str] = {}
         """What each worker has by address: an identity, or why it cannot tell."""
-        cloudpickle.register_pickle_by_value(admission)
 
     def workers(self) -> set[str]:
         """Addresses of the workers that are there now and may be given work."""
         there = set(self.client.scheduler_info()["workers"])
         new = sorted(there - self._known.keys())
         if new:
-            answers = self.client.run(admission.admit, self.local, workers=new, on_error="return")
+            answers = self.client.run(identity_function(self.local), workers=new, on_error="return")
             self._known.update({worker: str(answer) for worker, answer in answers.items()})
         return {worker for worker in there if self._known.get(worker) == self._identity}
 

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 import distributed
 from distributed.comm import CommClosedError
 
+from .by_value import perform_function
 from .cluster import Cluster
 from .errors import FarmError, TaskError
 from .ledger import Ledger
 from .tasks import Task
 from .watch import Watch
-from .worker import TOPIC, Outcome, perform, tasks_at_work
+from .worker import TOPIC, Outcome, tasks_at_work
 
 _POLL_SECONDS = 0.5
 _WORKER_SECONDS = 60.0
@@ -68,9 +69,8 @@ class Dispatcher:
 
     def _submit(self, task: Task, workers: set[str]) -> None:
         future = self._client.submit(
-            perform,
-            task,
-            self._ledger.folder,
+            perform_function(),
+            *(task.name, task.arguments, task.outputs, self._ledger.folder),
             workers=sorted(workers),
             retries=self._retries,
             pure=False,
