@@ -297,7 +297,7 @@ def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         return INTERRUPTED
     if report.failed:
         return 1
-    print(f"{report.total} {report.kind}: {', '.join(str(path) for path in options.output)}")
+    print(f"{report.total} of {report.total} {report.kind}: {', '.join(str(path) for path in options.output)}")
     return 0
 
 

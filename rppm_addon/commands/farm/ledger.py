@@ -44,7 +44,7 @@ class Ledger:
             FarmError: pictures lie there that were made with something else.
             PictureError: the folder cannot be written to.
         """
-        there = any(path.exists() for task in tasks for path in task.outputs)
+        there = any(path.is_file() for task in tasks for path in task.outputs)
         before = self._read()
         try:
             if overwrite:
