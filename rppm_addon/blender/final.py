@@ -18,6 +18,7 @@ from .export import ExportStopped, export_scene
 from .reports import RenderKind, RenderReport, record, record_error
 
 if TYPE_CHECKING:
+    from ..session.continuation import Continuation
     from ..session.results import Frame, Progress, RenderResult, RenderStatistics
 
 logger = logging.getLogger(__name__)
@@ -136,6 +137,10 @@ class _FinalJob(RenderJob):
     @property
     def snapshots(self) -> tuple[float, ...]:
         return self._observer.snapshots
+
+    @property
+    def continuation(self) -> "Continuation | None":
+        return self._observer.continuation
 
     def should_stop(self) -> bool:
         return self._engine.test_break() or self._observer.should_stop()

@@ -146,6 +146,7 @@ def _render(renderer: Any, conversation: _Conversation) -> "RenderResult":
         should_stop=conversation.stop.is_set,
         snapshots=conversation.ask(lambda: job.snapshots),
         on_snapshot=lambda seconds, frame: conversation.ask(job.on_snapshot, seconds, frame),
+        continuation=conversation.ask(lambda: job.continuation),
     )
 
 

@@ -14,6 +14,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
+from ..scene.errors import CheckpointError
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
 from .bands import bands_of
@@ -21,6 +22,7 @@ from .bandwidth import (
     EXPECTED_BY_RAY,
     EXPECTED_PHOTONS,
     fitted_wide_radius,
+    photons_found,
     radius_by_ray,
     radius_in_pixels,
     radius_limits,
@@ -48,6 +50,7 @@ from .resolve import Resolve
 from .shadow_catcher import ShadowCatcher
 from .splatting import Splatting, radiance_quantum
 from .stages import Stages
+from .state import RenderState
 
 log = logging.getLogger(__name__)
 
@@ -67,6 +70,9 @@ class ProgressivePhotonMapper:
         self._deep_cubemap = DeepCubemap(context, library)
         self._resolve = Resolve(context, library)
         self.iteration = 0
+        """The last that was run, counted from 1."""
+        self._left_out = 0
+        """So many iterations come before those of the film."""
         self.build_seconds = 0.0
         self._built: Scene | None = None
         """What stands on the device; None is nothing that a change could be told from."""
@@ -75,7 +81,8 @@ class ProgressivePhotonMapper:
         self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
         self._wide_radius = 0.0
-        self._diffused_photons: list[np.ndarray] = []
+        self._diffused_photons_found: float | None = None
+        """What photons_found says of the last iteration, if they were counted."""
 
     def build(self, scene: Scene) -> None:
         """Init(): take a scene, allocate its buffers and build the deep cubemap.
@@ -176,8 +183,8 @@ class ProgressivePhotonMapper:
     def _restart(self, scene: Scene) -> None:
         """Forget the picture: iterations begin anew with a scene."""
         self._release_views()
-        self.iteration = 0
-        self._diffused_photons = []
+        self.iteration = self._left_out = 0
+        self._diffused_photons_found = None
         self._wide_radius = 0.0
         self.scene = scene
 
@@ -208,7 +215,11 @@ class ProgressivePhotonMapper:
         An iteration that is not run to its end leaves the film unfinished: go on with update or build.
         """
         self.iteration += 1
+        if self.iteration > 1 and learns_after(self.iteration - 1):
+            with self.timers.stage("learning"):
+                self._learn()
         self._trace_photons()
+        diffused_photons: list[np.ndarray] = []
         yield
         for first_row, rows in self._bands:
             self._direct_camera_hits(first_row, rows)
@@ -226,12 +237,72 @@ class ProgressivePhotonMapper:
                 else:
                     self._indirect_splatting(segment)
                 yield
-            if self._gathers:
-                self._share_gathered_light()
-            self._update_film()
+            if self._enters_film:
+                if self._gathers:
+                    self._share_gathered_light()
+                self._update_film()
             if self._splatting.counting:
-                self._diffused_photons.append(self._splatting.diffused_photons(self._count))
+                diffused_photons.append(self._splatting.diffused_photons(self._count))
+        if self.iteration <= LEARNING_ITERATIONS:
+            with self.timers.stage("learning"):
+                self._tally(diffused_photons)
         yield
+
+    def leave_out(self, iterations: int) -> Iterator[None]:
+        """Begin after so many iterations, in steps, which are left out of the film: to be said before the first.
+
+        Of these, only those are run that later ones learn from.
+        """
+        self._left_out = iterations
+        while self.iteration < min(iterations, LEARNING_ITERATIONS):
+            yield from self.steps()
+        if iterations > LEARNING_ITERATIONS:
+            self.iteration = LEARNING_ITERATIONS + 1
+            self._learn()
+            self.iteration = iterations
+
+    @property
+    def iterations_in_film(self) -> int:
+        return max(self.iteration - self._left_out, 0)
+
+    @property
+    def _enters_film(self) -> bool:
+        return self.iteration > self._left_out
+
+    def state(self) -> RenderState:
+        """What iterations to come rest on; to be asked for between iterations."""
+        normal, depth = self.film.read_surface()
+        return RenderState(
+            left_out=self._left_out,
+            iteration=self.iteration,
+            wide_radius=self._wide_radius,
+            diffused_photons_found=self._diffused_photons_found,
+            radiance=self.film.read_radiance(),
+            normal=normal,
+            depth=depth,
+            surface_counts=self.film.read_surface_counts(),
+            tallies=self._emission.guide.read_tallies(),
+            learnt=self._emission.guide.learnt,
+        )
+
+    def resume(self, state: RenderState) -> None:
+        """Go on where a mapper was that took the same scene; to be said before the first iteration.
+
+        Raises CheckpointError when the state is none of this scene.
+        """
+        shape = (self.film.height, self.film.width)
+        if state.radiance.shape[:2] != shape:
+            raise CheckpointError(
+                f"the checkpoint has {state.radiance.shape[1]}x{state.radiance.shape[0]} pixels, "
+                f"not {shape[1]}x{shape[0]}; begin anew"
+            )
+        try:
+            self._emission.restore(state.tallies, state.learnt)
+        except ValueError as error:
+            raise CheckpointError(f"the checkpoint is none of this scene's: {error}; begin anew") from error
+        self.film.restore(state.radiance, state.normal, state.depth, state.surface_counts)
+        self._left_out, self.iteration = state.left_out, state.iteration
+        self._wide_radius, self._diffused_photons_found = state.wide_radius, state.diffused_photons_found
 
     @property
     def _gathers(self) -> bool:
@@ -337,9 +408,6 @@ class ProgressivePhotonMapper:
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
-        if 1 < self.iteration <= LEARNING_ITERATIONS + 1:
-            with self.timers.stage("learning"):
-                self._learn()
         self._photons.run(self._stages, self.iteration)
         # With next-event rays direct photons would count direct light twice.
         indirect_only = self.scene.settings.direct_light is DirectLightMode.RAYS
@@ -358,17 +426,21 @@ class ProgressivePhotonMapper:
             learns_after(self.iteration),
         )
 
+    def _tally(self, diffused_photons: list[np.ndarray]) -> None:
+        """Of what use the iteration's photons were, and how many diffused ones pixels found, (pixels,) by band."""
+        self._emission.tally(self._photons.photons.buffer, self._photons.segments)
+        self._diffused_photons_found = None
+        if diffused_photons:
+            self._diffused_photons_found = photons_found(np.concatenate(diffused_photons)[self._leaves_importon])
+
     def _learn(self) -> None:
-        """From the iteration before: where photons are of use, and how many diffused ones pixels find."""
-        before = self.iteration - 1
-        gain = self._emission.learn(self._photons.photons.buffer, self._photons.segments, before)
-        if self._diffused_photons:
-            shrunk = self._wide_radius * shrinkage(before, self.scene.settings.alpha)
-            counts = np.concatenate(self._diffused_photons)[self._leaves_importon]
-            # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, self._expected, counts) / math.sqrt(min(gain, 4.0))
-            self._wide_radius = min(fitted, self._widest_radius)
-            self._diffused_photons = []
+        """From the iterations before: where photons are of use, and how many diffused ones pixels find."""
+        gain = self._emission.learn()
+        shrunk = self._wide_radius * shrinkage(self.iteration - 1, self.scene.settings.alpha)
+        # Few photons make bold promises: the radius is at most halved before they are kept.
+        fitted = fitted_wide_radius(shrunk, self._expected, self._diffused_photons_found) / math.sqrt(min(gain, 4.0))
+        self._wide_radius = min(fitted, self._widest_radius)
+        self._diffused_photons_found = None
 
     def _roulette_seed(self) -> int:
         """Odd, so never 0, and another one for each iteration and seed."""
@@ -397,9 +469,10 @@ class ProgressivePhotonMapper:
                 self._importons.trace(self._stages, self._count)
         with self.timers.stage("camera resolve"):
             self._importons.resolve(self._stages, self._count, self.iteration, segment)
-        self.film.add_surface(
-            self._gbuffer.camera, self._importons, self._count, self._first_pixel, self.iteration, segment
-        )
+        if self._enters_film:
+            self.film.add_surface(
+                self._gbuffer.camera, self._importons, self._count, self._first_pixel, self.iterations_in_film, segment
+            )
 
     def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
         with self.timers.stage("camera scattering"):
@@ -419,7 +492,7 @@ class ProgressivePhotonMapper:
             )
 
     def _add_direct_light(self, segment: int) -> None:
-        if self.scene.settings.direct_light is not DirectLightMode.RAYS:
+        if self.scene.settings.direct_light is not DirectLightMode.RAYS or not self._enters_film:
             return
         with self.timers.stage("direct light"):
             self._direct_light.run(
@@ -483,7 +556,11 @@ class ProgressivePhotonMapper:
         """UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)."""
         with self.timers.stage("film"):
             self.film.add(
-                self._importons.radiances.buffer, self._splatting, self._count, self._first_pixel, self.iteration
+                self._importons.radiances.buffer,
+                self._splatting,
+                self._count,
+                self._first_pixel,
+                self.iterations_in_film,
             )
 
     def _release_views(self) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.pictures import is_whole, read_exr
+from rppm_addon.session.checkpoint_file import read_summary
 
 from .conftest import renders_below, start_rppm, wait_for
 
@@ -125,3 +126,47 @@ def test_wrong_calls_are_one_line(tmp_path, rppm, arguments, words):
     assert words in errors
     assert errors.count("rppm: ") == 1
     assert "Traceback" not in errors
+
+
+def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
+    whole, merged = tmp_path / "whole.exr", tmp_path / "merged.exr"
+    status, _, errors = rppm("render", saved_scene, "-o", whole, "--iterations", 40)
+    assert status == 0, errors
+    still = ("farm", saved_scene, "--iterations", 40, "--parts", 3, "-o", merged, "-o", tmp_path / "merged.png")
+    status, output, errors = rppm(*still, "--workers", 2)
+    assert status == 0, errors
+    assert output.count(" s on ") == 4  # three parts and the merge
+    single, farmed = read_exr(whole), read_exr(merged)
+    assert farmed.metadata["iterations"] == "40"
+    assert farmed.metadata["photons"] == single.metadata["photons"]
+    np.testing.assert_allclose(farmed.combined, single.combined, rtol=1e-6, atol=1e-7)
+    assert is_whole(tmp_path / "merged.png")
+    assert [path.name for path in (tmp_path / "merged.farm").iterdir()] == ["job.json"]
+
+    status, output, _ = rppm(*still)
+    assert (status, " s on " in output) == (0, False)
+    status, _, errors = rppm(*still[:4], "--parts", 4, "-o", merged)
+    assert status == 1
+    assert "other parts" in errors
+
+
+@pytest.mark.long
+def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_scene):
+    whole, merged, folder = tmp_path / "whole.exr", tmp_path / "merged.exr", tmp_path / "merged.farm"
+    still = ("farm", saved_scene, "--iterations", 1200, "--parts", 1, "-o", merged)
+    with start_rppm(*still) as process:
+        told = iter(process.stderr.readline, "")
+        assert any(re.search(r"iterations 0 to 1199 on \S+ [1-9]\d?%", line) for line in told)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert [path.name for path in folder.glob("iterations_*")] == ["iterations_0_1200.checkpoint.exr"]
+    begun = read_summary(folder / "iterations_0_1200.checkpoint.exr").iteration
+    assert 0 < begun < 1200
+
+    status, output, errors = rppm(*still)
+    assert status == 0, errors
+    assert output.count(" s on ") == 2
+    status, _, errors = rppm("render", saved_scene, "-o", whole, "--iterations", 1200)
+    assert status == 0, errors
+    np.testing.assert_allclose(read_exr(merged).combined, read_exr(whole).combined, rtol=1e-6, atol=1e-7)

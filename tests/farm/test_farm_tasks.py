@@ -41,17 +41,20 @@ def test_a_frame_is_a_call_of_rppm_render():
 
 @pytest.mark.parametrize(("iterations", "parts"), [(4000, 7), (5, 5), (9, 1)])
 def test_parts_are_all_iterations_once(iterations, parts):
-    tasks, merge = still_tasks(Path("/a.npz"), iterations, parts, Path("/o.exr"), Path("/o.farm"), ["--photons", "5"])
+    outputs = [Path("/o.exr"), Path("/o.png")]
+    tasks, merge = still_tasks(Path("/a.npz"), iterations, parts, outputs, Path("/o.farm"), ["--photons", "5"])
     ranges = [tuple(map(int, task.arguments[3].split(":"))) for task in tasks]
     assert [task.arguments[:3] for task in tasks] == [("render", "/a.npz", "--iterations-range")] * parts
-    assert [iteration for first, last in ranges for iteration in range(first, last)] == list(range(iterations))
-    assert max(last - first for first, last in ranges) - min(last - first for first, last in ranges) <= 1
-    assert merge.command(merge.outputs) == ["merge", *(str(task.outputs[0]) for task in tasks), "-o", "/o.exr"]
+    assert [iteration for first, end in ranges for iteration in range(first, end)] == list(range(iterations))
+    assert max(end - first for first, end in ranges) - min(end - first for first, end in ranges) <= 1
+    files = [str(task.outputs[0]) for task in tasks]
+    assert len({*files, *(task.arguments[5] for task in tasks)}) == 2 * parts  # parts and checkpoints
+    assert merge.command(merge.outputs) == ["merge", *files, "-o", "/o.exr", "-o", "/o.png"]
 
 
 def test_more_parts_than_iterations_are_refused():
     with pytest.raises(SettingsError, match="fewer"):
-        still_tasks(Path("/a.npz"), 3, 4, Path("/o.exr"), Path("/o.farm"), [])
+        still_tasks(Path("/a.npz"), 3, 4, [Path("/o.exr")], Path("/o.farm"), [])
 
 
 @pytest.mark.parametrize("suffix", [".exr", ".png"])

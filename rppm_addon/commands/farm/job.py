@@ -78,7 +78,7 @@ def run_farm(request: FarmRequest, bar: ProgressBar, should_stop: Callable[[], b
                 failed = dispatcher.run([merge], watch)
             finished = not failed and not should_stop()
     if merge and finished:
-        ledger.remove(tasks)
+        ledger.remove_parts()
     return FarmReport(kind, len(tasks), found, [task.name for task in failed], finished)
 
 
@@ -86,9 +86,7 @@ def _tasks(request: FarmRequest, ledger: Ledger) -> tuple[list[Task], Task | Non
     """The tasks of all frames, or of a still's parts and the one that merges them."""
     if request.frames:
         return animation_tasks(request.file, request.frames, request.outputs, request.options), None
-    return still_tasks(
-        request.file, request.iterations, request.parts, request.outputs[0], ledger.folder, request.options
-    )
+    return still_tasks(request.file, request.iterations, request.parts, request.outputs, ledger.folder, request.options)
 
 
 def _job(request: FarmRequest) -> dict[str, object]:

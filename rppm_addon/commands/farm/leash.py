@@ -14,8 +14,8 @@ import time
 
 from ...cli import INTERRUPTED, main
 
-BETWEEN_INTERRUPTS_SECONDS = 0.5
-"""The first asks the render to end, the second ends it wherever it is."""
+BETWEEN_INTERRUPTS_SECONDS = 5.0
+"""The first has the render write its checkpoint and end, the second ends it wherever it is."""
 PATIENCE_SECONDS = 10.0
 """Blender's own code may not hear interrupts; after so long the process ends regardless."""
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...pictures import PictureError
 from .errors import FarmError
-from .tasks import Task
+from .tasks import PART, Task
 
 ATTEMPT = "attempt_"
 """Begins the names of the folders in which renders are at work. A picture leaves its folder when it is whole."""
@@ -25,7 +25,7 @@ _CHANGES = {
 class Ledger:
     """Knows what the pictures that lie there were made with, and says which are still wanted.
 
-    For ``out/####.exr`` the folder is ``out/####.farm``: ``job.json``, parts of a still, and unfinished work.
+    For ``out/####.exr`` the folder is ``out/####.farm``: ``job.json``, parts of a still with their checkpoints, and unfinished work.
     """
 
     def __init__(self, output: Path) -> None:
@@ -47,10 +47,13 @@ class Ledger:
         there = any(path.is_file() for task in tasks for path in task.outputs)
         before = self._read()
         try:
-            if overwrite:
-                self.remove(tasks)
-            elif there and before != job:
+            if there and before != job and not overwrite:
                 raise FarmError(f"{self._strangers(before, job)}; add --overwrite to make them anew, or change -o")
+            if before != job or overwrite:
+                self.remove_parts()
+            if overwrite:
+                for path in (path for task in tasks for path in task.outputs):
+                    path.unlink(missing_ok=True)
             self.folder.mkdir(parents=True, exist_ok=True)
             self.remove_attempts()
             temporary = self._file.with_suffix(".new")
@@ -65,9 +68,9 @@ class Ledger:
         for path in self.folder.glob(f"{ATTEMPT}*"):
             shutil.rmtree(path, ignore_errors=True)
 
-    def remove(self, tasks: Sequence[Task]) -> None:
-        """Delete the pictures of tasks that have served their purpose."""
-        for path in (path for task in tasks for path in task.outputs):
+    def remove_parts(self) -> None:
+        """Delete the parts of a still and their checkpoints."""
+        for path in self.folder.glob(f"{PART}*"):
             path.unlink(missing_ok=True)
 
     def _read(self) -> dict[str, object] | None:

@@ -4,11 +4,15 @@
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from ...pictures import is_whole
 from ...scene.errors import SettingsError
 from ..frame_numbers import frame_path
+
+PART = "iterations_"
+"""Begins the names of the parts of a still and of their checkpoints."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +54,7 @@ def animation_tasks(file: Path, frames: Sequence[int], outputs: Sequence[Path], 
 
 
 def still_tasks(
-    file: Path, iterations: int, parts: int, output: Path, folder: Path, options: Sequence[str]
+    file: Path, iterations: int, parts: int, outputs: Sequence[Path], folder: Path, options: Sequence[str]
 ) -> tuple[list[Task], Task]:
     """A still in parts, each with its share of the iterations, and the task that merges them.
 
@@ -58,20 +62,18 @@ def still_tasks(
         file: the scene.
         iterations: of the whole picture.
         parts: how many; each has at least one iteration.
-        output: the EXR.
-        folder: where the parts go.
+        outputs: the pictures.
+        folder: where the parts go, and checkpoints with which another worker goes on with a lost one's part.
         options: of rppm render.
     """
     if parts > iterations:
         raise SettingsError(f"{iterations} iterations cannot be shared out in {parts} parts; ask for fewer --parts")
     marks = [iterations * part // parts for part in range(parts + 1)]
-    tasks = [
-        Task(
-            f"iterations {first} to {last - 1}",
-            ("render", str(file), "--iterations-range", f"{first}:{last}", *options),
-            (folder / f"iterations_{first}_{last}.exr",),
-        )
-        for first, last in zip(marks[:-1], marks[1:])
-    ]
-    merge = Task("merge", ("merge", *(str(task.outputs[0]) for task in tasks)), (output,))
+    tasks = []
+    for first, end in pairwise(marks):
+        part = folder / f"{PART}{first}_{end}.exr"
+        words = ["--iterations-range", f"{first}:{end}", "--checkpoint", str(part.with_suffix(".checkpoint.exr"))]
+        arguments = ("render", str(file), *words, "--resume", *options)
+        tasks.append(Task(f"iterations {first} to {end - 1}", arguments, (part,)))
+    merge = Task("merge", ("merge", *(str(task.outputs[0]) for task in tasks)), tuple(outputs))
     return tasks, merge
