@@ -25,7 +25,8 @@ _CHANGES = {
 class Ledger:
     """Knows what the pictures that lie there were made with, and says which are still wanted.
 
-    For ``out/####.exr`` the folder is ``out/####.farm``: ``job.json``, parts of a still with their checkpoints, and unfinished work.
+    For ``out/####.exr`` the folder is ``out/####.farm``: ``job.json``, parts of a still and their checkpoints,
+    unfinished work.
     """
 
     def __init__(self, output: Path) -> None:
