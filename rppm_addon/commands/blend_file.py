@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from ..scene import Scene
 from ..scene.errors import RppmError, SceneError
 from ..session.observers import RenderObserver, observing
@@ -33,6 +35,25 @@ class BlendRequest:
     resolution: tuple[int, int] | None = None
     values: list[tuple[str, str]] = field(default_factory=list)
     """Data paths and what to set them to."""
+
+    def as_plain(self) -> dict[str, object]:
+        """The request as JSON has it, for whoever is to open the same picture's scene later."""
+        return {
+            "path": str(self.path.resolve()),
+            "frame": self.frame,
+            "resolution": self.resolution and list(self.resolution),
+            "values": [list(value) for value in self.values],
+        }
+
+    @classmethod
+    def from_plain(cls, plain: dict[str, object]) -> "BlendRequest":
+        """The request that as_plain gave."""
+        return cls(
+            Path(plain["path"]),
+            plain["frame"],
+            plain["resolution"] and tuple(plain["resolution"]),
+            [tuple(value) for value in plain["values"]],
+        )
 
 
 @dataclass
@@ -148,7 +169,7 @@ def _prepare(bpy, request: BlendRequest) -> None:
     if scene.camera is None:
         raise SceneError(
             f'{request.path}: scene "{scene.name}" has no camera; add one in Blender and make it the active camera, '
-            'or name one: --set \'camera=objects["Camera"]\''
+            "or name one: --set 'camera=objects[\"Camera\"]'"
         )
 
 
@@ -181,6 +202,47 @@ def _save_png(bpy, path: Path) -> None:
             os.replace(temporary, path)
     except (OSError, RuntimeError) as error:
         raise BlenderError(f"{path} cannot be written ({_one_line(error)}); choose another place with -o") from error
+
+
+def save_view(request: BlendRequest, combined: np.ndarray, path: Path) -> None:
+    """Save a picture as PNG by the scene's view transform, as a render of the .blend would.
+
+    ``combined`` (H, W, 4) is Frame.combined. Raises RppmError, also when the file is not where it was.
+    """
+    with _opened(request, show_output=False) as (bpy, _):
+        scene = bpy.context.scene
+
+        class Shown(bpy.types.RenderEngine):
+            """Has the picture already: Blender's own way from a render's result to a file is the one to go."""
+
+            bl_idname = "RPPM_SHOWN"
+            bl_label = "RPPM (a picture that is there)"
+
+            def render(self, depsgraph: object) -> None:
+                result = self.begin_result(0, 0, combined.shape[1], combined.shape[0])
+                pixels = np.ascontiguousarray(combined, np.float32)
+                result.layers[0].passes["Combined"].rect.foreach_set(pixels.reshape(-1))
+                self.end_result(result)
+
+        _remove_contents(scene)  # nothing of it is looked at: nothing is to be evaluated
+        bpy.utils.register_class(Shown)
+        try:
+            scene.render.engine = Shown.bl_idname
+            bpy.ops.render.render()
+            _save_png(bpy, path)
+        finally:
+            scene.render.engine = ENGINE
+            bpy.utils.unregister_class(Shown)
+
+
+def _remove_contents(scene: object) -> None:
+    """Leave an opened scene nothing but its camera."""
+    collection, camera = scene.collection, scene.camera
+    for child in list(collection.children):
+        collection.children.unlink(child)
+    for linked in list(collection.objects):
+        collection.objects.unlink(linked)
+    collection.objects.link(camera)
 
 
 @contextlib.contextmanager

@@ -119,6 +119,6 @@ def expected_memory(width: int, height: int, photons: int, segments: int) -> Mem
             "gathered radiance": 48 * band,
             "diffused photons": 4 * band,
         },
-        "passes": {"film": 16 * pixels, "film surface": 16 * pixels},
+        "passes": {"film": 16 * pixels, "film surface": 16 * pixels, "film surface counts": 4 * pixels},
     }
     return reckon_memory(groups, pixels, photons, segments)

@@ -68,9 +68,8 @@ class Photons:
 
     @property
     def _buffers(self) -> tuple[GrowingBuffer, ...]:
-        return (
-            self.photons, self._paths, self._rays, self._hits, self._closures, self._departures, self._emitted, self._sums
-        )  # fmt: skip
+        paths = self._paths, self._rays, self._hits, self._closures, self._departures
+        return self.photons, *paths, self._emitted, self._sums
 
     @property
     def _blocks(self) -> dict[str, moderngl.Buffer]:
