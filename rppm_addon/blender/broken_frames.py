@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Frames of an animation that could not be rendered: the others go on, and no wrong picture stays.
 
-Blender ends an animation when an engine reports an error, and saves a black picture when it does not. So such a frame is
-reported as a warning, and its file is removed again: whoever looks for frames that are missing finds it.
+Blender ends an animation when an engine reports an error, and saves a black picture when it does not. So such a frame
+is reported as a warning, and its file is removed again: whoever looks for frames that are missing finds it.
 """
 
 import contextlib
