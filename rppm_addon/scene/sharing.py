@@ -78,9 +78,7 @@ def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Sc
         return after
     values: dict[str, object] = {}
     for name in LISTS:
-        values[name] = _shared_list(
-            getattr(before, name), getattr(after, name), name in _LARGE and not compare_large
-        )
+        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE and not compare_large)
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)
         values[name] = old if equal(old, new) else new

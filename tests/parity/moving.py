@@ -37,7 +37,7 @@ def blur(shutter: float = 1.0, position: str = "CENTER") -> None:
 
 
 def animate(owner: bpy.types.bpy_struct, name: str, *values: object) -> None:
-    """Values of a property at the frames around FRAME, the middle one at FRAME itself; straight from one to the next."""
+    """Values of a property at the frames around FRAME, the middle one at FRAME; straight from one to the next."""
     for frame, value in enumerate(values, FRAME - len(values) // 2):
         setattr(owner, name, value)
         owner.keyframe_insert(name, frame=frame)
