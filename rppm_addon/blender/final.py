@@ -100,8 +100,8 @@ def _check_size(engine: bpy.types.RenderEngine, render: bpy.types.RenderSettings
     wanted, laid_out = frame_size(render), (engine.resolution_x, engine.resolution_y)
     if wanted != laid_out:
         raise SceneError(
-            "the resolution has changed to {} x {} while Blender renders pictures of {} x {}; ".format(*wanted, *laid_out)
-            + "change it before the render begins, or render such frames one at a time"
+            f"the resolution has changed to {wanted[0]} x {wanted[1]} while Blender renders pictures of "
+            f"{laid_out[0]} x {laid_out[1]}; change it before the render begins, or render such frames one at a time"
         )
 
 
