@@ -20,7 +20,6 @@ from rppm_addon.session.observers import RenderObserver, observing
 from rppm_addon.session.renderer import read_frame
 from rppm_addon.session.results import Frame
 
-
 ITERATIONS = 3
 
 
