@@ -260,7 +260,7 @@ class _Pass:
         asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
         if all(attributes.keys() <= known for _, attributes in asked):
             return
-        slots = np.unique(np.minimum(mesh.triangle_slots, len(asked) - 1))
+        slots = np.flatnonzero(np.bincount(np.minimum(mesh.triangle_slots, len(asked) - 1)))
         for slot, attributes in asked:
             for attribute in attributes.keys() - known if slot in slots else ():
                 material = materials.materials[instance.materials[slot]].name
