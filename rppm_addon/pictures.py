@@ -75,7 +75,7 @@ def write_exr(
         "colorInteropID": "lin_rec709_scene",
         **{f"rppm.{name}": str(value) for name, value in (metadata or {}).items()},
     }
-    with _renamed_when_whole(path) as temporary:
+    with renamed_when_whole(path) as temporary:
         OpenEXR.File(header, channels).write(temporary)
 
 
@@ -154,7 +154,7 @@ def write_png(path: str | Path, pixels: np.ndarray) -> None:
         (b"IDAT", zlib.compress(rows.tobytes(), 6)),
         (b"IEND", b""),
     ]
-    with _renamed_when_whole(path) as temporary, open(temporary, "wb") as file:
+    with renamed_when_whole(path) as temporary, open(temporary, "wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n")
         for kind, data in chunks:
             file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
@@ -177,8 +177,8 @@ def _planes(array: np.ndarray) -> list[np.ndarray]:
 
 
 @contextlib.contextmanager
-def _renamed_when_whole(path: str | Path) -> Iterator[str]:
-    """A temporary name in the folder of ``path`` that becomes ``path`` when all went well."""
+def renamed_when_whole(path: str | Path) -> Iterator[str]:
+    """A temporary name in the folder of ``path`` that becomes ``path`` when all went well. Raises PictureError."""
     path = Path(path)
     temporary = None
     try:
@@ -191,7 +191,7 @@ def _renamed_when_whole(path: str | Path) -> Iterator[str]:
         os.chmod(temporary, 0o666 & ~mask)
         os.replace(temporary, path)
     except (OSError, RuntimeError) as error:
-        raise PictureError(f"{path} cannot be written ({error}); choose another place with -o") from error
+        raise PictureError(f"{path} cannot be written ({error}); choose another place") from error
     finally:
         if temporary is not None and os.path.exists(temporary):
             os.unlink(temporary)

@@ -19,7 +19,7 @@ from ..scene.scene import Scene
 from .emitters import Emitters
 from .environment import Environment
 from .geometry import Geometry
-from .guide import Guide, learns_after
+from .guide import Guide
 from .lamp_maps import LampMaps
 from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
@@ -110,7 +110,7 @@ class Emission:
         self._target_count = 0
         self.environment = Environment(context)
         self.lamp_maps = LampMaps(context)
-        self._guide = Guide(context, library)
+        self.guide = Guide(context, library)
         self._table = LIGHT.zeros(0)
         self._weights = np.zeros(0)
         self._names: list[str] = []
@@ -138,7 +138,7 @@ class Emission:
             "photon targets": self._targets.size,
             "environment": self.environment.memory_bytes,
             "lamp maps": self.lamp_maps.memory_bytes,
-            **self._guide.memory_bytes,
+            **self.guide.memory_bytes,
         }
 
     @property
@@ -233,12 +233,13 @@ class Emission:
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
-        self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
+        self._table, self._photons = table, scene.settings.photons
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
                 table[column] = kept[column]
             self._lights.upload(table)
         else:
+            self._weights = np.array(weights)
             self.begin()
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)
@@ -259,7 +260,7 @@ class Emission:
     def begin(self) -> None:
         """Forget what photons were good for, as before the first iteration."""
         self._share_photons(self._weights)
-        self._guide.build(self._table, self._photons)
+        self.guide.build(self._table, self._photons)
         self._lights.upload(self._table)
 
     def _share_photons(self, weights: np.ndarray) -> None:
@@ -267,20 +268,28 @@ class Emission:
         self._table["photon_count"] = counts
         self._table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
-    def learn(self, photons: moderngl.Buffer, segments: int, iteration: int) -> float:
-        """Of an iteration's splatted photons, learn where to send those of the next ones.
+    def tally(self, photons: moderngl.Buffer, segments: int) -> None:
+        """Count what an iteration's photons were good for, once they have been splatted."""
+        self.guide.tally(photons, self._photons, segments)
+
+    def learn(self) -> float:
+        """Of what has been tallied, learn where to send the photons of the next iterations.
 
         Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
         of use from now on.
         """
-        self._guide.tally(photons, self._photons, segments)
-        if not learns_after(iteration):
-            return 1.0
-        weights, useful = self._guide.learn()
+        weights, useful = self.guide.learn()
         before = self._table["photon_count"] @ useful[:, 0]
         self._share_photons(self._weights * weights)
         self._lights.upload(self._table)
         return float(self._table["photon_count"] @ useful[:, 1] / before)
+
+    def restore(self, tallies: np.ndarray, learnt: np.ndarray | None) -> None:
+        """Know what the guide of this scene's lights knew (Guide.restore, which tells what is raised)."""
+        weights = self.guide.restore(tallies, learnt)
+        if weights is not None:
+            self._share_photons(self._weights * weights)
+            self._lights.upload(self._table)
 
     def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
         """Emit ``count`` photons: their first rays and the flux they carry."""
@@ -289,7 +298,7 @@ class Emission:
             count,
             {
                 **self.buffers,
-                **self._guide.buffers,
+                **self.guide.buffers,
                 "Rays": rays,
                 "PhotonPaths": photon_paths,
                 "Targets": self._targets.buffer,
@@ -317,7 +326,7 @@ class Emission:
         self._lights.release()
         self.emitters.release()
         self._targets.release()
-        self._guide.release()
+        self.guide.release()
         self.lamp_maps.release()
         self.environment.release()
 

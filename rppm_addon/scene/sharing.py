@@ -68,17 +68,17 @@ def same_members(a: Sequence, b: Sequence) -> bool:
     return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
 
 
-def share(before: Scene | None, after: Scene) -> Scene:
+def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Scene:
     """The scene after a change, with the very objects of the scene before wherever they are equal.
 
-    Meshes and images, which are large, are taken for equal only if they are the same. When nothing differs the
-    result is the scene before.
+    Meshes and images, which are large, are taken for equal only if they are the same, unless ``compare_large`` says
+    that they have been exported anew. When nothing differs the result is the scene before.
     """
     if before is None:
         return after
     values: dict[str, object] = {}
     for name in LISTS:
-        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE)
+        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE and not compare_large)
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)
         values[name] = old if equal(old, new) else new

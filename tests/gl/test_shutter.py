@@ -6,10 +6,25 @@ import dataclasses
 import numpy as np
 import pytest
 import scenes
+from lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.shutter import moment
-from rppm_addon.scene import CameraMovement, Deformation, Movement, MovingScene, Scene, Shutter
+from rppm_addon.scene import (
+    Aperture,
+    Camera,
+    CameraMovement,
+    Deformation,
+    Instance,
+    Light,
+    LightKind,
+    Movement,
+    MovingScene,
+    RenderSettings,
+    Scene,
+    Shutter,
+)
+from rppm_addon.session.renderer import Renderer
 
 ENDS = np.array([0.0, 1.0])
 BALL = 5
@@ -126,3 +141,61 @@ def test_an_iteration_shows_the_scene_of_its_moment(mapper, other_mapper):
     depth = mapper.film.read_surface()[1][10:14, 10:14]
     expected = 3.6 + 1.0 - (np.array(times) - 0.5)
     assert expected.min() - 1e-4 <= depth.min() and depth.max() <= expected.max() + 1e-4
+
+
+@pytest.mark.long
+def test_a_caustic_is_the_mean_of_those_at_moments(renderer):
+    """Of a glass ball over a floor: brute force, one static picture for each part of the time."""
+    still = Scene(
+        Camera(scenes.looking((0, -3.5, 3.5), (0, 0, 0.2)), (-0.4, 0.4, -0.4, 0.4), 32, 32),
+        [scenes.rectangle("floor", (-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)), scenes.sphere("ball")],
+        [Instance(0, np.eye(4), [0]), Instance(1, scenes.placed(0, 0, 1.0, 0.4), [1])],
+        [scenes.diffuse(0.6, 0.6, 0.6), material("glass", Lobe(LobeKind.GLASS, ior=1.5))],
+        [Light("lamp", LightKind.SPOT, scenes.placed(0, 0, 4), np.full(3, 20.0), radius=0.4, spot_angle=1.0)],
+        settings=RenderSettings(photons=4096, photon_path_length=5, camera_path_length=3, final_gather=False),
+    )
+    scene = open_for(still, instances=[way(1, still.instances[1].matrix, 1.0, 0.3, 0.2)])
+    moving, parts = MovingScene(scene), 16
+    caustic = (slice(12, 20), slice(8, 20))
+    blurred = np.array([seeded(renderer, scene, seed, iterations=48)[caustic] for seed in range(3)])
+    at_moments = np.array(
+        [
+            [
+                seeded(renderer, moving.at((k + 0.5) / parts), 9 + parts * j + k, iterations=6)[caustic]
+                for k in range(parts)
+            ]
+            for j in range(2)
+        ]
+    ).mean(axis=1)
+    unmoved = seeded(renderer, still, 0, iterations=48)[caustic]
+    error = np.hypot(*(np.std(p.mean(axis=(1, 2, 3)), ddof=1) / len(p) ** 0.5 for p in (blurred, at_moments)))
+    energy, expected = blurred.mean(), at_moments.mean()
+    assert error < 0.02 * expected and abs(energy - expected) < 0.02 * expected + 3.0 * error
+    # As bright in all, but spread.
+    assert blurred.mean(axis=0).max() < 0.7 * unmoved.max()
+
+
+def seeded(renderer: Renderer, scene: Scene, seed: int, **settings: object) -> np.ndarray:
+    scene.settings = scene.settings.with_values(seed=seed, **settings)
+    return renderer.render(scene).frame.combined[..., :3].astype(np.float64)
+
+
+def test_a_lens_leaves_no_ghosts(renderer):
+    """A bright spot out of focus fills its disk after four iterations, rather than showing four of itself."""
+    glow = material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0)))
+    spot = scenes.rectangle("spot", (-0.02, 0, -0.02), (0.02, 0, -0.02), (0.02, 0, 0.02), (-0.02, 0, 0.02))
+    camera = Camera(scenes.looking((0, -4, 0), (0, 0, 0)), (-0.2, 0.2, -0.2, 0.2), 64, 64, aperture=Aperture(0.2, 2.0))
+    scene = Scene(
+        camera, [spot], [Instance(0, np.eye(4), [0])], [glow],
+        settings=RenderSettings(iterations=4, photons=64, camera_path_length=1, filter_width=0.0),
+    )  # fmt: skip
+    combined = seeded(renderer, scene, 0)[..., 0]
+    # Four copies of the spot, 1.6 pixels wide, would be four clusters of some nine pixels.
+    lit = combined > 0.0
+    rows, columns = np.nonzero(lit)
+    radius = 0.2 * (4.0 - 2.0) / 2.0 / 4.0 / (0.4 / 64)  # of the disk of confusion, pixels
+    assert (np.hypot(rows - 31.5, columns - 31.5) < radius + 2).all()
+    quadrants = [lit[:32, :32], lit[:32, 32:], lit[32:, :32], lit[32:, 32:]]
+    assert min(quadrant.sum() for quadrant in quadrants) > 0
+    neighbours = sum(np.roll(lit, shift, axis) for axis in (0, 1) for shift in (-1, 1))
+    assert neighbours[lit].mean() < 1.0, "lit pixels lie apart, not in clusters"

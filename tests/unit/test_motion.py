@@ -103,8 +103,8 @@ def test_meshes_lights_and_the_camera_move():
 
 def test_the_curve_says_when_light_passes():
     opening = Shutter(np.linspace(0.0, 2.0, 2049)[1::2])
-    for share in (0.0, 0.1, 0.5, 0.9, 1.0):
-        assert abs(opening.time_of(share) - share**0.5) < 1e-3
+    for passed in (0.0, 0.1, 0.5, 0.9, 1.0):
+        assert abs(opening.time_of(passed) - passed**0.5) < 1e-3
     assert Shutter(np.zeros(4)).time_of(0.3) == 0.3
 
 

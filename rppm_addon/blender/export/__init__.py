@@ -9,6 +9,7 @@ from ...scene import Scene
 from ...scene.errors import SceneError
 from .camera import export_camera
 from .context import ExportContext
+from .frames import FrameExporter
 from .motion import MotionExporter, is_blurred
 from .objects import ObjectExporter
 from .report import ExportStopped, Report
@@ -19,12 +20,14 @@ from .world import export_world
 
 __all__ = [
     "ExportStopped",
+    "FrameExporter",
     "SceneError",
     "SceneSync",
     "export_exposure",
     "export_scene",
     "export_settings",
     "export_view",
+    "is_blurred",
 ]
 
 

@@ -218,7 +218,7 @@ class MotionExporter:
 
 
 def _flags_of(source: bpy.types.Object) -> tuple[int, bool]:
-    """Steps, 0 for an object that is not blurred, and whether its shape is; Cycles' defaults where it is not enabled."""
+    """Steps, 0 for an object that is not blurred, and whether its shape is; defaults where Cycles is not enabled."""
     cycles = getattr(source, "cycles", None)
     if cycles is None:
         return 1, True

@@ -121,8 +121,8 @@ class ObjectExporter:
 
 
 Identity = tuple[int, ...]
-"""By what an instance or a light is known at other times: the session_uid of its object, or those of what multiplies the
-object and of the object, and Blender's persistent_id."""
+"""By what an instance or a light is known at other times: the session_uid of its object, or those of what multiplies
+the object and of the object, and Blender's persistent_id."""
 
 
 def identity_of(
@@ -281,7 +281,8 @@ class _Pass:
         Blender shows the mesh of such an object as an instance beside it, but not where particles
         or faces multiply the object.
         """
-        for original, matrix, shading, self._identity in self._unconverted:
+        for original, matrix, shading, identity in self._unconverted:
+            self._identity = identity
             if (original.as_pointer(), matrix.tobytes()) in self._converted:
                 continue
             source = original.evaluated_get(self._depsgraph)

@@ -42,11 +42,12 @@ def ball(surface: bpy.types.Material | None, where: dict = BALL, segments: int =
         rows.append([mesh.verts.new((radius * math.cos(turn), radius * math.sin(turn), z)) for turn in turns])
     rows.append([poles[1]] * segments)
     for ring, segment in itertools.product(range(rings), range(segments)):
-        corners = [(ring, segment), (ring, segment + 1), (ring + 1, segment + 1), (ring + 1, segment)]
+        # Cycles stretches hair along an edge of each triangle: corners 0 and 2, about as bmesh's sphere has it.
+        corners = [(ring + 1, segment), (ring, segment), (ring, segment + 1), (ring + 1, segment + 1)]
         if ring == 0:
-            del corners[1]
-        if ring == rings - 1:
             del corners[2]
+        if ring == rings - 1:
+            del corners[3]
         face = mesh.faces.new([rows[row][column % segments] for row, column in corners])
         for loop, (row, column) in zip(face.loops, corners, strict=True):
             at_pole = 0.5 if row in (0, rings) else 0.0
