@@ -388,6 +388,8 @@ def _still_keeper(
             )
         part = options.output[0]
         settings |= {"iterations": end - first, "time_limit": 0.0}
+    elif options.checkpoint in options.output:
+        raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
     request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)
     keeper = StillKeeper(request)
     if keeper.starts_over:
