@@ -11,19 +11,22 @@ import sys
 import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from .commands.checkpoints import MINUTES, CheckpointRequest, StillKeeper
 from .commands.data_paths import split_assignment
-from .commands.frame_numbers import frame_numbers
+from .commands.frame_numbers import check_places, frame_numbers, has_place, path_of_frame
 from .commands.interruption import Interruption
 from .commands.progress_bar import BarLogHandler, ProgressBar
 from .commands.recorder import RenderRecorder, RenderRequest, apply_settings
-from .pictures import PictureError, make_folder
+from .pictures import PictureError, make_folder, renamed_when_whole
 from .scene import RenderSettings, Scene
 from .scene.errors import RppmError, SettingsError
 from .scene.quantities import count_text
 from .scene.settings import CUBEMAP_COSTS
+
+if TYPE_CHECKING:
+    from .commands.blend_file import BlendRequest
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it, where nothing else is known."""
@@ -115,6 +118,12 @@ def _parser() -> argparse.ArgumentParser:
         help="render the iterations from A up to but not including B, the first being 0; PICTURE is then an .exr with "
         "this part of the still, for rppm merge",
     )
+    render.add_argument(
+        "--frames",
+        type=_frames,
+        metavar="A..B",
+        help="frames of a .blend file: 1..100, 1..100..5 (every fifth), 1,5,9; PICTURE has #### where the number goes",
+    )
     render.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of an iteration")
     render.add_argument(
         "--snapshots",
@@ -139,7 +148,10 @@ def _parser() -> argparse.ArgumentParser:
         help=f"from one checkpoint to the next; default: {MINUTES:g}",
     )
     render.add_argument(
-        "--resume", action="store_true", help="go on from the checkpoint, bit for bit; begin anew where it is missing"
+        "--resume",
+        action="store_true",
+        help="go on from the checkpoint, bit for bit, and begin anew where it is missing; of --frames leave out those "
+        "whose files are there",
     )
     render.set_defaults(run=_render)
 
@@ -231,7 +243,7 @@ def _add_farm(commands, scene: argparse.ArgumentParser, common: argparse.Argumen
         help="as in rppm render, with #### for the frame's number; may be repeated",
     )
     what = farm.add_mutually_exclusive_group(required=True)
-    what.add_argument("--frames", type=_frame_numbers, metavar="A..B", help="an animation: 1..100, 1..100..5 or 1,5,9")
+    what.add_argument("--frames", type=_frames, metavar="A..B", help="an animation: 1..100, 1..100..5 or 1,5,9")
     what.add_argument("--parts", type=_positive_integer, metavar="K", help="a still, its iterations in so many parts")
     limit = farm.add_mutually_exclusive_group()
     limit.add_argument(
@@ -258,13 +270,17 @@ def _render(options: argparse.Namespace, bar: ProgressBar) -> int:
         settings["iterations"] = options.iterations
     if options.photons is not None:
         settings["photons"] = options.photons
-    apply_settings(RenderSettings(), settings)  # a wrong value is better told now than after Blender's start
     is_blend = _is_blend(options.file)
     blend_request = None
     if is_blend:
         from .commands import blend_file
 
+        data_values += _values_of_frames(settings)
         blend_request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
+    apply_settings(RenderSettings(), settings)  # a wrong value is better told now than after Blender's start
+    if options.frames is not None:
+        return _render_frames(options, bar, blend_request, settings)
+    options.output = _outputs_of_still(options)
     keeper = _still_keeper(options, settings, {"blend": blend_request.as_plain()} if blend_request else {})
     for path in [*options.output, *([options.checkpoint] if options.checkpoint else [])]:
         make_folder(path)
@@ -294,12 +310,68 @@ def _render(options: argparse.Namespace, bar: ProgressBar) -> int:
     print(recorder.summary())
     if interruption.asked:
         resume = "; go on with --resume" if options.checkpoint else ""
-        done = (
-            "the files hold what was done until then" if recorder.files else "nothing was done yet that could be kept"
-        )
+        done = "nothing was done yet that could be kept"
+        if recorder.files:
+            done = "the files hold what was done until then"
         sys.stderr.write(f"rppm: interrupted; {done}{resume}\n")
         return interruption.status
     return 0
+
+
+def _render_frames(
+    options: argparse.Namespace, bar: ProgressBar, blend_request: "BlendRequest | None", settings: dict[str, object]
+) -> int:
+    from .commands.animation import Animation, AnimationRequest
+
+    if blend_request is None:
+        raise SettingsError("--frames needs a .blend file; a saved scene holds one frame")
+    if options.frame is not None:
+        raise SettingsError("--frame and --frames do not go together; leave one out")
+    if options.checkpoint is not None or options.iterations_range is not None:
+        raise SettingsError("--checkpoint and --iterations-range are for stills; name one frame with --frame")
+    check_places(options.output, options.frames)
+    for path in options.output:
+        make_folder(path)
+    seconds = options.seconds
+    if seconds is None and options.iterations is None and options.snapshots:
+        seconds = options.snapshots[-1]
+    render = RenderRequest(options.output, settings, seconds, options.snapshots)
+    request = AnimationRequest(blend_request, render, options.frames, options.resume)
+
+    def write_report(report: dict[str, object]) -> None:
+        if options.json is not None:
+            _write_json(options.json, report)
+
+    with Interruption() as interruption:
+        animation = Animation(request, bar, interruption, write_report)
+        animation.run(show_output=options.debug)
+    bar.clear()
+    if interruption.asked:
+        sys.stderr.write(
+            f"rppm: interrupted; {len(animation.rendered)} frames were rendered, the files are whole; go on with "
+            "--resume\n"
+        )
+        return interruption.status
+    if animation.failed:
+        frames = ", ".join(map(str, animation.failed))
+        sys.stderr.write(f"rppm: frames that could not be rendered: {frames}\n")
+        return 1
+    return 0
+
+
+def _outputs_of_still(options: argparse.Namespace) -> list[Path]:
+    """The files of a still, with its frame's number where they have a place for one."""
+    if options.frame is not None:
+        return [path_of_frame(path, options.frame) for path in options.output]
+    for path in options.output:
+        if has_place(path):
+            raise SettingsError(f"{path} has a place for a frame number; say which frame, or name it without #")
+    return options.output
+
+
+def _values_of_frames(settings: dict[str, object]) -> list[tuple[str, str]]:
+    """Take what makes the seed of a frame out of the settings, to be set in the .blend file."""
+    return [(f"rppm.{name}", str(settings.pop(name))) for name in ("seed", "animate_seed") if name in settings]
 
 
 def _still_keeper(
@@ -354,8 +426,11 @@ def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
     settings |= {
         name: getattr(options, name) for name in ("iterations", "photons") if getattr(options, name) is not None
     }
+    is_blend = _is_blend(options.file)
+    if is_blend:
+        _values_of_frames(settings)
     apply_settings(RenderSettings(), settings)
-    if not _is_blend(options.file):
+    if not is_blend:
         if options.frames:
             raise SettingsError("--frames needs a .blend file; a saved scene holds one frame")
         _refuse_blend_options(options, data_values)
@@ -365,6 +440,10 @@ def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         raise SettingsError("a still in --parts needs --iterations, those of all parts together")
     if options.scheduler and options.device:
         raise SettingsError("--device is for workers here; set RPPM_DEVICE where the workers of a scheduler start")
+    if options.parts:
+        options.output = _outputs_of_still(options)
+    else:
+        check_places(options.output, options.frames)
     for path in options.output:
         make_folder(path)
     names = ["frame", "photons", *(["iterations", "seconds"] if options.frames else [])]
@@ -534,10 +613,17 @@ def _refuse_blend_options(options: argparse.Namespace, data_values: list[tuple[s
 
 def _write_json(path: Path, report: dict[str, object]) -> None:
     make_folder(path)
+    text = json.dumps(report, indent=2) + "\n"
     try:
-        path.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+        if path.exists() and not path.is_file():  # such as /dev/stdout
+            path.write_text(text, encoding="utf-8")
+            return
+        with renamed_when_whole(path) as temporary:
+            Path(temporary).write_text(text, encoding="utf-8")
     except OSError as error:
         raise PictureError(f"{path} cannot be written ({error}); choose another place with --json") from error
+    except PictureError as error:
+        raise PictureError(str(error).replace("with -o", "with --json")) from error
 
 
 def _checked(convert: Callable, accept: Callable, what: str) -> Callable:
@@ -553,6 +639,13 @@ def _checked(convert: Callable, accept: Callable, what: str) -> Callable:
         return value
 
     return parse
+
+
+def _frames(text: str) -> tuple[int, ...]:
+    try:
+        return frame_numbers(text)
+    except SettingsError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _two_integers(text: str) -> tuple[int, int]:
@@ -571,7 +664,6 @@ def _numbers(text: str) -> tuple[float, ...]:
 
 _positive_integer = _checked(int, lambda value: value > 0, "a whole number above 0")
 _count = _checked(int, lambda value: value >= 0, "a whole number, or 0")
-_frame_numbers = _checked(frame_numbers, bool, "frames such as 1..100, 1..100..5 or 1,5,9")
 _positive_number = _checked(float, lambda value: 0.0 < value < 1e9, "a number of seconds above 0")
 _resolution = _checked(
     _two_integers, lambda size: all(1 <= side <= 65536 for side in size), "a resolution such as 640x480"

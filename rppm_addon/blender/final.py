@@ -13,8 +13,9 @@ from ..scene.errors import RppmError
 from ..session.observers import RenderObserver, current_observer
 from ..session.render_job import RenderJob
 from ..session.sessions import SessionKind
-from . import renderer_process, renderer_thread
-from .export import ExportStopped, export_scene
+from . import broken_frames, renderer_process, renderer_thread
+from .export import ExportStopped, FrameExporter, export_scene
+from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
 
 
 def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> None:
-    scene = export_scene(depsgraph, engine, observer.should_stop)
+    scene = _export(engine, depsgraph, observer)
     _report_warnings(engine, scene.warnings)
     if not observer.on_scene(scene):
         return
@@ -72,6 +73,23 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     if result.statistics.iterations and not engine.is_preview:
         record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
+
+
+def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> Scene:
+    if engine.is_preview:
+        return export_scene(depsgraph, engine, observer.should_stop)
+    if not depsgraph.scene.render.use_persistent_data:
+        return follow(export_scene(depsgraph, engine, observer.should_stop))
+    # Blender keeps engine and depsgraph, and tells what has changed.
+    if not hasattr(engine, "exporter"):
+        engine.exporter = FrameExporter()
+    return follow(
+        engine.exporter.export(
+            depsgraph,
+            lambda: engine.test_break() or observer.should_stop(),
+            lambda text: engine.update_stats("", text),
+        )
+    )
 
 
 def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
@@ -105,7 +123,10 @@ def _render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) 
 
 def _fail(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver, text: str) -> None:
     engine.error_set(text)
-    engine.report({"ERROR"}, text)
+    if engine.is_animation:
+        broken_frames.report(engine, depsgraph, text)
+    else:
+        engine.report({"ERROR"}, text)
     if not engine.is_preview:
         record_error(depsgraph.scene.session_uid, text)
     observer.on_error(text)

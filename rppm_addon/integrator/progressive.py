@@ -43,7 +43,7 @@ from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
 from .inspection import inspect_deep_cubemap
 from .memory import Memory, reckon_memory
-from .photons import Photons, flux_balance
+from .photons import Photons
 from .placement import cubemap_centres, radius_about
 from .primary_rays import PrimaryRays
 from .resolve import Resolve
@@ -80,6 +80,7 @@ class ProgressivePhotonMapper:
         """What was said when a part was built, which holds for scenes after it as well."""
         self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
+        self._views_are_for: tuple | None = None
         self._wide_radius = 0.0
         self._diffused_photons_found: float | None = None
         """What photons_found says of the last iteration, if they were counted."""
@@ -92,12 +93,12 @@ class ProgressivePhotonMapper:
         self._built = None
         self.update(scene)
 
-    def update(self, scene: Scene, keep_centre: bool = False) -> None:
+    def update(self, scene: Scene, stray: float = 0.0) -> None:
         """Take another scene like build, but build only what rests on members that are not the very objects of the
         scene before; so nobody may change those.
 
-        keep_centre: leave the deep cubemap where it is though the camera has moved, which changes no picture. Raises
-        as build does; what is built then is built anew the next time.
+        stray: how far from where the deep cubemap's centre should be it may stay, in radii of the scene, which changes
+        no picture. Raises as build does; what is built then is built anew the next time.
         """
         start = time.perf_counter()
         settings = scene.settings
@@ -123,8 +124,8 @@ class ProgressivePhotonMapper:
         else:
             self._emission.begin()
         wanted = next(cubemap_centres(scene, self._geometry))
-        moved = not keep_centre and not np.array_equal(wanted, self._wanted_centre)
-        if changes.geometry or changes.cubemap or moved:
+        strayed = not np.linalg.norm(wanted - self._wanted_centre) <= stray * self._geometry.radius
+        if changes.geometry or changes.cubemap or strayed:
             with self.timers.stage("deep cubemap"):
                 self._build_deep_cubemap()
         for text in itertools.chain(*self._warnings.values()):
@@ -145,6 +146,19 @@ class ProgressivePhotonMapper:
 
     def _open_views(self) -> None:
         """What the camera's side of an iteration needs, for the scene's camera and settings."""
+        camera, settings = self.scene.camera, self.scene.settings
+        if not self._views:
+            self._make_views()
+        self._stages = Stages(
+            settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
+        )
+        self._radius_scale = radius_in_pixels(settings, camera)
+        footprints = self._first_footprints()
+        self._leaves_importon = footprints > 0
+        self._limits = radius_limits(settings, footprints, self._geometry.radius)
+        self._widest_radius = widest_radius(footprints, self._geometry.bounds_low, self._geometry.bounds_high)
+
+    def _make_views(self) -> None:
         camera, settings = self.scene.camera, self.scene.settings
         width, height = camera.resolution
         self._bands = bands_of(width, height)
@@ -171,18 +185,12 @@ class ProgressivePhotonMapper:
             self._shadow_catcher,
             self.film,
         ]
-        self._stages = Stages(
-            settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
-        )
-        self._radius_scale = radius_in_pixels(settings, camera)
-        footprints = self._first_footprints()
-        self._leaves_importon = footprints > 0
-        self._limits = radius_limits(settings, footprints, self._geometry.radius)
-        self._widest_radius = widest_radius(footprints, self._geometry.bounds_low, self._geometry.bounds_high)
+        self._views_are_for = _views_for(self.scene)
 
     def _restart(self, scene: Scene) -> None:
         """Forget the picture: iterations begin anew with a scene."""
-        self._release_views()
+        if self._views_are_for != _views_for(scene):
+            self._release_views()
         self.iteration = self._left_out = 0
         self._diffused_photons_found = None
         self._wide_radius = 0.0
@@ -366,9 +374,8 @@ class ProgressivePhotonMapper:
         self.iteration = 0
 
     def flux_balance(self) -> dict[str, float]:
-        """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
-        photons = self._photons.read()
-        return flux_balance(self._photons.read_emitted(self._stages, self.iteration), photons)
+        """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (Photons.flux_balance)."""
+        return self._photons.flux_balance()
 
     @property
     def deep_cubemap(self) -> DeepCubemap:
@@ -567,9 +574,17 @@ class ProgressivePhotonMapper:
         for view in self._views:
             view.release()
         self._views = []
+        self._views_are_for = None
 
     def release(self) -> None:
         """Give all buffers back."""
         self._release_views()
         for part in (self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve):
             part.release()
+
+
+def _views_for(scene: Scene) -> tuple:
+    """What the sizes and kinds of the camera's side depend on: scenes that agree in it take over the buffers."""
+    camera, settings = scene.camera, scene.settings
+    catchers = any(instance.shadow_catcher for instance in scene.instances)
+    return is_rasterized(camera), camera.resolution, settings.photons, settings.photon_path_length, catchers

@@ -32,6 +32,7 @@ Record(
     resolution="uint",
     quanta="float",
     gathers="uint",
+    counting="uint",
 )
 
 _STORED_HEADER = 8
@@ -182,6 +183,8 @@ class Splatting:
             "resolution": self._resolution,
             "quanta": 1.0 / self.quantum,
             "gathers": gathers,
+            # Nothing plays roulette here, which what is counted is doubled for.
+            "counting": self.counting and not self._counting["roulette"],
         }
         stored = {"Photons": photons, "StoredPhotons": self._stored.buffer}
         self._insert.run(
@@ -210,7 +213,7 @@ class Splatting:
         )
         self._core_program.run(
             self.stored_count,
-            {**stored, "Core": self._core.buffer, **gathered},
+            {**stored, "Core": self._core.buffer, "DiffusedPhotons": self._diffused_photons.buffer, **gathered},
             {**cube, "count": self.stored_count},
         )
 

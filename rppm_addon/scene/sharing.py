@@ -20,7 +20,7 @@ def equal(a: object, b: object) -> bool:
     if type(a) is not type(b):
         return False
     if isinstance(a, np.ndarray):
-        return a.dtype == b.dtype and np.array_equal(a, b)
+        return a.dtype == b.dtype and a.shape == b.shape and np.array_equal(_bits(a), _bits(b))
     if dataclasses.is_dataclass(a):
         return all(equal(getattr(a, f.name), getattr(b, f.name)) for f in dataclasses.fields(a))
     if isinstance(a, list | tuple):
@@ -28,6 +28,11 @@ def equal(a: object, b: object) -> bool:
     if isinstance(a, dict):
         return a.keys() == b.keys() and all(equal(value, b[key]) for key, value in a.items())
     return a == b
+
+
+def _bits(array: np.ndarray) -> np.ndarray:
+    """Numbers as whole numbers: what is none equals itself, and the two zeros differ."""
+    return array.view(f"u{array.itemsize}") if array.dtype.kind == "f" and array.itemsize <= 8 else array
 
 
 def _shared_list(before: list, after: list, by_identity: bool) -> list:
@@ -47,17 +52,17 @@ def same_members(a: Sequence, b: Sequence) -> bool:
     return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
 
 
-def share(before: Scene | None, after: Scene) -> Scene:
+def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Scene:
     """The scene after a change, with the very objects of the scene before wherever they are equal.
 
-    Meshes and images, which are large, are taken for equal only if they are the same. When nothing differs the
-    result is the scene before.
+    Meshes and images, which are large, are taken for equal only if they are the same, unless ``compare_large`` says
+    that they have been exported anew. When nothing differs the result is the scene before.
     """
     if before is None:
         return after
     values: dict[str, object] = {}
     for name in LISTS:
-        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE)
+        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE and not compare_large)
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)
         values[name] = old if equal(old, new) else new

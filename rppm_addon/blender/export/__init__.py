@@ -9,6 +9,7 @@ from ...scene import Scene
 from ...scene.errors import SceneError
 from .camera import export_camera
 from .context import ExportContext
+from .frames import FrameExporter
 from .objects import ObjectExporter
 from .report import ExportStopped, Report
 from .settings import export_cubemap_centre, export_exposure, export_settings, preview_settings
@@ -18,6 +19,7 @@ from .world import export_world
 
 __all__ = [
     "ExportStopped",
+    "FrameExporter",
     "SceneError",
     "SceneSync",
     "export_exposure",

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...pictures import is_whole
 from ...scene.errors import SettingsError
-from ..frame_numbers import frame_path
+from ..frame_numbers import path_of_frame
 
 PART = "iterations_"
 """Begins the names of the parts of a still and of their checkpoints."""
@@ -42,12 +42,12 @@ class Task:
 
 
 def animation_tasks(file: Path, frames: Sequence[int], outputs: Sequence[Path], options: Sequence[str]) -> list[Task]:
-    """A task for each frame; ``options`` are those of rppm render. Raises SettingsError."""
+    """A task for each frame; ``options`` are those of rppm render."""
     return [
         Task(
             f"frame {frame}",
             ("render", str(file), "--frame", str(frame), *options),
-            tuple(frame_path(path, frame) for path in outputs),
+            tuple(path_of_frame(path, frame) for path in outputs),
         )
         for frame in frames
     ]
