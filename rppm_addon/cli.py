@@ -258,6 +258,13 @@ def _add_farm(commands, scene: argparse.ArgumentParser, common: argparse.Argumen
     )
     where.add_argument("--devices", metavar="N,N,...", help="a render at a time here on each of these EGL devices")
     farm.add_argument(
+        "--chunk",
+        type=_positive_integer,
+        default=1,
+        metavar="N",
+        help="render so many frames with one start of Blender, which loads the file and programs once; default: 1",
+    )
+    farm.add_argument(
         "--retries", type=_count, default=2, metavar="N", help="how often a frame or part is tried again; default: 2"
     )
     farm.add_argument("--overwrite", action="store_true", help="make pictures anew that are there")
@@ -454,6 +461,7 @@ def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         frames=options.frames or (),
         iterations=options.iterations or 0,
         parts=options.parts or 0,
+        chunk=options.chunk,
         scheduler=options.scheduler,
         devices=options.devices.split(",") if options.devices else [None] * options.workers,
         retries=options.retries,

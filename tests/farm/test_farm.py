@@ -88,18 +88,24 @@ def test_interrupting_a_farm_leaves_finished_work_only(tmp_path, blend_files):
     assert left_over(tmp_path) == []
 
 
-def test_a_failing_frame_is_told_and_the_others_are_made(tmp_path, rppm, blend_files):
-    (tmp_path / "0006.exr").mkdir()
-    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 0)
+def test_a_failing_frame_of_a_chunk_is_told_and_the_others_are_made(tmp_path, rppm, blend_files):
+    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 1, "--chunk", 3)
     status, output, errors = rppm("farm", blend_files[0], "--frames", "4..6", *options)
     assert status == 1
     assert "Traceback" not in errors
-    assert re.search(r"rppm: frame 5 failed on \S+: .*radius", errors, re.IGNORECASE)
-    assert f"rppm render {blend_files[0]} --frame 5 --iterations 2 -o {tmp_path}/0005.exr" in errors
+    assert re.search(r"rppm: frame 5 failed on \S+: frame 5: .*radius_maximum", errors)
+    assert f"rppm render {blend_files[0]} --iterations 2 --frames 5 -o '{tmp_path}/####.exr'" in errors
+    assert "1 of 3 frames failed: frame 5" in errors
+    assert [path.name for path in pictures(tmp_path)] == ["0004.exr", "0006.exr"]
+    assert all(map(is_whole, pictures(tmp_path)))
+
+
+def test_a_picture_that_cannot_be_put_in_place_is_told(tmp_path, rppm, blend_files):
+    (tmp_path / "0006.exr").mkdir()
+    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 0)
+    status, _, errors = rppm("farm", blend_files[0], "--frames", "6", *options)
+    assert status == 1
     assert re.search(r"rppm: frame 6 failed on \S+: .*0006.exr", errors)
-    assert "2 of 3 frames failed: frame 5, frame 6" in errors
-    assert output.count(" s on ") == 1
-    assert is_whole(tmp_path / "0004.exr")
 
 
 @pytest.mark.parametrize(
