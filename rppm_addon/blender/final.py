@@ -80,12 +80,13 @@ def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     if engine.is_preview:
         return export_scene(depsgraph, engine, observer.should_stop)
     _check_size(engine, depsgraph.scene.render)
-    # With persistent data Blender keeps engine and depsgraph, and tells what has changed. A shutter goes through frames
-    # in between, of which it tells as well.
     if not depsgraph.scene.render.use_persistent_data or is_blurred(depsgraph, engine):
+        # Going to other frames, a blurred render takes in what Blender would tell the next one of.
         engine.exporter = None
         return follow(export_scene(depsgraph, engine, observer.should_stop))
-    engine.exporter = getattr(engine, "exporter", None) or FrameExporter()
+    # Blender keeps engine and depsgraph, and tells what has changed.
+    if getattr(engine, "exporter", None) is None:
+        engine.exporter = FrameExporter()
     return follow(
         engine.exporter.export(
             depsgraph,

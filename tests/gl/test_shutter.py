@@ -15,7 +15,6 @@ from rppm_addon.scene import (
     Camera,
     CameraMovement,
     Deformation,
-    DirectLight,
     Instance,
     Light,
     LightKind,
