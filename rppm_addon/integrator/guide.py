@@ -146,8 +146,8 @@ class Guide:
     def learn(self) -> tuple[np.ndarray, np.ndarray]:
         """Choose cells by the tallies from now on.
 
-        Returns each light's mean root of the usefulness (in_steps), (n,), and the shares of its photons that should have been
-        of use before and will be from now on, (n, 2).
+        Returns each light's mean root of the usefulness (in_steps), (n,), and the shares of its photons that should
+        have been of use before and will be from now on, (n, 2).
         """
         before = self._probabilities
         weights, estimates = self._choose_by_tallies(self.read_tallies())
@@ -166,7 +166,7 @@ class Guide:
         return None if learnt is None else self._choose_by_tallies(learnt)[0]
 
     def _choose_by_tallies(self, tallies: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Each light's mean root of the usefulness, and the usefulness of its cells."""
+        """Each light's mean root of the usefulness (in_steps), and the usefulness of its cells."""
         self.learnt = tallies
         estimates, first = [], 0
         for cells in self._cells:
@@ -175,7 +175,7 @@ class Guide:
             estimates.append(usefulness(part[..., 0], part[..., 1]).ravel())
             first += count
         self._choose_by([probabilities(estimate) for estimate in estimates])
-        return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates
+        return in_steps(np.array([np.sqrt(estimate).mean() for estimate in estimates])), estimates
 
     def release(self) -> None:
         for buffer in (self._starts, self._tallies, self._photon_cells):
