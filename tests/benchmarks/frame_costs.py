@@ -203,7 +203,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=[64, 256], metavar="N", help="pixels a side (64 256)")
     parser.add_argument("--frames", type=int, default=12, metavar="N", help="frames that are timed (12)")
-    parser.add_argument("--held-frames", type=int, default=500, metavar="N", help="frames whose memory is watched (500)")
+    parser.add_argument("--held-frames", type=int, default=500, metavar="N", help="frames with memory watched (500)")
     parser.add_argument("--quick", action="store_true", help="a hundredth of the triangles, few frames")
     parser.add_argument("--output", type=Path, metavar="FILE.json", help="where the figures go")
     options = parser.parse_args(arguments)
