@@ -258,6 +258,13 @@ def _add_farm(commands, scene: argparse.ArgumentParser, common: argparse.Argumen
     )
     where.add_argument("--devices", metavar="N,N,...", help="a render at a time here on each of these EGL devices")
     farm.add_argument(
+        "--chunk",
+        type=_positive_integer,
+        default=1,
+        metavar="N",
+        help="render so many frames with one start of Blender, which loads the file and programs once; default: 1",
+    )
+    farm.add_argument(
         "--retries", type=_count, default=2, metavar="N", help="how often a frame or part is tried again; default: 2"
     )
     farm.add_argument("--overwrite", action="store_true", help="make pictures anew that are there")
@@ -388,6 +395,8 @@ def _still_keeper(
             )
         part = options.output[0]
         settings |= {"iterations": end - first, "time_limit": 0.0}
+    elif options.checkpoint in options.output:
+        raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
     request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)
     keeper = StillKeeper(request)
     if keeper.starts_over:
@@ -424,8 +433,11 @@ def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
     settings |= {
         name: getattr(options, name) for name in ("iterations", "photons") if getattr(options, name) is not None
     }
+    is_blend = _is_blend(options.file)
+    if is_blend:
+        _values_of_frames(settings)
     apply_settings(RenderSettings(), settings)
-    if not _is_blend(options.file):
+    if not is_blend:
         if options.frames:
             raise SettingsError("--frames needs a .blend file; a saved scene holds one frame")
         _refuse_blend_options(options, data_values)
@@ -435,6 +447,10 @@ def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         raise SettingsError("a still in --parts needs --iterations, those of all parts together")
     if options.scheduler and options.device:
         raise SettingsError("--device is for workers here; set RPPM_DEVICE where the workers of a scheduler start")
+    if options.parts:
+        options.output = _outputs_of_still(options)
+    else:
+        check_places(options.output, options.frames)
     for path in options.output:
         make_folder(path)
     names = ["frame", "photons", *(["iterations", "seconds"] if options.frames else [])]
@@ -445,6 +461,7 @@ def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         frames=options.frames or (),
         iterations=options.iterations or 0,
         parts=options.parts or 0,
+        chunk=options.chunk,
         scheduler=options.scheduler,
         devices=options.devices.split(",") if options.devices else [None] * options.workers,
         retries=options.retries,

@@ -11,7 +11,7 @@ from rppm_addon.session import renderer as session_renderer
 
 
 def resident_bytes() -> int:
-    """Memory of this process as the kernel counts it, once what only waits to be used again is given back."""
+    """Memory of this process that is in use, as the kernel counts it, without what only waits to be used again."""
     gc.collect()
     if hasattr(_libc, "malloc_trim"):
         _libc.malloc_trim(0)

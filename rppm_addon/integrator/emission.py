@@ -233,12 +233,13 @@ class Emission:
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
-        self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
+        self._table, self._photons = table, scene.settings.photons
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
                 table[column] = kept[column]
             self._lights.upload(table)
         else:
+            self._weights = np.array(weights)
             self.begin()
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)

@@ -331,16 +331,6 @@ def image_sequence(scene: bpy.types.Scene, folder: Path) -> None:
     screen.data.materials.append(shown)
 
 
-def resolution(scene: bpy.types.Scene, folder: Path) -> None:
-    """The picture's size changes, which Blender has no keyframes for."""
-    ball(scene, "Glass", 0.6, location=(0.0, 0.0, 0.7)).data.materials.append(glass())
-
-    def resize(changed: bpy.types.Scene, _: object) -> None:
-        changed.render.resolution_percentage = (50, 100, 75, 25)[changed.frame_current - FRAMES[0]]
-
-    bpy.app.handlers.frame_change_pre.append(resize)  # loading a file removes it
-
-
 def nothing(scene: bpy.types.Scene, folder: Path) -> None:
     """Nothing changes."""
     ball(scene, "Glass", 0.6, location=(0.0, 0.0, 0.7)).data.materials.append(glass())
@@ -348,5 +338,5 @@ def nothing(scene: bpy.types.Scene, folder: Path) -> None:
 
 ANIMATIONS = (
     wave, spotlight, rigid_bodies, armature, instances, topology, materials, visibility, cameras, image_sequence,
-    resolution, nothing,
+    nothing,
 )  # fmt: skip

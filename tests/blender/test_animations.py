@@ -7,8 +7,7 @@ So does what a viewport shows while an animation plays.
 import bpy
 import numpy as np
 import pytest
-from animations import ANIMATIONS, FRAMES, stage
-from PIL import Image as Picture
+from animations import ANIMATIONS, FRAMES, nothing, stage
 
 from rppm_addon.blender import engine as engine_module
 from rppm_addon.blender.export import SceneSync, export_scene
@@ -24,17 +23,16 @@ ITERATIONS = 3
 
 
 class Frames(RenderObserver):
-    """Keeps the pictures of an animation and the scenes that they are of."""
+    """Keeps the pictures of an animation, and what was reported."""
 
     def __init__(self):
-        self.frames, self.scenes = [], []
+        self.frames, self.errors = [], []
 
     def on_finish(self, result, scene):
         self.frames.append(result.frame)
-        self.scenes.append(scene)
 
     def on_error(self, text):
-        raise AssertionError(text)
+        self.errors.append(text)
 
 
 @pytest.fixture(scope="module")
@@ -107,11 +105,39 @@ def test_frames_are_those_rendered_alone(animated, animation, persistent, device
     assert len(seen.frames) == len(FRAMES)
     for number, frame in zip(FRAMES, seen.frames, strict=True):
         assert_same(frame, fresh_picture(fresh_scene(number, monkeypatch), device), f"frame {number}")
-        with Picture.open(tmp_path / f"frame_{number:04d}.png") as file:
-            assert file.size == frame.depth.shape[::-1]
     moves = [a.combined.shape != b.combined.shape or (a.combined != b.combined).any()
              for a, b in zip(seen.frames, seen.frames[1:])]  # fmt: skip
     assert all(moves) if animation.__name__ != "nothing" else not any(moves)
+
+
+SHARES = (50, 100, 75, 25)
+"""Resolution of FRAMES in percent."""
+
+
+def resize(scene: bpy.types.Scene, _: object) -> None:
+    scene.render.resolution_percentage = SHARES[scene.frame_current - FRAMES[0]]
+
+
+def test_renders_of_other_sizes_are_those_of_fresh_renderers(animated, device, tmp_path, monkeypatch):
+    """Blender has no keyframes for the resolution: a script changes it between renders."""
+    nothing(animated, tmp_path)
+    bpy.app.handlers.frame_change_pre.append(resize)  # loading a file removes it
+    with observing(Frames()) as seen:
+        for number in FRAMES:
+            animated.frame_set(number)
+            bpy.ops.render.render()
+    assert [frame.depth.shape for frame in seen.frames] == [(32 * share // 100,) * 2 for share in SHARES]
+    for number, frame in zip(FRAMES, seen.frames, strict=True):
+        assert_same(frame, fresh_picture(fresh_scene(number, monkeypatch), device), f"frame {number}")
+
+
+def test_an_animation_cannot_change_its_size(animated):
+    """Blender lays out all its frames as large as the first one."""
+    bpy.app.handlers.frame_change_pre.append(resize)
+    with observing(Frames()) as seen:
+        bpy.ops.render.render(animation=True)
+    assert [frame.depth.shape for frame in seen.frames] == [(32, 32)]
+    assert len(seen.errors) == len(FRAMES) - 1 and all("one at a time" in text for text in seen.errors)
 
 
 @each_animation

@@ -136,6 +136,7 @@ def test_what_cannot_be_gone_on_with_is_refused(tmp_path, rppm, two_floors, save
     checkpoint.write_bytes(before[:-100])
     assert "was cut short" in refusal(two_floors, *again, "--resume")
     assert "--resume needs a checkpoint" in refusal(two_floors, "--resume")
+    assert "both name" in refusal(two_floors, "--checkpoint", picture, "--iterations", 3)
 
 
 def test_parts_merge_into_the_picture_of_one_run(tmp_path, rppm, two_floors, uninterrupted):

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """rppm farm as users run it: local workers, real renders, and what is left when something dies."""
 
+import contextlib
+import json
 import re
 import signal
 
+import distributed
 import numpy as np
 import pytest
 
 from rppm_addon.pictures import is_whole, read_exr
 from rppm_addon.session.checkpoint_file import read_summary
 
-from .conftest import renders_below, start_rppm, wait_for
+from .conftest import ROOT, dask, renders_below, start_rppm, wait_for
 
 
 def farm(blend, folder, *options):
@@ -88,25 +91,24 @@ def test_interrupting_a_farm_leaves_finished_work_only(tmp_path, blend_files):
     assert left_over(tmp_path) == []
 
 
-def test_a_failing_frame_is_told_and_the_others_are_made(tmp_path, rppm, blend_files):
-    (tmp_path / "0002.exr").mkdir()
-    status, output, errors = rppm(
-        "farm", blend_files[0], "--frames", "1..3", "-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 1
-    )
+def test_a_failing_frame_of_a_chunk_is_told_and_the_others_are_made(tmp_path, rppm, blend_files):
+    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 1, "--chunk", 3)
+    status, output, errors = rppm("farm", blend_files[0], "--frames", "4..6", *options)
     assert status == 1
     assert "Traceback" not in errors
-    assert re.search(r"rppm: frame 2 failed on \S+: .*0002.exr", errors)
-    assert f"rppm render {blend_files[0]} --frame 2 --iterations 2 -o {tmp_path}/0002.exr" in errors
-    assert "1 of 3 frames failed: frame 2" in errors
-    assert output.count(" s on ") == 2
-    assert is_whole(tmp_path / "0001.exr")
-    assert is_whole(tmp_path / "0003.exr")
+    assert re.search(r"rppm: frame 5 failed on \S+: frame 5: .*radius_maximum", errors)
+    assert f"rppm render {blend_files[0]} --iterations 2 --frames 5 -o '{tmp_path}/####.exr'" in errors
+    assert "1 of 3 frames failed: frame 5" in errors
+    assert [path.name for path in pictures(tmp_path)] == ["0004.exr", "0006.exr"]
+    assert all(map(is_whole, pictures(tmp_path)))
 
 
-def test_what_rppm_says_is_told(tmp_path, rppm, blend_files):
-    status, _, errors = rppm("farm", blend_files[1], "--frames", "1", "-o", tmp_path / "####.exr", "--retries", 0)
+def test_a_picture_that_cannot_be_put_in_place_is_told(tmp_path, rppm, blend_files):
+    (tmp_path / "0006.exr").mkdir()
+    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 0)
+    status, _, errors = rppm("farm", blend_files[0], "--frames", "6", *options)
     assert status == 1
-    assert re.search(r"frame 1 failed on \S+: .*has no camera; add one", errors)
+    assert re.search(r"rppm: frame 6 failed on \S+: .*0006.exr", errors)
 
 
 @pytest.mark.parametrize(
@@ -118,6 +120,7 @@ def test_what_rppm_says_is_told(tmp_path, rppm, blend_files):
         (("a.blend", "--frames", "1..2", "--set", "rppm.iterations=0"), "iterations"),
         (("a.blend", "--frames", "1..2", "--scheduler", "tcp://h:1", "--device", "1"), "RPPM_DEVICE"),
         (("a.blend", "--frames", "1..2"), "does not exist"),
+        (("a.blend", "--frames", "1..2", "-o", "all.exr"), "####"),
     ],
 )
 def test_wrong_calls_are_one_line(tmp_path, rppm, arguments, words):
@@ -170,3 +173,55 @@ def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_s
     status, _, errors = rppm("render", saved_scene, "-o", whole, "--iterations", 1200)
     assert status == 0, errors
     np.testing.assert_allclose(read_exr(merged).combined, read_exr(whole).combined, rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.long
+def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
+    frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
+    with start_rppm("farm", blend_files[0], *frames, "--retries", 1) as process:
+        for _ in range(2):
+            render = wait_for("a render", lambda: [render for render in renders_below(process) if render.is_running()])
+            render[0].parent().kill()
+            wait_for("its end", lambda lost=render[0]: not lost.is_running())
+        output, errors = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "rppm: frame 1 failed: 2 workers were lost while they were at it" in errors
+    assert "1 of 2 frames failed: frame 1" in errors
+    assert output.count(" s on ") == 1
+    assert [path.name for path in pictures(tmp_path)] == ["0002.exr"]
+
+
+@pytest.mark.long
+def test_workers_of_a_scheduler_need_the_same_rppm(tmp_path, blend_files):
+    """By the commands of docs/farm.md; the scheduler has no RPPM, one worker has another."""
+    (tmp_path / "other" / "rppm_addon").mkdir(parents=True)
+    (tmp_path / "other" / "rppm_addon" / "__init__.py").write_text("")
+    (tmp_path / "nothing").mkdir()
+    (tmp_path / "nothing" / "rppm_addon.py").write_text("raise ImportError('no RPPM here')")
+    scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
+    scheduler += ["--scheduler-file", str(tmp_path / "scheduler.json")]
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(dask(tmp_path / "nothing", *scheduler))
+        wait_for("the scheduler", (tmp_path / "scheduler.json").exists)
+        address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
+        worker = ("worker", address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard", "--name")
+        stack.enter_context(dask(ROOT, *worker, "same"))
+        stack.enter_context(dask(tmp_path / "other", *worker, "other"))
+        with distributed.Client(address) as client:
+            wait_for("both workers", lambda: len(client.scheduler_info()["workers"]) == 2)
+        farm = ("farm", blend_files[0], "--frames", "1..2", "--scheduler", address)
+        with start_rppm(*farm, "--iterations", 2, "-o", tmp_path / "####.exr") as process:
+            output, errors = process.communicate(timeout=120)
+        assert process.returncode == 0, errors
+        assert re.search(r"workers must run the same RPPM .* left out: tcp\S+: No module named", errors)
+        assert len(re.findall(r"^frame \d: \d+\.\d s on \S+:same$", output, re.MULTILINE)) == 2
+        assert all(map(is_whole, pictures(tmp_path)))
+
+        with start_rppm(*farm, "--overwrite", "--seconds", 600, "-o", tmp_path / "####.exr") as process:
+            attempt = wait_for("a render", lambda: list((tmp_path / "####.farm").glob("attempt_*")))[0]
+            process.kill()
+        wait_for("the render to end", lambda: not attempt.exists())
+    with start_rppm(*farm, "--overwrite", "-o", tmp_path / "####.exr") as process:
+        _, errors = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "dask scheduler" in errors

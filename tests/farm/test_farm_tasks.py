@@ -11,7 +11,7 @@ import pytest
 
 from rppm_addon.commands.farm.errors import FarmError
 from rppm_addon.commands.farm.ledger import Ledger
-from rppm_addon.commands.farm.tasks import Task, animation_tasks, still_tasks
+from rppm_addon.commands.farm.tasks import Task, chunks, frame_tasks, still_tasks
 from rppm_addon.pictures import is_whole, write_exr, write_png
 from rppm_addon.scene.errors import SettingsError
 
@@ -26,17 +26,26 @@ def write_picture(path):
         write_png(path, (pixels * 255).astype(np.uint8))
 
 
-def test_a_frame_is_a_call_of_rppm_render():
-    (task, other) = animation_tasks(
-        Path("/in/a b.blend"), (7, 8), [Path("/out/x_####.exr"), Path("/out/x_##.png")], ["--photons", "5"]
+def test_frames_are_calls_of_rppm_render():
+    outputs = [Path("/out/x_####.exr"), Path("/out/x_##.png")]
+    tasks = frame_tasks(Path("/in/a b.blend"), (7, 8, 10), outputs, ["--photons", "5"])
+    assert tasks[0].files == (Path("/out/x_0007.exr"), Path("/out/x_07.png"))
+    assert tasks[0].command_line == (
+        "rppm render '/in/a b.blend' --photons 5 --frames 7 -o '/out/x_####.exr' -o '/out/x_##.png'"
     )
-    assert task.outputs == (Path("/out/x_0007.exr"), Path("/out/x_07.png"))
-    assert task.command_line == (
-        "rppm render '/in/a b.blend' --frame 7 --photons 5 -o /out/x_0007.exr -o /out/x_07.png"
-    )
-    assert other.name == "frame 8"
-    with pytest.raises(SettingsError, match="####"):
-        animation_tasks(Path("/a.blend"), (7,), [Path("/out/x.exr")], [])
+    assert [task.name for task in tasks] == ["frame 7", "frame 8", "frame 10"]
+    pair, rest = chunks(tasks, 2)
+    assert (pair.name, rest) == ("frames 7, 8", tasks[2])
+    assert pair.files == tasks[0].files + tasks[1].files
+    assert pair.command([Path("#.exr")])[-4:] == ["--frames", "7,8", "-o", "#.exr"]
+
+
+def test_what_is_done_of_a_chunk_is_left_out(tmp_path):
+    (chunk,) = chunks(frame_tasks(Path("/a.blend"), (1, 2, 3), [tmp_path / "#.exr"], []), 5)
+    assert chunk.rest == chunk
+    write_picture(tmp_path / "2.exr")
+    assert chunk.rest.frames == (1, 3)
+    assert [single.frames for single in chunk.rest.singles] == [(1,), (3,)]
 
 
 @pytest.mark.parametrize(("iterations", "parts"), [(4000, 7), (5, 5), (9, 1)])
@@ -80,7 +89,7 @@ def test_pictures_of_pillow_and_blender_are_whole(tmp_path):
 
 
 def test_the_ledger_leaves_what_is_whole_and_makes_anew_what_is_not(tmp_path):
-    tasks = [Task(f"frame {frame}", ("render",), (tmp_path / f"{frame}.exr",)) for frame in range(3)]
+    tasks = [Task(("render",), (tmp_path / f"{frame}.exr",)) for frame in range(3)]
     ledger = Ledger(tmp_path / "#.exr")
     assert ledger.open(JOB, tasks, overwrite=False) == tasks
     write_picture(tasks[0].outputs[0])
@@ -103,7 +112,7 @@ def test_the_ledger_leaves_what_is_whole_and_makes_anew_what_is_not(tmp_path):
     ],
 )
 def test_the_ledger_never_mixes_pictures_of_two_jobs(tmp_path, change, words):
-    task = Task("frame 1", ("render",), (tmp_path / "1.exr",))
+    task = Task(("render",), (tmp_path / "1.exr",))
     ledger = Ledger(tmp_path / "#.exr")
     ledger.open(JOB, [task], overwrite=False)
     assert ledger.open(JOB | change, [task], overwrite=False) == [task]  # nothing is there yet
@@ -114,7 +123,7 @@ def test_the_ledger_never_mixes_pictures_of_two_jobs(tmp_path, change, words):
 
 
 def test_pictures_of_unknown_origin_are_left_alone(tmp_path):
-    task = Task("frame 1", ("render",), (tmp_path / "1.exr",))
+    task = Task(("render",), (tmp_path / "1.exr",))
     write_picture(task.outputs[0])
     with pytest.raises(FarmError, match="does not tell"):
         Ledger(tmp_path / "#.exr").open(JOB, [task], overwrite=False)

@@ -105,7 +105,7 @@ def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mappe
     assert_same(part, whole, "iteration", "wide_radius", "tallies", "learnt")
     assert part.iterations_in_film == LAST - left_out
     radiance = (left_out * before.radiance.astype(np.float64) + (LAST - left_out) * part.radiance) / LAST
-    np.testing.assert_allclose(radiance, whole.radiance, rtol=2e-6, atol=1e-6 * whole.radiance.mean())
+    np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
     counts = before.surface_counts + part.surface_counts
     np.testing.assert_array_equal(counts, whole.surface_counts)
     sums = [state.normal * state.surface_counts[..., None].astype(np.float64) for state in (before, part)]

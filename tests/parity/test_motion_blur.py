@@ -5,14 +5,13 @@ Cycles' table of times ends at 255/256 of the shutter's time, so that what moves
 of a pixel behind; all scenes have some light in all of the picture, beside which that is little.
 """
 
-import math
-
 import bpy
 import numpy as np
 import pytest
+from moving import animate, blur
 
 from .comparison import CAUSTIC, CONVERGED, compare
-from .moving import FRAME, animate, blur, cycles_at_moments, render_blurred
+from .moments import cycles_at_moments, render_blurred
 from .scenes import (
     DIFFUSE,
     EMISSION,
@@ -195,15 +194,3 @@ def test_a_moving_glass_ball_and_its_caustic(renderer):
     animate(glass, "location", (-1.5, 0.0, 0.6), (0.0, 0.0, 0.6), (1.5, 0.3, 0.9))
     blur()
     compare_with_cycles(renderer, "caustic", 512, CAUSTIC, photons=16384, photon_path_length=8, camera_path_length=8)
-
-
-def test_frames_are_as_they_were(registered):
-    """A render leaves Blender at its frame."""
-    from .moving import taken_scene
-
-    stage()
-    animate(bar(), "location", (-1.2, 0.0, 0.6), (0.0, 0.2, 0.6), (1.2, 0.0, 0.9))
-    blur(position="START")
-    scene = taken_scene()
-    assert bpy.context.scene.frame_current == FRAME and bpy.context.scene.frame_subframe == 0.0
-    assert scene.shutter is not None and math.isclose(scene.shutter.instances[0].matrices[0][0, 3], 0.0, abs_tol=1e-6)

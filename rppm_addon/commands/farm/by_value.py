@@ -29,12 +29,12 @@ def identity_function(local: bool) -> Callable[[], str]:
 
 
 def perform_function() -> Callable:
-    """worker.perform on the Task of the first arguments."""
+    """worker.perform on the Task of these fields."""
 
-    def perform_task(name: str, arguments: tuple[str, ...], outputs: tuple[Path, ...], folder: Path):
+    def perform_task(folder: Path, **fields: object):
         from rppm_addon.commands.farm.tasks import Task
         from rppm_addon.commands.farm.worker import perform
 
-        return perform(Task(name, arguments, outputs), folder)
+        return perform(Task(**fields), folder)
 
     return perform_task

@@ -2,6 +2,7 @@
 """Gives tasks to workers until all are done or have failed."""
 
 import contextlib
+import dataclasses
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -17,7 +18,7 @@ from .errors import FarmError, TaskError
 from .ledger import Ledger
 from .tasks import Task
 from .watch import Watch
-from .worker import TOPIC, Outcome, tasks_at_work
+from .worker import TOPIC, tasks_at_work
 
 _POLL_SECONDS = 0.5
 _WORKER_SECONDS = 60.0
@@ -39,7 +40,7 @@ class Dispatcher:
         self._told = ""
 
     def run(self, tasks: Sequence[Task], watch: Watch) -> list[Task]:
-        """Do tasks and return those that failed; their errors are told when they come.
+        """Do tasks and return what failed of them; their errors are told when they come.
 
         Raises FarmError when the scheduler or all workers are gone. Returns early when asked to stop.
         """
@@ -70,11 +71,12 @@ class Dispatcher:
     def _submit(self, task: Task, workers: set[str]) -> None:
         future = self._client.submit(
             perform_function(),
-            *(task.name, task.arguments, task.outputs, self._ledger.folder),
+            self._ledger.folder,
             workers=sorted(workers),
             retries=self._retries,
             pure=False,
             key=f"rppm {task.name} {time.time_ns():x}",
+            **{field.name: getattr(task, field.name) for field in dataclasses.fields(task)},
         )
         self._running[future] = _Assignment(task, frozenset(workers))
 
@@ -99,11 +101,10 @@ class Dispatcher:
         for future in ended:
             task = self._running.pop(future).task
             error = future.exception()
-            outcome: Outcome | None = None if error else future.result()
-            watch.on_end(task.name, outcome)
+            watch.on_end(task, None if error else future.result())
             if error is not None:
-                failed.append(task)
-                self._tell(task, error, watch)
+                failed.append(task.rest)
+                self._tell(task.rest, error, watch)
         return failed
 
     def _tell(self, task: Task, error: BaseException, watch: Watch) -> None:

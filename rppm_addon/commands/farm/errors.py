@@ -11,12 +11,10 @@ class FarmError(RppmError):
 class TaskError(RppmError):
     """One task has failed. Travels from the worker to the farm, so that all it holds are plain values."""
 
-    def __init__(self, text: str, command: str = "", worker: str = "") -> None:
-        super().__init__(text, command, worker)
+    def __init__(self, text: str, worker: str) -> None:
+        super().__init__(text, worker)
         self.text = text
         """What the program said, or how it ended."""
-        self.command = command
-        """The command line with which a user sees the same."""
         self.worker = worker
 
     def __str__(self) -> str:

@@ -12,7 +12,7 @@ from .cluster import Cluster, local_cluster, remote_cluster
 from .dispatch import Dispatcher
 from .identity import identity
 from .ledger import Ledger
-from .tasks import Task, animation_tasks, still_tasks
+from .tasks import Task, chunks, frame_tasks, still_tasks
 from .watch import Watch
 
 
@@ -29,6 +29,8 @@ class FarmRequest:
     iterations: int = 0
     """Of a still, all parts together."""
     parts: int = 0
+    chunk: int = 1
+    """Frames that one start of Blender renders."""
     scheduler: str | None = None
     """Address; None starts workers here."""
     devices: Sequence[str | None] = (None,)
@@ -47,7 +49,7 @@ class FarmReport:
     found: int
     """There, and whole, before."""
     failed: list[str]
-    """Names of the tasks that failed."""
+    """Names of the frames or parts that failed."""
     finished: bool
     """Whether all pictures are there."""
 
@@ -73,19 +75,20 @@ def run_farm(request: FarmRequest, bar: ProgressBar, should_stop: Callable[[], b
         bar.show(0.0, "looking for workers")
         with _cluster(request, debug) as cluster:
             dispatcher = Dispatcher(cluster, ledger, request.retries, should_stop)
-            failed = dispatcher.run(missing_tasks, watch)
+            failed = dispatcher.run(missing_tasks if merge else chunks(missing_tasks, request.chunk), watch)
             if merge and not failed and not should_stop():
-                failed = dispatcher.run([merge], watch)
+                failed = dispatcher.run([merge], Watch(bar, "pictures", 1, 0))
             finished = not failed and not should_stop()
     if merge and finished:
         ledger.remove_parts()
-    return FarmReport(kind, len(tasks), found, [task.name for task in failed], finished)
+    names = [single.name for task in failed for single in task.singles]
+    return FarmReport(kind, len(tasks), found, names, finished)
 
 
 def _tasks(request: FarmRequest, ledger: Ledger) -> tuple[list[Task], Task | None]:
     """The tasks of all frames, or of a still's parts and the one that merges them."""
     if request.frames:
-        return animation_tasks(request.file, request.frames, request.outputs, request.options), None
+        return frame_tasks(request.file, request.frames, request.outputs, request.options), None
     return still_tasks(request.file, request.iterations, request.parts, request.outputs, ledger.folder, request.options)
 
 

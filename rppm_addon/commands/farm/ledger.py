@@ -45,7 +45,7 @@ class Ledger:
             FarmError: pictures lie there that were made with something else.
             PictureError: the folder cannot be written to.
         """
-        there = any(path.is_file() for task in tasks for path in task.outputs)
+        there = any(path.is_file() for task in tasks for path in task.files)
         before = self._read()
         try:
             if there and before != job and not overwrite:
@@ -53,7 +53,7 @@ class Ledger:
             if before != job or overwrite:
                 self.remove_parts()
             if overwrite:
-                for path in (path for task in tasks for path in task.outputs):
+                for path in (path for task in tasks for path in task.files):
                     path.unlink(missing_ok=True)
             self.folder.mkdir(parents=True, exist_ok=True)
             self.remove_attempts()

@@ -6,6 +6,7 @@ import threading
 import time
 
 from ..progress_bar import ProgressBar
+from .tasks import Task
 from .worker import Outcome
 
 _TASKS_SHOWN = 4
@@ -19,36 +20,36 @@ class Watch:
         self._bar, self._kind, self._total, self._done = bar, kind, total, done
         self._found = done
         self._start = time.monotonic()
-        self._running: dict[str, tuple[str, float]] = {}
-        """Worker and fraction by the task's name."""
+        self._running: dict[str, tuple[str, float, int]] = {}
+        """Worker, fraction and number of frames by the task's name."""
         self._lock = threading.Lock()
 
     def on_event(self, event: tuple[float, dict]) -> None:
         """An event of the workers' topic; called by a thread of the client."""
         _, message = event
         with self._lock:
-            self._running[message["task"]] = message["where"], message["fraction"]
+            self._running[message["task"]] = message["where"], message["fraction"], message["frames"]
 
-    def on_end(self, name: str, outcome: Outcome | None) -> None:
-        """A task is over: how it went, None when it failed."""
+    def on_end(self, task: Task, outcome: Outcome | None) -> None:
+        """A task is over: how it went, None when it failed; frames of it may be done."""
         with self._lock:
-            self._running.pop(name, None)
-        if outcome is None:
-            return
-        self._done += 1
-        if outcome.rendered:
-            self.say(f"{name}: {outcome.seconds:.1f} s on {outcome.worker}")
+            self._running.pop(task.name, None)
+        if outcome is not None and outcome.rendered:
+            self.say(f"{task.name}: {outcome.seconds:.1f} s on {outcome.worker}")
+        undone = 0 if outcome is not None else len(task.rest.frames) or 1
+        self._done += (len(task.frames) or 1) - undone
 
     def show(self) -> None:
         """Bring the bar up to date."""
         with self._lock:
             running = sorted(self._running.items())
-        under_way = sum(fraction for _, (_, fraction) in running)
+        frames_under_way = [fraction * frames for _, (_, fraction, frames) in running]
+        under_way = sum(frames_under_way)
         made, wanted = self._done - self._found + under_way, self._total - self._found
-        words = f"{self._done} of {self._total} {self._kind}"
+        words = f"{self._done + sum(map(int, frames_under_way))} of {self._total} {self._kind}"
         if made > 0.0:
             words += f", {_duration((time.monotonic() - self._start) * (wanted - made) / made)} to go"
-        shown = [f"{name} on {worker} {fraction:.0%}" for name, (worker, fraction) in running[:_TASKS_SHOWN]]
+        shown = [f"{name} on {worker} {fraction:.0%}" for name, (worker, fraction, _) in running[:_TASKS_SHOWN]]
         if len(running) > _TASKS_SHOWN:
             shown.append(f"{len(running) - _TASKS_SHOWN} more")
         self._bar.show((self._done + under_way) / self._total, "; ".join([words, *shown]))

@@ -26,7 +26,7 @@ from .ledger import ATTEMPT
 from .tasks import Task
 
 TOPIC = "rppm-farm"
-"""Of the events that tell how far a task is: task, where, fraction."""
+"""Of the events that tell how far a task is: task, where, fraction, frames."""
 _POLL_SECONDS = 0.2
 _LAST_LINES = 20
 _at_work = 0
@@ -45,7 +45,7 @@ class Outcome:
 
 
 def perform(task: Task, folder: Path) -> Outcome:
-    """Do a task, unless it is done: its pictures are made in a folder of their own and moved when all are whole.
+    """Do a task but for what is done: its pictures are made in a folder of their own and moved when they are whole.
 
     Args:
         task: what to do.
@@ -60,17 +60,18 @@ def perform(task: Task, folder: Path) -> Outcome:
         return Outcome(label, 0.0, False)
 
     def tell(fraction: float) -> None:
-        worker.log_event(TOPIC, {"task": task.name, "where": label, "fraction": fraction})
+        frames = len(task.frames) or 1
+        worker.log_event(TOPIC, {"task": task.name, "where": label, "fraction": fraction, "frames": frames})
 
     tell(0.0)
     start = time.perf_counter()
     with _counted():
         try:
-            failure = _make_pictures(task, folder, lambda: _wanted(worker), tell)
+            failure = _make_pictures(task.rest, folder, lambda: _wanted(worker), tell)
         except OSError as error:
             failure = f"{error}; all machines must see the pictures at the same path and may write there"
     if failure:
-        raise TaskError(failure, task.command_line, label)
+        raise TaskError(failure, label)
     return Outcome(label, time.perf_counter() - start, True)
 
 
@@ -92,17 +93,24 @@ def _counted() -> Iterator[None]:
 
 
 def _make_pictures(task: Task, folder: Path, wanted: Callable[[], bool], tell: Callable[[float], None]) -> str:
-    """Why there are no pictures; empty when they are there. Raises OSError."""
+    """Why not all pictures are there; empty when they are. Raises OSError."""
     with tempfile.TemporaryDirectory(prefix=ATTEMPT, dir=folder, ignore_cleanup_errors=True) as attempt:
-        pictures = [Path(attempt) / path.name for path in task.outputs]
-        with _Program(task.command(pictures), tell) as program:
+        with _Program(task.command([Path(attempt) / path.name for path in task.outputs]), tell) as program:
             while program.running:
                 if not wanted():
                     return "stopped"
-        if not program.failure:
-            for picture, path in zip(pictures, task.outputs):
-                os.replace(picture, path)
+                if task.frames:  # of these the program writes whole ones only, of parts also what was interrupted
+                    _put_in_place(task, Path(attempt))
+        if task.frames or not program.failure:
+            _put_in_place(task, Path(attempt))
     return program.failure
+
+
+def _put_in_place(task: Task, attempt: Path) -> None:
+    """Move the pictures that are there to where they belong."""
+    for path in task.files:
+        if (attempt / path.name).is_file():
+            os.replace(attempt / path.name, path)
 
 
 class _Program:
@@ -155,8 +163,9 @@ class _Program:
         if status == 0:
             return ""
         told = [line.removeprefix("rppm: ") for line in self._lines if line.startswith("rppm: ")]
+        frames = [line for line in told if line.startswith("frame ")]
         if told and status > 0:
-            return told[-1]
+            return "\n".join(frames or told[-1:])
         how = f"exit status {status}"
         if status < 0:
             how = f"ended by {signal.Signals(-status).name}"

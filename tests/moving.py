@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender scenes in which things move, and how to render them blurred and at moments."""
+"""Blender scenes in which things move."""
 
 import bpy
-import numpy as np
 
 from rppm_addon.scene import Scene
 from rppm_addon.session.observers import RenderObserver, observing
-from rppm_addon.session.renderer import Renderer
-
-from .scenes import render_cycles
 
 FRAME = 10
 
@@ -58,28 +54,4 @@ def taken_scene() -> Scene:
     finally:
         scene.render.engine = engine
     assert taker.scene is not None, taker.error
-    assert taker.scene.warnings == []
     return taker.scene
-
-
-def render_blurred(renderer: Renderer, seeds: int = 3, **settings: object) -> np.ndarray:
-    """(seeds, height, width, 3) float64 pictures by RPPM, row 0 at the bottom."""
-    scene = taken_scene()
-    assert scene.shutter is not None
-    pictures = []
-    for seed in range(seeds):
-        scene.settings = scene.settings.with_values(seed=seed, **settings)
-        pictures.append(renderer.render(scene).frame.combined[..., :3].astype(np.float64))
-    return np.array(pictures)
-
-
-def cycles_at_moments(samples: int, times: np.ndarray, seeds: int = 2) -> np.ndarray:
-    """Brute force: the mean of Cycles' pictures without blur, at times in frames from FRAME."""
-    scene = bpy.context.scene
-    scene.render.use_motion_blur = False
-    pictures = []
-    for time in times:
-        whole = int(np.floor(FRAME + time))
-        scene.frame_set(whole, subframe=FRAME + time - whole)
-        pictures.append(render_cycles(samples, seeds))
-    return np.mean(pictures, axis=0)
