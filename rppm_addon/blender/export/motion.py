@@ -15,7 +15,7 @@ from ...scene import CameraMovement, Deformation, Instance, Light, Mesh, Movemen
 from .camera import camera_pose, export_camera
 from .context import ExportContext
 from .matrices import usable_matrices
-from .meshes import read_shape
+from .meshes import read_shape, read_velocities
 from .objects import Identity, ObjectExporter, Placed, identity_of
 from .sync import read_edits
 
@@ -64,6 +64,7 @@ class MotionExporter:
         self._cameras: dict[float, tuple[np.ndarray, tuple[float, ...]]] = {}
         self._steps: dict[Identity, int] = {}
         self._steps_of_shapes: dict[int, int] = {}
+        self._with_velocities: set[int] = set()
 
     def run(self, scene: Scene, objects: ObjectExporter, placed: Placed) -> Placed:
         """Give a scene its shutter, and what moves the places of the middle of the shutter's time.
@@ -82,6 +83,7 @@ class MotionExporter:
                 placed = self._go_to_middle(middle, scene, objects)
             meshes = list(objects.meshes.meshes)
             bases = {placed.identities[id(instance)]: instance.mesh for instance in placed.instances}
+            self._follow_velocities(bases, meshes, length * render.fps_base / render.fps)
             changed: set[int] = set()
             for time in times:
                 self._context.report.progress("Exporting what moves")
@@ -130,11 +132,33 @@ class MotionExporter:
             if np.isfinite(matrix).all():
                 self._matrices.setdefault(identity, {})[time] = matrix
             place = bases.get(identity)
-            if place is None or not deforms or source.type != "MESH":
+            if place is None or not deforms or source.type != "MESH" or place in self._with_velocities:
                 continue
             if time not in self._shapes.get(place, {}) and changed & set(identity[:2]):
                 self._shapes.setdefault(place, {})[time] = _shape(source.data, meshes[place])
                 self._steps_of_shapes[place] = steps
+
+    def _follow_velocities(self, bases: dict[Identity, int], meshes: list[Mesh], seconds: float) -> None:
+        """Meshes that say how fast their vertices are go straight on: their faces may be others at other times."""
+        known: set[int] = set()
+        for instance in self._depsgraph.object_instances:
+            source = instance.object
+            owner = instance.parent if instance.is_instance else source
+            identity = identity_of(instance, source.original, owner.original)
+            place = bases.get(identity)
+            if place is None or place in known or source.type != "MESH":
+                continue
+            known.add(place)
+            steps, deforms = self._flags_for(identity, source, owner)
+            velocities = read_velocities(source.data) if steps and deforms else None
+            if velocities is not None:
+                mesh, way = meshes[place], velocities * np.float32(0.5 * seconds)
+                self._shapes[place] = {
+                    0.0: (mesh.positions - way, mesh.corner_normals),
+                    1.0: (mesh.positions + way, mesh.corner_normals),
+                }
+                self._steps_of_shapes[place] = 1
+                self._with_velocities.add(place)
 
     def _flags_for(self, identity: Identity, source: bpy.types.Object, owner: bpy.types.Object) -> tuple[int, bool]:
         """Steps and whether shapes are blurred, by what the object and what multiplies it say."""
@@ -227,6 +251,6 @@ def _flags_of(source: bpy.types.Object) -> tuple[int, bool]:
 
 def _shape(mesh: bpy.types.Mesh, middle: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
     """Positions and corner normals of a mesh at another time; None if it is another mesh."""
-    positions, corner_vertices, corner_normals = read_shape(mesh)
+    positions, corner_vertices, corner_normals = read_shape(mesh, middle)
     same = len(positions) == len(middle.positions) and np.array_equal(corner_vertices, middle.corner_vertices)
     return (positions, corner_normals) if same and np.isfinite(positions).all() else None
