@@ -248,6 +248,21 @@ def test_lights_and_cameras_move(scene):
     assert taken_scene().shutter is None
 
 
+@pytest.mark.parametrize("position", ["START", "END"])
+def test_the_camera_is_that_of_the_frame(quad, position):
+    """Though markers switch to others before and after it."""
+    scene = bpy.context.scene
+    cameras = [scene.camera]
+    for number in (1, 2):
+        cameras.append(add_object(scene, f"Camera {number}", scene.camera.data, location=(0.0, float(number), 5.0)))
+    for number, camera in enumerate(cameras):
+        scene.timeline_markers.new(camera.name, frame=FRAME - 1 + number).camera = camera
+    blur(2.0, position)
+    taken = taken_scene()
+    assert taken.camera.matrix[1, 3] == 1.0 and taken.shutter.camera is None
+    assert scene.camera == cameras[1]
+
+
 def test_materials_are_those_of_the_frame(quad):
     material = new_material()
     shader = add_node(material.node_tree, "ShaderNodeBsdfDiffuse")

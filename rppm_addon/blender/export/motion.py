@@ -27,12 +27,12 @@ _MIDDLES = {"START": 0.5, "CENTER": 0.0, "END": -0.5}
 
 def is_blurred(depsgraph: bpy.types.Depsgraph, engine: bpy.types.RenderEngine | None) -> bool:
     """Whether a render blurs what moves. Only an engine in a render may go to other frames."""
-    render = depsgraph.scene.render
+    render = depsgraph.scene_eval.render
     return (
         engine is not None
         and not engine.is_preview
         and render.use_motion_blur
-        and getattr(depsgraph.view_layer, "use_motion_blur", True)  # Blender 5
+        and getattr(depsgraph.view_layer_eval, "use_motion_blur", True)  # Blender 5
         and render.motion_blur_shutter > 0.0
     )
 
@@ -73,17 +73,17 @@ class MotionExporter:
         """
         source = self._depsgraph.scene_eval
         frame, render = source.frame_current_final, source.render
-        length = render.motion_blur_shutter
+        length, seconds = render.motion_blur_shutter, render.motion_blur_shutter * render.fps_base / render.fps
         middle = frame + _MIDDLES[render.motion_blur_position] * length
-        curve = shutter_curve(self._depsgraph.scene.render.motion_blur_shutter_curve)
-        camera = self._depsgraph.scene.camera
+        curve = shutter_curve(render.motion_blur_shutter_curve)
+        camera = source.camera.original  # markers may switch to another one in between
         times = self._all_times()
         try:
             if middle != frame:
-                placed = self._go_to_middle(middle, scene, objects)
+                placed = self._go_to_middle(middle, scene, objects, camera)
             meshes = list(objects.meshes.meshes)
             bases = {placed.identities[id(instance)]: instance.mesh for instance in placed.instances}
-            self._follow_velocities(bases, meshes, length * render.fps_base / render.fps)
+            self._follow_velocities(bases, meshes, seconds)
             changed: set[int] = set()
             for time in times:
                 self._context.report.progress("Exporting what moves")
@@ -102,7 +102,7 @@ class MotionExporter:
         whole = math.floor(frame)
         self._engine.frame_set(whole, frame - whole)
 
-    def _go_to_middle(self, middle: float, scene: Scene, objects: ObjectExporter) -> Placed:
+    def _go_to_middle(self, middle: float, scene: Scene, objects: ObjectExporter, camera: bpy.types.Object) -> Placed:
         """Materials and images stay those of the frame."""
         self._go_to(middle)
         images = self._context.images
@@ -110,7 +110,8 @@ class MotionExporter:
         self._context.read_from(self._depsgraph)
         images.frame = of_frame
         objects.meshes.forget(read_edits(self._depsgraph).shapes)
-        scene.camera = export_camera(self._depsgraph.scene_eval, self._depsgraph, self._context.report)
+        source, report = self._depsgraph.scene_eval, self._context.report
+        scene.camera = export_camera(source, self._depsgraph, report, camera)
         return objects.export(self._depsgraph, identify=True)
 
     def _all_times(self) -> list[float]:
@@ -120,11 +121,7 @@ class MotionExporter:
 
     def _look_around(self, time: float, bases: dict[Identity, int], meshes: list[Mesh], changed: set[int]) -> None:
         """Note where everything is, and the shape of what has changed."""
-        for instance in self._depsgraph.object_instances:
-            source = instance.object
-            owner = instance.parent if instance.is_instance else source
-            identity = identity_of(instance, source.original, owner.original)
-            steps, deforms = self._flags_for(identity, source, owner)
+        for identity, instance, source, steps, deforms in self._instances():
             self._steps[identity] = steps
             if steps == 0 or time not in step_times(steps):
                 continue
@@ -141,15 +138,11 @@ class MotionExporter:
     def _follow_velocities(self, bases: dict[Identity, int], meshes: list[Mesh], seconds: float) -> None:
         """Meshes that say how fast their vertices are go straight on: their faces may be others at other times."""
         known: set[int] = set()
-        for instance in self._depsgraph.object_instances:
-            source = instance.object
-            owner = instance.parent if instance.is_instance else source
-            identity = identity_of(instance, source.original, owner.original)
+        for identity, _, source, steps, deforms in self._instances():
             place = bases.get(identity)
             if place is None or place in known or source.type != "MESH":
                 continue
             known.add(place)
-            steps, deforms = self._flags_for(identity, source, owner)
             velocities = read_velocities(source.data) if steps and deforms else None
             if velocities is not None:
                 mesh, way = meshes[place], velocities * np.float32(0.5 * seconds)
@@ -159,6 +152,16 @@ class MotionExporter:
                 }
                 self._steps_of_shapes[place] = 1
                 self._with_velocities.add(place)
+
+    def _instances(
+        self,
+    ) -> Iterator[tuple[Identity, bpy.types.DepsgraphObjectInstance, bpy.types.Object, int, bool]]:
+        """All that there is now, each with its object and what _flags_for gives; valid until the next one only."""
+        for instance in self._depsgraph.object_instances:
+            source = instance.object
+            owner = instance.parent if instance.is_instance else source
+            identity = identity_of(instance, source.original, owner.original)
+            yield identity, instance, source, *self._flags_for(identity, source, owner)
 
     def _flags_for(self, identity: Identity, source: bpy.types.Object, owner: bpy.types.Object) -> tuple[int, bool]:
         """Steps and whether shapes are blurred, by what the object and what multiplies it say."""
