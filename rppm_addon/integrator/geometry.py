@@ -173,7 +173,8 @@ class Geometry:
                 entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
             entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
             slots = _fill(entries, instances, len(scene.materials), default_material)
-        self._enclose(instances, entries["first_triangle"].tolist(), [bounds[place] for place in which], swept)
+        corners = np.array([box_corners(*(box or np.zeros((2, 3)))) for box in bounds]).reshape(-1, 3, 8)
+        self._enclose(instances, entries["first_triangle"].tolist(), corners[which], swept)
         self._upload_meshes(meshes)
         self._inputs["Instances"].upload(entries)
         self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
@@ -199,16 +200,15 @@ class Geometry:
         self,
         instances: list[Instance],
         first_triangles: list[int],
-        boxes: list[tuple[np.ndarray, np.ndarray]],
+        corners: np.ndarray,
         swept: tuple[np.ndarray, np.ndarray] | None,
     ) -> None:
-        """List the placements of instances, whose meshes lie in these boxes, and enclose them."""
+        """List the placements of instances, and enclose them. corners: (n, 3, 8) of the boxes that their meshes lie in."""
         low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
         self.placements = []
         if instances:
-            corners = {id(box): box_corners(*box) for box in boxes}
             matrices = np.array([instance.matrix for instance in instances], np.float64)
-            world = matrices[:, :3, :3] @ np.array([corners[id(box)] for box in boxes]) + matrices[:, :3, 3:]
+            world = matrices[:, :3, :3] @ corners + matrices[:, :3, 3:]
             lows, highs, good = world.min(axis=2), world.max(axis=2), fits(world)
             self.placements = list(map(Placement, instances, first_triangles, lows, highs))
             low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
