@@ -30,6 +30,8 @@ class Edits:
     """Evaluated objects by session_uid."""
     shapes: set[int] = field(default_factory=set)
     """session_uid of the objects whose geometry has changed."""
+    looks: set[int] = field(default_factory=set)
+    """session_uid of the objects of which more may have changed than where they are, such as their materials."""
     materials: list[bpy.types.Material] = field(default_factory=list)
     world: bool = False
     images: bool = False
@@ -47,6 +49,8 @@ def read_edits(depsgraph: bpy.types.Depsgraph) -> Edits:
             edits.objects[uid] = block
             if update.is_updated_geometry:
                 edits.shapes.add(uid)
+            if update.is_updated_geometry or update.is_updated_shading:
+                edits.looks.add(uid)
         elif isinstance(block, bpy.types.Material):
             edits.materials.append(block)
         elif isinstance(block, bpy.types.World):
@@ -110,7 +114,7 @@ class SceneSync:
                 self._world = export_world(source.world, self._context)
             self._world_may_change = self._context.untold > untold
         self._objects.meshes.forget(edits.shapes)
-        if self._placed is None or edits.others or any(asked) or not self._patch(edits):
+        if self._placed is None or edits.others or any(asked) or not self._patch(depsgraph, edits):
             self._placed = self._objects.export(depsgraph, shown, {} if any(asked) else self._unchanged(edits))
         world, suns = self._world
         settings = export_settings(source, self._viewport)
@@ -155,26 +159,28 @@ class SceneSync:
         instances, alone = self._placed.instances, self._placed.alone
         return {uid: instances[place] for uid, place in alone.items() if uid not in edits.objects}
 
-    def _patch(self, edits: Edits) -> bool:
+    def _patch(self, depsgraph: bpy.types.Depsgraph, edits: Edits) -> bool:
         """Put changed objects in their places; False when that is not enough."""
-        instances, lights = self._placed.instances, self._placed.lights
+        placed, changed = self._placed, []
         for uid, source in edits.objects.items():
             if source.is_instancer or len(source.particle_systems) > 0:
                 return False
-            if uid in self._placed.alone:
+            if uid in placed.alone:
                 if uid in edits.shapes and any(modifier.type == "NODES" for modifier in source.modifiers):
                     return False  # they may bring instances
-                with self._report.about(("object", uid)):
-                    instance = self._objects.instance(source)
-                if instance is None:
-                    return False
-                instances[self._placed.alone[uid]] = instance
-            elif uid in self._placed.lights_alone:
+                changed.append(uid)
+            elif uid in placed.lights_alone:
                 with self._report.about(("object", uid)):
                     light = self._objects.light(source, np.array(source.matrix_world, np.float64))
                 if light is None:
                     return False
-                lights[self._placed.lights_alone[uid]] = light
+                placed.lights[placed.lights_alone[uid]] = light
             elif source.type not in _SHAPELESS:
                 return False
+        before = [None if uid in edits.looks else placed.instances[placed.alone[uid]] for uid in changed]
+        instances = self._objects.instances(depsgraph, [edits.objects[uid] for uid in changed], before)
+        if any(instance is None for instance in instances):
+            return False
+        for uid, instance in zip(changed, instances, strict=True):
+            placed.instances[placed.alone[uid]] = instance
         return True
