@@ -12,11 +12,11 @@ from ...scene import Instance, Light, RayVisibility
 from .attributes import GENERATED, ISLAND, TANGENT, attribute_of, title_of
 from .context import ExportContext
 from .hashing import hashed
-from .instance_columns import InstanceColumns, matrices_of
 from .lights import export_light
 from .materials import MaterialTable
 from .matrices import usable_matrices
 from .mesh_table import MeshTable
+from .object_matrices import instance_matrices, matrices_of
 from .particles import ParticleTable
 from .visibility import visibility_of
 
@@ -42,18 +42,19 @@ class ObjectExporter:
         depsgraph: bpy.types.Depsgraph,
         shown: Callable[[bpy.types.Object], bool] | None = None,
         unchanged: dict[int, Instance] | None = None,
+        moved: dict[int, Instance] | None = None,
         identify: bool = False,
     ) -> "Placed":
         """All instances and lights.
 
         shown: which of the original objects are to be seen, all if None. unchanged: by session_uid, the instances of
-        objects that stand for themselves and are as they were. identify: tell by what they are known at other times.
-        Raises ExportStopped when the user wants no more.
+        objects that stand for themselves and are as they were; moved: of those that at most were moved. identify: tell
+        by what they are known at other times. Raises ExportStopped when the user wants no more.
         """
         self.meshes.begin_pass()
         self._wants = {}
         with self._report.about("objects"):
-            placed = _Pass(self, depsgraph, shown, unchanged or {}, identify).run()
+            placed = _Pass(self, depsgraph, shown, unchanged or {}, moved or {}, identify).run()
         self.meshes.end_pass()
         return placed
 
@@ -75,11 +76,31 @@ class ObjectExporter:
         visibility = visibility_of(source)
         if source.type != "MESH" or not visibility:
             return None
-        shading = self._shading(source, visibility, None if before is None else before.materials)
-        if before is not None:
-            return _instance(before.mesh, source, matrix, shading)
+        if before is not None and self.meshes.knows(before.mesh):
+            return self._moved(source, matrix, visibility, before)
+        shading = self._shading(source, visibility)
         index = self._mesh_index(source, source.data, shading, source.original.session_uid)
         return None if index is None else _instance(index, source, matrix, shading)
+
+    def _moved(
+        self, source: bpy.types.Object, matrix: np.ndarray, visibility: RayVisibility, before: Instance
+    ) -> Instance:
+        """What Blender does not name as changed may be animated, but for mesh and materials."""
+        name, materials = source.name, before.materials
+        return Instance(
+            before.mesh,
+            matrix,
+            materials,
+            name,
+            source.pass_index,
+            tuple(source.color),
+            _random(name),
+            None,
+            visibility,
+            source.is_holdout,
+            source.is_shadow_catcher,
+            self._values(source, materials, None) if self._wanted(materials)[1] else {},
+        )
 
     def light(self, source: bpy.types.Object, matrix: np.ndarray) -> Light | None:
         """A light object placed by a matrix (4, 4); None when it gives no light."""
@@ -92,15 +113,13 @@ class ObjectExporter:
         self,
         source: bpy.types.Object,
         visibility: RayVisibility,
-        materials: list[int] | None = None,
         instancer: bpy.types.Object | None = None,
     ) -> dict[str, object]:
         """Materials of an instance and what their nodes may ask about it: members of scene.Instance.
 
-        materials: if they are known. instancer: what multiplies the object.
+        instancer: what multiplies the object.
         """
-        if materials is None:
-            materials = self._material_slots(source)
+        materials = self._material_slots(source)
         return {
             "materials": materials,
             "color": tuple(source.color),
@@ -190,6 +209,8 @@ class _Kind:
     object_index: int = 0
     shading: dict[str, object] = field(default_factory=dict)
     asks_instancer: bool = False
+    placed: bool = False
+    """Whether there is such an instance."""
 
 
 @dataclass(slots=True)
@@ -211,6 +232,7 @@ class _Pass:
         depsgraph: bpy.types.Depsgraph,
         shown: Callable[[bpy.types.Object], bool] | None,
         unchanged: dict[int, Instance],
+        moved: dict[int, Instance],
         identify: bool,
     ) -> None:
         self._identify = identify
@@ -221,6 +243,7 @@ class _Pass:
         self._depsgraph = depsgraph
         self._shown = shown
         self._unchanged = unchanged
+        self._moved = moved
         self._placed: list[tuple[Instance, np.ndarray, int]] = []
         self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object], Identity]] = []
         self._converted: set[tuple[int, bytes]] = set()
@@ -238,15 +261,15 @@ class _Pass:
         self._result = Placed()
 
     def run(self) -> Placed:
-        self._columns = columns = InstanceColumns(self._depsgraph)
+        matrices = instance_matrices(self._depsgraph)
         for number, instance in enumerate(self._depsgraph.object_instances):
             if number % 256 == 0:
                 self._report.progress(f"Exporting objects ({number})")
             # Only valid inside the loop: Blender reuses the memory for the next instance.
-            if columns.multiplied[number]:
-                self._export_multiplied(number, instance, instance.object)
-            elif columns.shows_self[number]:
-                self._export_alone(instance, instance.object, columns.matrices[number])
+            if instance.is_instance:
+                self._export_multiplied(instance, instance.object, matrices[number])
+            elif instance.show_self:
+                self._export_alone(instance, instance.object, matrices[number])
         self._convert()
         self._keep_usable()
         self._tell_missing()
@@ -261,15 +284,20 @@ class _Pass:
         uid = original.session_uid
         if self._identify:
             self._identity = identity_of(instance, original, original)
-        kept = self._unchanged.get(uid)
-        if kept is None:
+        meshes, kept = self._exporter.meshes, self._unchanged.get(uid)
+        if kept is None and (moved := self._moved.get(uid)) is not None and meshes.knows(moved.mesh):
+            kept = self._exporter._instance(source, matrix, moved)
+            if kept is None:
+                return
+        if kept is None or not meshes.knows(kept.mesh):
             self._export_instance(source, matrix, uid)
         else:
-            self._exporter.meshes.keep(kept.mesh)
+            meshes.keep(kept.mesh)
+            self._note_missing(kept)
             self._add(kept, matrix, uid)
 
     def _export_multiplied(
-        self, number: int, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object
+        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
     ) -> None:
         parent = instance.parent
         owner = self._owners.get(parent.as_pointer())
@@ -285,13 +313,12 @@ class _Pass:
         if kind is None:
             kind = self._kinds[key] = _Kind(source.original.session_uid)
             self._multiple.add(kind.uid)
-        if not owner.shown or not self._columns.shows_self[number]:
+        if not owner.shown or not instance.show_self:
             return
         if self._identify:
             self._identity = identity_of(instance, source.original, owner.original)
-        matrix = self._columns.matrices[number]
         if source.type != "MESH":
-            self._export_instance(source, matrix, owner.uid, parent, self._columns.randoms[number], instance)
+            self._export_instance(source, matrix, owner.uid, instance, parent)
             return
         if not kind.learned:
             self._learn(kind, source, owner, parent)
@@ -300,13 +327,26 @@ class _Pass:
         self._exporter.meshes.add_owner(kind.mesh, owner.uid)
         if kind.converted:
             self._converted.add((kind.converted, matrix.tobytes()))
-        placed = Instance(kind.mesh, matrix, object_name=kind.name, object_index=kind.object_index, **kind.shading)
-        # Blender gives instances the colour of what multiplies them.
-        placed.color, placed.random = tuple(source.color), self._columns.randoms[number]
+        shading = kind.shading
+        placed = Instance(
+            kind.mesh,
+            matrix,
+            shading["materials"],
+            kind.name,
+            kind.object_index,
+            tuple(source.color),  # Blender gives it that of what multiplies it
+            _random_of(instance),
+            self._particles.of(instance) if owner.has_particles else None,
+            shading["visibility"],
+            shading["holdout"],
+            shading["shadow_catcher"],
+            shading["attributes"],
+        )
         if kind.asks_instancer:
             placed.attributes = self._exporter._values(source, placed.materials, parent)
-        if owner.has_particles:
-            placed.particle = self._particles.of(instance)
+        if kind.asks_instancer or not kind.placed:
+            self._note_missing(placed)
+            kind.placed = True
         self._add(placed, matrix, kind.uid)
 
     def _learn(self, kind: _Kind, source: bpy.types.Object, owner: _Owner, parent: bpy.types.Object) -> None:
@@ -324,7 +364,6 @@ class _Pass:
 
     def _add(self, instance: Instance, matrix: np.ndarray, uid: int) -> None:
         """uid: of an object that stands for itself, or is multiplied; 0 where it does not tell the instance."""
-        self._note_missing(instance)
         if self._identify:
             self._result.identities[id(instance)] = self._identity
         self._placed.append((instance, matrix, uid))
@@ -334,11 +373,10 @@ class _Pass:
         source: bpy.types.Object,
         matrix: np.ndarray,
         owner: int,
-        instancer: bpy.types.Object | None = None,
-        random: float = 0.0,
         instance: bpy.types.DepsgraphObjectInstance | None = None,
+        instancer: bpy.types.Object | None = None,
     ) -> None:
-        """owner: the session_uid of what brings it. instancer, random and instance: of what is multiplied."""
+        """owner: the session_uid of what brings it. instance, instancer: of what is multiplied."""
         kind = source.type
         if kind == "LIGHT":
             light = self._exporter.light(source, matrix)
@@ -361,7 +399,7 @@ class _Pass:
             return  # and its materials are not needed
         shading = self._exporter._shading(source, visibility, instancer=instancer)
         if instancer is not None:
-            shading |= {"random": random, "particle": self._particles.of(instance)}
+            shading |= {"random": _random_of(instance), "particle": self._particles.of(instance)}
         if kind != "MESH":
             self._unconverted.append((source.original, matrix, shading, self._identity))
             return
@@ -381,7 +419,9 @@ class _Pass:
         index = self._exporter._mesh_index(source, mesh, shading, owner)
         if index is not None:
             uid = 0 if mesh is None else source.original.session_uid
-            self._add(_instance(index, source, matrix, shading), matrix, uid)
+            instance = _instance(index, source, matrix, shading)
+            self._note_missing(instance)
+            self._add(instance, matrix, uid)
 
     def _note_missing(self, instance: Instance) -> None:
         """Attributes that the materials of an instance read and that it does not have."""
@@ -452,6 +492,11 @@ def _without(places: dict[int, int], keys: set[int]) -> dict[int, int]:
 
 def _instance(mesh: int, source: bpy.types.Object, matrix: np.ndarray, shading: dict[str, object]) -> Instance:
     return Instance(mesh, matrix, object_name=source.name, object_index=source.pass_index, **shading)
+
+
+def _random_of(instance: bpy.types.DepsgraphObjectInstance) -> float:
+    """From 0 to 1, for what is multiplied."""
+    return (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF
 
 
 @functools.lru_cache(1 << 16)

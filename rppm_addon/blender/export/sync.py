@@ -42,14 +42,15 @@ class Edits:
 def read_edits(depsgraph: bpy.types.Depsgraph) -> Edits:
     """The updates of a depsgraph since it was last evaluated."""
     edits = Edits()
-    for update in depsgraph.updates:
+    shapes, looks = (_flags(depsgraph.updates, name) for name in ("is_updated_geometry", "is_updated_shading"))
+    for number, update in enumerate(depsgraph.updates):
         block = update.id
         if isinstance(block, bpy.types.Object):
             uid = block.original.session_uid
             edits.objects[uid] = block
-            if update.is_updated_geometry:
+            if shapes[number]:
                 edits.shapes.add(uid)
-            if update.is_updated_geometry or update.is_updated_shading:
+            if shapes[number] or looks[number]:
                 edits.looks.add(uid)
         elif isinstance(block, bpy.types.Material):
             edits.materials.append(block)
@@ -61,6 +62,13 @@ def read_edits(depsgraph: bpy.types.Depsgraph) -> Edits:
             edits.others = True
     edits.others |= not depsgraph.updates
     return edits
+
+
+def _flags(updates: bpy.types.bpy_prop_collection, name: str) -> list[bool]:
+    values = np.zeros(len(updates), bool)
+    if len(values):
+        updates.foreach_get(name, values)
+    return values.tolist()
 
 
 _TOLD_BY_THEIR_USERS = (
@@ -115,7 +123,8 @@ class SceneSync:
             self._world_may_change = self._context.untold > untold
         self._objects.meshes.forget(edits.shapes)
         if self._placed is None or edits.others or any(asked) or not self._patch(depsgraph, edits):
-            self._placed = self._objects.export(depsgraph, shown, {} if any(asked) else self._unchanged(edits))
+            unchanged, moved = ({}, {}) if any(asked) else self._known(edits)
+            self._placed = self._objects.export(depsgraph, shown, unchanged, moved)
         world, suns = self._world
         settings = export_settings(source, self._viewport)
         settings.validate()
@@ -152,12 +161,18 @@ class SceneSync:
             edits.world |= self._world_may_change
         self._frame = frame
 
-    def _unchanged(self, edits: Edits) -> dict[int, Instance]:
-        """Instances of the objects that the depsgraph does not name."""
+    def _known(self, edits: Edits) -> tuple[dict[int, Instance], dict[int, Instance]]:
+        """Instances of the objects that the depsgraph does not name, and of those that at most were moved."""
         if self._placed is None:
-            return {}
+            return {}, {}
         instances, alone = self._placed.instances, self._placed.alone
-        return {uid: instances[place] for uid, place in alone.items() if uid not in edits.objects}
+        unchanged, moved = {}, {}
+        for uid, place in alone.items():
+            if uid not in edits.objects:
+                unchanged[uid] = instances[place]
+            elif uid not in edits.looks:
+                moved[uid] = instances[place]
+        return unchanged, moved
 
     def _patch(self, depsgraph: bpy.types.Depsgraph, edits: Edits) -> bool:
         """Put changed objects in their places; False when that is not enough."""
