@@ -6,6 +6,7 @@ import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import cryptography  # noqa: F401 (Security.temporary needs it, and says so too late)
 import dask
 import distributed
 from distributed.security import Security
