@@ -317,9 +317,7 @@ def _render(options: argparse.Namespace, bar: ProgressBar) -> int:
     print(recorder.summary())
     if interruption.asked:
         resume = "; go on with --resume" if options.checkpoint else ""
-        done = "nothing was done yet that could be kept"
-        if recorder.files:
-            done = "the files hold what was done until then"
+        done = "the files hold what was done until then" if recorder.files else "nothing was done yet"
         sys.stderr.write(f"rppm: interrupted; {done}{resume}\n")
         return interruption.status
     return 0
@@ -397,6 +395,8 @@ def _still_keeper(
             )
         part = options.output[0]
         settings |= {"iterations": end - first, "time_limit": 0.0}
+    elif options.checkpoint in options.output:
+        raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
     request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)
     keeper = StillKeeper(request)
     if keeper.starts_over:

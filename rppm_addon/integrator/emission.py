@@ -29,6 +29,8 @@ from .targets import caustic_targets
 log = logging.getLogger(__name__)
 
 _SOFT = 32
+_LEARNED = ("photon_count", "first_photon", "cells", "first_cell")
+"""Of a light's record, what follows from what photons were good for."""
 
 LIGHT_PARAMETERS = {
     "scene_centre": "vec3",
@@ -172,10 +174,12 @@ class Emission:
         resolve: Resolve,
         keep_world: bool = False,
         keep_lamps: bool = False,
+        keep_learned: bool = False,
     ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        keep_world, keep_lamps: the world, or all light objects, are those of the last call.
+        keep_world, keep_lamps: the world, or all light objects, are those of the last call. keep_learned: the lights
+        are those of the last call at another time, and what was learned of them holds.
         Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
@@ -219,6 +223,7 @@ class Emission:
         if sum(weights) <= 0:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
+        kept = self._table if keep_learned and names == self._names else None
         self._names, self._powers = names, powers
         self.photon_flux = sum(powers) / scene.settings.photons
         # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
@@ -228,8 +233,14 @@ class Emission:
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
-        self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
-        self.begin()
+        self._table, self._photons = table, scene.settings.photons
+        if kept is not None and np.array_equal(kept["kind"], table["kind"]):
+            for column in _LEARNED:
+                table[column] = kept[column]
+            self._lights.upload(table)
+        else:
+            self._weights = np.array(weights)
+            self.begin()
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))

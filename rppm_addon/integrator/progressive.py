@@ -15,6 +15,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.errors import CheckpointError
+from ..scene.motion import MovingScene
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
 from .bands import bands_of
@@ -31,7 +32,7 @@ from .bandwidth import (
     widest_radius,
 )
 from .camera_view import camera_view, is_rasterized
-from .changes import changes_between, snapshot
+from .changes import Changes, changes_between, snapshot
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
@@ -48,6 +49,7 @@ from .placement import cubemap_centres, radius_about
 from .primary_rays import PrimaryRays
 from .resolve import Resolve
 from .shadow_catcher import ShadowCatcher
+from .shutter import moment, swept_bounds
 from .splatting import Splatting, radiance_quantum
 from .stages import Stages
 from .state import RenderState
@@ -55,6 +57,7 @@ from .state import RenderState
 log = logging.getLogger(__name__)
 
 _MOST_CORE_TRIANGLES = 64
+_NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
 class ProgressivePhotonMapper:
@@ -74,10 +77,17 @@ class ProgressivePhotonMapper:
         self._left_out = 0
         """So many iterations come before those of the film."""
         self.build_seconds = 0.0
+        self.scene: Scene | None = None
+        """With a shutter, as it is at the iteration's moment."""
+        self._given: Scene | None = None
+        """The scene, its shutter included."""
         self._built: Scene | None = None
         """What stands on the device; None is nothing that a change could be told from."""
         self._warnings: dict[str, list[str]] = {}
         """What was said when a part was built, which holds for scenes after it as well."""
+        self._moving: MovingScene | None = None
+        self._swept = _NOWHERE
+        """What things move through while the shutter is open (swept_bounds)."""
         self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
         self._views_are_for: tuple | None = None
@@ -101,38 +111,69 @@ class ProgressivePhotonMapper:
         no picture. Raises as build does; what is built then is built anew the next time.
         """
         start = time.perf_counter()
-        settings = scene.settings
-        settings.validate()
+        scene.settings.validate()
         changes = changes_between(self._built, scene)
         self._built = None
         self._restart(scene)
-        self._materials.follow(scene)
-        if changes.materials:
-            with self._hearing("materials"):
-                self._materials.build(scene)
-        if changes.geometry:
-            self._geometry.build(scene, self._materials.default_material)
-        if changes.geometry or changes.materials:
-            with self._hearing("resolve"):
-                self._resolve.build(scene, self._geometry, self._materials)
-        self._resolve.look_from(scene.camera, settings.seed)
-        if changes.geometry or changes.materials or changes.lights:
-            with self._hearing("emission"):
-                self._emission.build(
-                    scene, self._geometry, self._materials, self._resolve, not changes.world, not changes.lamps
-                )
-        else:
-            self._emission.begin()
+        self._moving = MovingScene(scene) if scene.shutter is not None else None
+        swept = swept_bounds(scene) if scene.shutter is not None else _NOWHERE
+        changes.geometry |= not np.array_equal(swept, self._swept)
+        self._swept = swept
+        self._build_parts(changes)
         wanted = next(cubemap_centres(scene, self._geometry))
         strayed = not np.linalg.norm(wanted - self._wanted_centre) <= stray * self._geometry.radius
         if changes.geometry or changes.cubemap or strayed:
-            with self.timers.stage("deep cubemap"):
-                self._build_deep_cubemap()
+            self._build_deep_cubemap()
         for text in itertools.chain(*self._warnings.values()):
             scene.warn(text)
         self._open_views()
         self._built = snapshot(scene)
         self.build_seconds = time.perf_counter() - start
+
+    def _build_parts(self, changes: Changes, keep_learned: bool = False) -> None:
+        """What rests on the scene's members that have changed, but for the deep cubemap.
+
+        keep_learned: go on with what was learned of the lights.
+        """
+        scene = self.scene
+        self._materials.follow(scene)
+        if changes.materials:
+            with self._hearing("materials"):
+                self._materials.build(scene)
+        if changes.geometry:
+            self._geometry.build(scene, self._materials.default_material, self._swept)
+        if changes.geometry or changes.materials:
+            with self._hearing("resolve"):
+                self._resolve.build(scene, self._geometry, self._materials)
+        self._resolve.look_from(scene.camera, scene.settings.seed)
+        if changes.geometry or changes.materials or changes.lights:
+            with self._hearing("emission"):
+                self._emission.build(
+                    scene,
+                    self._geometry,
+                    self._materials,
+                    self._resolve,
+                    not changes.world,
+                    not changes.lamps,
+                    keep_learned,
+                )
+        elif not keep_learned:
+            self._emission.begin()
+
+    def _move(self) -> None:
+        """Take the scene as it is at the iteration's moment, and build anew what rests on what has moved.
+
+        The deep cubemap's centre stays: it changes no picture, and a camera that moves alone costs nothing.
+        """
+        given = self._given
+        self.scene = self._moving.at(given.shutter.time_of(moment(self.iteration, given.settings.seed)))
+        changes = changes_between(self._built, self.scene)
+        self._built = None
+        with self.timers.stage("motion"):
+            self._build_parts(changes, keep_learned=True)
+        if changes.geometry:
+            self._build_deep_cubemap()
+        self._built = snapshot(self.scene)
 
     @contextlib.contextmanager
     def _hearing(self, part: str) -> Iterator[None]:
@@ -194,23 +235,24 @@ class ProgressivePhotonMapper:
         self.iteration = self._left_out = 0
         self._diffused_photons_found = None
         self._wide_radius = 0.0
-        self.scene = scene
+        self.scene = self._given = scene
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
-        centres = list(cubemap_centres(self.scene, self._geometry))
+        centres = list(cubemap_centres(self._given, self._geometry))
         self._wanted_centre = centres[0]
-        for centre in centres:
-            self.centre = centre
-            self._deep_cubemap.build(
-                self._geometry.triangles.buffer,
-                self._geometry.triangle_count,
-                centre,
-                radius_about(centre, self._geometry),
-                self.scene.settings.cubemap_resolution,
-            )
-            if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
-                return
+        with self.timers.stage("deep cubemap"):
+            for centre in centres:
+                self.centre = centre
+                self._deep_cubemap.build(
+                    self._geometry.triangles.buffer,
+                    self._geometry.triangle_count,
+                    centre,
+                    radius_about(centre, self._geometry),
+                    self.scene.settings.cubemap_resolution,
+                )
+                if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
+                    return
 
     def iterate(self) -> None:
         """One iteration of Algorithm 1."""
@@ -226,6 +268,9 @@ class ProgressivePhotonMapper:
         if self.iteration > 1 and learns_after(self.iteration - 1):
             with self.timers.stage("learning"):
                 self._learn()
+        if self._moving is not None:
+            self._move()
+            yield
         self._trace_photons()
         diffused_photons: list[np.ndarray] = []
         yield

@@ -6,11 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .documents import field_names
 from .scene import Scene
 
 LISTS = ("meshes", "instances", "materials", "lights", "images")
 _LARGE = {"meshes", "images"}
 _MEMBERS = ("camera", "world", "settings")
+_SMALL = 1 << 10
+_PART = 1 << 16
 
 
 def equal(a: object, b: object) -> bool:
@@ -20,9 +23,9 @@ def equal(a: object, b: object) -> bool:
     if type(a) is not type(b):
         return False
     if isinstance(a, np.ndarray):
-        return a.dtype == b.dtype and a.shape == b.shape and np.array_equal(_bits(a), _bits(b))
+        return same_bits(a, b)
     if dataclasses.is_dataclass(a):
-        return all(equal(getattr(a, f.name), getattr(b, f.name)) for f in dataclasses.fields(a))
+        return all(equal(getattr(a, name), getattr(b, name)) for name in field_names(type(a)))
     if isinstance(a, list | tuple):
         return len(a) == len(b) and all(map(equal, a, b))
     if isinstance(a, dict):
@@ -30,9 +33,22 @@ def equal(a: object, b: object) -> bool:
     return a == b
 
 
-def _bits(array: np.ndarray) -> np.ndarray:
-    """Numbers as whole numbers: what is none equals itself, and the two zeros differ."""
-    return array.view(f"u{array.itemsize}") if array.dtype.kind == "f" and array.itemsize <= 8 else array
+def same_bits(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether two arrays have the same shape, type and bits."""
+    if a is b:
+        return True
+    if a.shape != b.shape or a.dtype != b.dtype:
+        return False
+    if a.nbytes <= _SMALL or a.dtype.itemsize != 4 or not (a.flags.c_contiguous and b.flags.c_contiguous):
+        return a.tobytes() == b.tobytes()
+    x, y = a.reshape(-1).view(np.uint32), b.reshape(-1).view(np.uint32)
+    # In parts: what has changed mostly differs from the beginning, and the results stay in a cache.
+    return all((x[start : start + _PART] == y[start : start + _PART]).all() for start in range(0, len(x), _PART))
+
+
+def keep_equal(before: np.ndarray | None, after: np.ndarray) -> np.ndarray:
+    """The array before, if there is one and it says the same."""
+    return before if before is not None and same_bits(before, after) else after
 
 
 def _shared_list(before: list, after: list, by_identity: bool) -> list:
@@ -66,7 +82,7 @@ def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Sc
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)
         values[name] = old if equal(old, new) else new
-    rest = ("exposure", "cubemap_centre", "warnings")
+    rest = ("exposure", "cubemap_centre", "shutter", "warnings")
     if all(equal(getattr(before, name), getattr(after, name)) for name in rest) and all(
         value is getattr(before, name) for name, value in values.items()
     ):
