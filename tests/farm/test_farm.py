@@ -13,7 +13,7 @@ import pytest
 from rppm_addon.pictures import is_whole, read_exr
 from rppm_addon.session.checkpoint_file import read_summary
 
-from .conftest import ROOT, dask, renders_below, start_rppm, wait_for
+from .conftest import ROOT, dask, renders_below, start_rppm, wait_for, workers_of
 
 
 def farm(blend, folder, *options):
@@ -189,6 +189,21 @@ def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
     assert "1 of 2 frames failed: frame 1" in errors
     assert output.count(" s on ") == 1
     assert [path.name for path in pictures(tmp_path)] == ["0002.exr"]
+
+
+@pytest.mark.long
+def test_a_worker_that_dies_while_it_starts_is_replaced(tmp_path, blend_files):
+    """Dask alone does not start it again."""
+    frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
+    with start_rppm("farm", blend_files[0], *frames) as process:
+        worker = wait_for("a render", lambda: renders_below(process))[0].parent()
+        worker.kill()
+        successor = wait_for("its successor", lambda: [found for found in workers_of(process) if found != worker])[0]
+        successor.kill()
+        output, errors = process.communicate(timeout=150)
+    assert process.returncode == 0, errors
+    assert output.count(" s on ") == 2
+    assert len(pictures(tmp_path)) == 2
 
 
 @pytest.mark.long
