@@ -203,7 +203,7 @@ class Geometry:
         corners: np.ndarray,
         swept: tuple[np.ndarray, np.ndarray] | None,
     ) -> None:
-        """List the placements of instances, and enclose them. corners: (n, 3, 8) of the boxes that their meshes lie in."""
+        """List the placements of instances, whose meshes lie in boxes with the corners (n, 3, 8), and enclose them."""
         low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
         self.placements = []
         if instances:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rppm_addon.blender.export.sync import SceneSync
-from rppm_addon.scene import Camera, Scene
+from rppm_addon.scene import Camera, Instance, Scene
+from rppm_addon.scene.documents import field_names
 from rppm_addon.scene.sharing import equal
 
 CAMERA = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8)
@@ -179,7 +180,7 @@ def same(a: Scene, b: Scene) -> bool:
             (
                 scene.meshes[instance.mesh],
                 [scene.materials[material] for material in instance.materials],
-                *(value for name, value in vars(instance).items() if name not in {"mesh", "materials"}),
+                *(getattr(instance, name) for name in field_names(Instance) if name not in {"mesh", "materials"}),
             )
             for instance in scene.instances
         ]
