@@ -46,6 +46,7 @@ bench: setup ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=-
 	@.venv/bin/python -c 'import matplotlib' 2>/dev/null || .venv/bin/python -m pip install --quiet \
 		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
 	.venv/bin/python tests/benchmarks/run.py --scene-folder $(SCENES) $(BENCH)
+	.venv/bin/python tests/benchmarks/frame_costs.py --output out/benchmarks/frame_costs.json $(filter --quick,$(BENCH))
 
 bench-export: setup ## Measure what a frame costs in which everything moves (BENCH=--quick)
 	.venv/bin/python tests/benchmarks/export_speed.py --output out/benchmarks/export.json $(BENCH)

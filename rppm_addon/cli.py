@@ -176,6 +176,8 @@ def _parser() -> argparse.ArgumentParser:
     merge.add_argument("--json", type=Path, metavar="FILE", help="write what was merged as JSON")
     merge.set_defaults(run=_merge)
 
+    _add_farm(commands, scene, common)
+
     export = commands.add_parser(
         "export", parents=[scene, common], help="save the scene of a .blend file for machines without Blender"
     )
@@ -220,6 +222,53 @@ def _parser() -> argparse.ArgumentParser:
     info.add_argument("--json", type=Path, metavar="FILE", help="write it as JSON")
     info.set_defaults(run=_info)
     return parser
+
+
+def _add_farm(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+    farm = commands.add_parser(
+        "farm",
+        parents=[scene, common],
+        help="render an animation or the parts of a still on several processes or machines",
+        description="Render frames, or parts of a still that are merged, on workers of dask.distributed. Pictures that "
+        "are there and whole are left alone, so the same command goes on where an interrupted one was.",
+    )
+    farm.add_argument("file", type=Path, metavar="FILE", help="a .blend file; for a still also a .npz of rppm export")
+    farm.add_argument(
+        "-o",
+        "--output",
+        type=_picture_path,
+        action="append",
+        required=True,
+        metavar="PICTURE",
+        help="as in rppm render, with #### for the frame's number; may be repeated",
+    )
+    what = farm.add_mutually_exclusive_group(required=True)
+    what.add_argument("--frames", type=_frames, metavar="A..B", help="an animation: 1..100, 1..100..5 or 1,5,9")
+    what.add_argument("--parts", type=_positive_integer, metavar="K", help="a still, its iterations in so many parts")
+    limit = farm.add_mutually_exclusive_group()
+    limit.add_argument(
+        "--iterations", type=_positive_integer, metavar="N", help="iterations of a frame, or of the still"
+    )
+    limit.add_argument("--seconds", type=_positive_number, metavar="S", help="render each frame so long instead")
+    farm.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of an iteration")
+    where = farm.add_mutually_exclusive_group()
+    where.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler, such as tcp://host:8786")
+    where.add_argument(
+        "--workers", type=_positive_integer, default=1, metavar="N", help="so many renders at a time here; default: 1"
+    )
+    where.add_argument("--devices", metavar="N,N,...", help="a render at a time here on each of these EGL devices")
+    farm.add_argument(
+        "--chunk",
+        type=_positive_integer,
+        default=1,
+        metavar="N",
+        help="render so many frames with one start of Blender, which loads the file and programs once; default: 1",
+    )
+    farm.add_argument(
+        "--retries", type=_count, default=2, metavar="N", help="how often a frame or part is tried again; default: 2"
+    )
+    farm.add_argument("--overwrite", action="store_true", help="make pictures anew that are there")
+    farm.set_defaults(run=_farm)
 
 
 def _render(options: argparse.Namespace, bar: ProgressBar) -> int:
@@ -268,9 +317,7 @@ def _render(options: argparse.Namespace, bar: ProgressBar) -> int:
     print(recorder.summary())
     if interruption.asked:
         resume = "; go on with --resume" if options.checkpoint else ""
-        done = "nothing was done yet that could be kept"
-        if recorder.files:
-            done = "the files hold what was done until then"
+        done = "the files hold what was done until then" if recorder.files else "nothing was done yet"
         sys.stderr.write(f"rppm: interrupted; {done}{resume}\n")
         return interruption.status
     return 0
@@ -348,6 +395,8 @@ def _still_keeper(
             )
         part = options.output[0]
         settings |= {"iterations": end - first, "time_limit": 0.0}
+    elif options.checkpoint in options.output:
+        raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
     request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)
     keeper = StillKeeper(request)
     if keeper.starts_over:
@@ -370,6 +419,80 @@ def _merge(options: argparse.Namespace, bar: ProgressBar) -> int:
         f"{'part' if len(merged.parts) == 1 else 'parts'}: {', '.join(files)}"
     )
     return 0
+
+
+def _farm(options: argparse.Namespace, bar: ProgressBar) -> int:
+    try:
+        from .commands.farm.job import FarmRequest, run_farm
+    except ImportError as error:
+        raise SettingsError(
+            f"rppm farm needs dask.distributed ({error}); install it with pip install -e '.[farm]'"
+        ) from error
+
+    settings, data_values = _split_values(options.values)
+    settings |= {
+        name: getattr(options, name) for name in ("iterations", "photons") if getattr(options, name) is not None
+    }
+    is_blend = _is_blend(options.file)
+    if is_blend:
+        _values_of_frames(settings)
+    apply_settings(RenderSettings(), settings)
+    if not is_blend:
+        if options.frames:
+            raise SettingsError("--frames needs a .blend file; a saved scene holds one frame")
+        _refuse_blend_options(options, data_values)
+    if options.frames and options.frame is not None:
+        raise SettingsError("--frame is for a still; name the frames of an animation with --frames alone")
+    if options.parts and options.iterations is None:
+        raise SettingsError("a still in --parts needs --iterations, those of all parts together")
+    if options.scheduler and options.device:
+        raise SettingsError("--device is for workers here; set RPPM_DEVICE where the workers of a scheduler start")
+    if options.parts:
+        options.output = _outputs_of_still(options)
+    else:
+        check_places(options.output, options.frames)
+    for path in options.output:
+        make_folder(path)
+    names = ["frame", "photons", *(["iterations", "seconds"] if options.frames else [])]
+    request = FarmRequest(
+        file=options.file.absolute(),
+        outputs=[path.absolute() for path in options.output],
+        options=_task_options(options, names),
+        frames=options.frames or (),
+        iterations=options.iterations or 0,
+        parts=options.parts or 0,
+        chunk=options.chunk,
+        scheduler=options.scheduler,
+        devices=options.devices.split(",") if options.devices else [None] * options.workers,
+        retries=options.retries,
+        overwrite=options.overwrite,
+    )
+    with Interruption() as interruption:
+        report = run_farm(request, bar, lambda: interruption.asked, options.debug)
+    bar.clear()
+    if report.failed:
+        names = ", ".join(report.failed)
+        sys.stderr.write(f"rppm: {len(report.failed)} of {report.total} {report.kind} failed: {names}\n")
+    if not report.finished and interruption.asked:
+        sys.stderr.write("rppm: interrupted; what is finished lies there, run the same again to go on\n")
+        return interruption.status
+    if report.failed:
+        return 1
+    print(f"{report.total} of {report.total} {report.kind}: {', '.join(str(path) for path in options.output)}")
+    return 0
+
+
+def _task_options(options: argparse.Namespace, names: list[str]) -> list[str]:
+    """The options of rppm render that ``names`` and the size and values asked for make, as words."""
+    words = []
+    for name in names:
+        if getattr(options, name) is not None:
+            words += [f"--{name}", f"{getattr(options, name):.15g}"]
+    if options.resolution is not None:
+        words += ["--resolution", "{}x{}".format(*options.resolution)]
+    for value in options.values:
+        words += ["--set", value]
+    return words
 
 
 def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
@@ -548,6 +671,7 @@ def _numbers(text: str) -> tuple[float, ...]:
 
 
 _positive_integer = _checked(int, lambda value: value > 0, "a whole number above 0")
+_count = _checked(int, lambda value: value >= 0, "a whole number, or 0")
 _positive_number = _checked(float, lambda value: 0.0 < value < 1e9, "a number of seconds above 0")
 _resolution = _checked(
     _two_integers, lambda size: all(1 <= side <= 65536 for side in size), "a resolution such as 640x480"

@@ -125,6 +125,43 @@ def read_exr(path: str | Path) -> ExrPicture:
     )
 
 
+def is_whole(path: str | Path) -> bool:
+    """Whether an EXR (of any number of parts) or PNG file is there and can be read to its end."""
+    try:
+        return _png_is_whole(Path(path)) if Path(path).suffix == ".png" else _exr_is_whole(Path(path))
+    except (OSError, RuntimeError, ValueError, TypeError, KeyError, struct.error, zlib.error):
+        return False
+
+
+def _exr_is_whole(path: Path) -> bool:
+    import OpenEXR
+
+    if not path.is_file():
+        return False
+    with OpenEXR.File(str(path), header_only=True) as file:
+        announced = len(file.parts)
+    with OpenEXR.File(str(path)) as file:  # a part whose pixels cannot be read is left out
+        return 0 < announced == len(file.parts)
+
+
+def _png_is_whole(path: Path) -> bool:
+    """Checks each chunk's sum and that the pictures' rows are all there, of a PNG that is not interlaced."""
+    data = path.read_bytes()
+    place, kind, rows, compressed = 8, b"", 0, b""
+    while kind != b"IEND" and place + 12 <= len(data):
+        (length,) = struct.unpack_from(">I", data, place)
+        kind, content = data[place + 4 : place + 8], data[place + 8 : place + 8 + length]
+        if data[place + 8 + length :][:4] != struct.pack(">I", zlib.crc32(kind + content)):
+            return False
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack_from(">IIBB", content)
+            rows = height * (1 + (width * depth * {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[color] + 7) // 8)
+        elif kind == b"IDAT":
+            compressed += content
+        place += 12 + length
+    return kind == b"IEND" and rows == len(zlib.decompress(compressed))
+
+
 def standard_view(combined: np.ndarray) -> np.ndarray:
     """The picture as Blender's Standard view shows it on an sRGB display.
 

@@ -9,12 +9,13 @@ import bpy
 import numpy as np
 
 from ..scene import Scene
-from ..scene.errors import RppmError
+from ..scene.errors import RppmError, SceneError
 from ..session.observers import RenderObserver, current_observer
 from ..session.render_job import RenderJob
 from ..session.sessions import SessionKind
 from . import broken_frames, renderer_process, renderer_thread
 from .export import ExportStopped, FrameExporter, export_scene, is_blurred
+from .export.camera import frame_size
 from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
 
@@ -78,6 +79,7 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
 def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> Scene:
     if engine.is_preview:
         return export_scene(depsgraph, engine, observer.should_stop)
+    _check_size(engine, depsgraph.scene.render)
     if not depsgraph.scene.render.use_persistent_data or is_blurred(depsgraph, engine):
         # Going to other frames, a blurred render takes in what Blender would tell the next one of.
         engine.exporter = None
@@ -92,6 +94,16 @@ def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
             lambda text: engine.update_stats("", text),
         )
     )
+
+
+def _check_size(engine: bpy.types.RenderEngine, render: bpy.types.RenderSettings) -> None:
+    """Raise SceneError where a script has changed the resolution of frames that Blender has laid out already."""
+    wanted, laid_out = frame_size(render), (engine.resolution_x, engine.resolution_y)
+    if wanted != laid_out:
+        raise SceneError(
+            f"the resolution has changed to {wanted[0]} x {wanted[1]} while Blender renders pictures of "
+            f"{laid_out[0]} x {laid_out[1]}; change it before the render begins, or render such frames one at a time"
+        )
 
 
 def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:

@@ -4,16 +4,18 @@
 The first part of a file is the film as any viewer shows it (before exposure), with the number of iterations that each
 pixel's normal is of; the second has what the guide of the photons learnt. Numbers are JSON in the attribute
 ``rppm.checkpoint``. After the EXR's own end come a mark and the SHA-256 of all before it, so that a file that was cut
-short or damaged is known before it is parsed.
+short or damaged is known before it is parsed: OpenEXR reads pixels that are damaged without an error.
 """
 
+import contextlib
 import dataclasses
 import hashlib
 import json
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
@@ -21,6 +23,9 @@ from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.errors import CheckpointError
 from .continuation import Pause
+
+if TYPE_CHECKING:
+    import OpenEXR
 
 FORMAT = 1
 _ATTRIBUTE = "rppm.checkpoint"
@@ -108,35 +113,37 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
 
 def read_summary(path: str | Path) -> CheckpointSummary:
     """What a checkpoint tells of itself. Raises CheckpointError when it is none or damaged."""
-    return _read(path, header_only=True)[0]
+    with _opened(path, header_only=True) as (_, summary):
+        return summary
 
 
 def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
     """A checkpoint as it was written. Raises CheckpointError when it is none or damaged."""
-    summary, film, guide = _read(path, header_only=False)
+    with _opened(path, header_only=False) as (file, summary):
+        film, guide = ({name: channel.pixels for name, channel in file.channels(part).items()} for part in range(2))
 
-    def layer(*names: str) -> np.ndarray:
-        planes = [film[name][::-1] for name in names]
-        return np.stack(planes, axis=-1) if len(planes) > 1 else planes[0].copy()
+        def layer(*names: str) -> np.ndarray:
+            planes = [film[name][::-1] for name in names]
+            return np.stack(planes, axis=-1) if len(planes) > 1 else planes[0].copy()
 
-    def pairs(*names: str) -> np.ndarray:
-        return np.stack([guide[name].reshape(-1) for name in names], axis=-1)
+        def pairs(*names: str) -> np.ndarray:
+            return np.stack([guide[name].reshape(-1) for name in names], axis=-1)
 
-    state = RenderState(
-        summary.left_out,
-        summary.iteration,
-        summary.wide_radius,
-        summary.diffused_photons_found,
-        layer(*"RGBA"),
-        layer("Normal.X", "Normal.Y", "Normal.Z"),
-        layer("Depth.Z"),
-        layer("Surfaces.V"),
-        pairs("left", "useful"),
-        pairs("learnt.left", "learnt.useful") if "learnt.left" in guide else None,
-    )
-    costs = [f"Deep Cubemap.{axis}" for axis in "XYZ"]
-    deep_cubemap = layer(*costs) if costs[0] in film else None
-    return summary, Pause(state, summary.device, summary.radius_metres, deep_cubemap)
+        state = RenderState(
+            summary.left_out,
+            summary.iteration,
+            summary.wide_radius,
+            summary.diffused_photons_found,
+            layer(*"RGBA"),
+            layer("Normal.X", "Normal.Y", "Normal.Z"),
+            layer("Depth.Z"),
+            layer("Surfaces.V"),
+            pairs("left", "useful"),
+            pairs("learnt.left", "learnt.useful") if "learnt.left" in guide else None,
+        )
+        costs = [f"Deep Cubemap.{axis}" for axis in "XYZ"]
+        deep_cubemap = layer(*costs) if costs[0] in film else None
+        return summary, Pause(state, summary.device, summary.radius_metres, deep_cubemap)
 
 
 def _film_channels(state: RenderState, deep_cubemap: np.ndarray | None) -> dict[str, np.ndarray]:
@@ -183,8 +190,9 @@ def _check_whole(path: str | Path) -> None:
             )
 
 
-def _read(path: str | Path, header_only: bool) -> tuple[CheckpointSummary, dict, dict]:
-    """The summary, and the channels of film and guide by name, which are empty when only the header is read."""
+@contextlib.contextmanager
+def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File", CheckpointSummary]]:
+    """The file, found whole, and what it tells of itself; what goes wrong while it is read becomes CheckpointError."""
     import OpenEXR
 
     try:
@@ -195,11 +203,7 @@ def _read(path: str | Path, header_only: bool) -> tuple[CheckpointSummary, dict,
                 raise CheckpointError(f"{path} was written by another version of RPPM; begin anew without it")
             render = document.pop("render")
             placement = Placement(**render.pop("placement"))
-            summary = CheckpointSummary(StillRender(placement=placement, **render), **document)
-            if header_only:
-                return summary, {}, {}
-            film, guide = ({name: channel.pixels for name, channel in file.channels(part).items()} for part in range(2))
-            return summary, film, guide
+            yield file, CheckpointSummary(StillRender(placement=placement, **render), **document)
     except FileNotFoundError as error:
         raise CheckpointError(f"{path} does not exist; name a checkpoint that rppm render wrote") from error
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:

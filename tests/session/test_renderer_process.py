@@ -246,6 +246,12 @@ def test_a_render_in_the_process_is_the_same_picture(start, deep_cubemap_pass):
     assert result.statistics.flux_watts["emitted"] > 0.0
     assert job.told[0] == "start" and [told[1] for told in job.told if told[0] == "progress"] == [0, 1, 2, 3, 4]
     assert [told for told in job.told if told[0] == "snapshot"] == [("snapshot", 0.0), ("snapshot", 0.001)]
+
+
+def test_pictures_that_are_asked_for_come_meanwhile(start):
+    job = Job()
+    job.should_stop = lambda: job.told[-1:] and job.told[-1][0] == "frame"
+    assert render(start(), scene_of(size=48), job, SessionKind.FINAL).stopped
     assert ("frame", (48, 48, 4)) in job.told
 
 
