@@ -334,7 +334,7 @@ class _Pass:
             shading["materials"],
             kind.name,
             kind.object_index,
-            tuple(source.color),  # Blender gives it that of what multiplies it
+            tuple(source.color),
             _random_of(instance),
             self._particles.of(instance) if owner.has_particles else None,
             shading["visibility"],
