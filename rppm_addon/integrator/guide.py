@@ -146,8 +146,8 @@ class Guide:
     def learn(self) -> tuple[np.ndarray, np.ndarray]:
         """Choose cells by the tallies from now on.
 
-        Returns each light's mean root of the usefulness (in_steps), (n,), and the shares of its photons that should have been
-        of use before and will be from now on, (n, 2).
+        Returns each light's mean root of the usefulness (in_steps), (n,), and the shares of its photons that should have
+        been of use before and will be from now on, (n, 2).
         """
         before = self._probabilities
         weights, estimates = self._choose_by_tallies(self.read_tallies())
