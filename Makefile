@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-long test-gui lint pairs parity bench clean
+.PHONY: help setup render sample extension test test-long test-gui lint pairs parity bench bench-export clean
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
@@ -8,7 +8,7 @@ RESOLUTION ?= 256x192
 SECONDS_EACH ?= 60
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' Makefile
 
 setup: ## Install what is missing: system packages (Debian, as root) and .venv
 	@.ci/set_up.sh
@@ -47,6 +47,10 @@ bench: setup ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=-
 	@.venv/bin/python -c 'import matplotlib' 2>/dev/null || .venv/bin/python -m pip install --quiet \
 		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
 	.venv/bin/python tests/benchmarks/run.py --scene-folder $(SCENES) $(BENCH)
+	.venv/bin/python tests/benchmarks/frame_costs.py --output out/benchmarks/frame_costs.json $(filter --quick,$(BENCH))
+
+bench-export: setup ## Measure what a frame costs in which everything moves (BENCH=--quick)
+	.venv/bin/python tests/benchmarks/export_speed.py --output out/benchmarks/export.json $(BENCH)
 
 clean: ## Remove what was made: out/, caches (.venv stays)
 	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info

@@ -203,12 +203,14 @@ class Geometry:
         corners: np.ndarray,
         swept: tuple[np.ndarray, np.ndarray] | None,
     ) -> None:
-        """List the placements of instances, and enclose them. corners: (n, 3, 8) of the boxes that their meshes lie in."""
+        """List the placements of instances, whose meshes lie in boxes with the corners (n, 3, 8), and enclose them."""
         low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
         self.placements = []
         if instances:
             matrices = np.array([instance.matrix for instance in instances], np.float64)
-            world = matrices[:, :3, :3] @ corners + matrices[:, :3, 3:]
+            # Written out: thousands of products of small matrices take NumPy long.
+            x, y, z = (matrices[:, :3, axis, None] * corners[:, None, axis] for axis in range(3))
+            world = x + y + z + matrices[:, :3, 3:]
             lows, highs, good = world.min(axis=2), world.max(axis=2), fits(world)
             self.placements = list(map(Placement, instances, first_triangles, lows, highs))
             low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What shading nodes ask about objects: matrices, object and particle info, mesh attributes."""
 
+import operator
+
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
@@ -124,7 +126,7 @@ def _fill(records: np.ndarray, instances: list[Instance], meshes: list[Mesh]) ->
         records[f"to_object{row}"] = inverses[:, row]
     records["location"] = matrices[:, :3, 3]
     for name in ("color", "random", "object_index", "holdout", "shadow_catcher"):
-        records[name] = [getattr(instance, name) for instance in instances]
+        records[name] = list(map(operator.attrgetter(name), instances))
     records["visibility"] = [int(instance.visibility) for instance in instances]
     multiplied = [index for index, instance in enumerate(instances) if instance.particle is not None]
     if multiplied:

@@ -3,6 +3,7 @@
 
 import dataclasses
 import functools
+import operator
 import types
 import typing
 from collections.abc import Callable, Hashable, Sequence
@@ -20,11 +21,10 @@ def encode_columns(members: Sequence[object], kind: type, keep: _Keep) -> dict:
 
     Raises TypeError for a member of another type, or with something in it that no document can hold.
     """
-    for member in members:
-        if type(member) is not kind:
-            raise TypeError(f"a {type(member).__name__} is no {kind.__name__}")
+    for other in set(map(type, members)) - {kind}:
+        raise TypeError(f"a {other.__name__} is no {kind.__name__}")
     columns = {
-        name: _encode_column([getattr(member, name) for member in members], hint, keep)
+        name: _encode_column(list(map(operator.attrgetter(name), members)), hint, keep)
         for name, hint in _hints(kind).items()
     }
     return {"count": len(members), "columns": columns}
@@ -66,10 +66,11 @@ def _encode_column(values: list, hint: object, keep: _Keep) -> dict:
     array = _as_array(values, hint)
     if array is not None:
         return {"rows": keep(array)}
-    places: dict[Hashable, int] = {}
-    which = np.array([places.setdefault(_key(value), len(places)) for value in values], np.int32)
-    firsts = np.unique(which, return_index=True)[1]
-    return {"which": keep(which), "distinct": [encode(values[first], keep) for first in firsts.tolist()]}
+    keys = _keys(values, hint)
+    places = {key: place for place, key in enumerate(dict.fromkeys(keys))}
+    which = np.array([places[key] for key in keys], np.int32)
+    distinct = dict(zip(reversed(keys), reversed(values), strict=True))
+    return {"which": keep(which), "distinct": [encode(distinct[key], keep) for key in places]}
 
 
 def _as_array(values: list, hint: object) -> np.ndarray | None:
@@ -85,11 +86,13 @@ def _as_array(values: list, hint: object) -> np.ndarray | None:
     return None
 
 
-def _key(value: object) -> Hashable:
+def _keys(values: list, hint: object) -> Sequence[Hashable]:
     """What tells values of a field apart; numbers in containers by how they are written, for -0.0 equals 0.0."""
-    if isinstance(value, np.ndarray):
-        return id(value)
-    return repr(value) if isinstance(value, dict | list | tuple) else value
+    if hint is np.ndarray:
+        return list(map(id, values))
+    if typing.get_origin(hint) in {list, dict, tuple}:
+        return [repr(value) if value else None for value in values]
+    return values
 
 
 def _decode_column(document: dict, hint: object, arrays: Arrays, count: int) -> list:

@@ -40,9 +40,8 @@ def static_scene(side: int) -> bpy.types.Scene:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     for number in range(4):
-        bpy.ops.mesh.primitive_grid_add(
-            x_subdivisions=side // 2, y_subdivisions=side // 2, size=2.0, location=(number % 2 * 2, number // 2 * 2, 0.0)
-        )
+        place = number % 2 * 2, number // 2 * 2, 0.0
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=side // 2, y_subdivisions=side // 2, size=2.0, location=place)
         mesh = bpy.context.object.data
         for vertex in mesh.vertices:
             vertex.co.z = 0.1 * math.sin(9.0 * vertex.co.x) * math.cos(7.0 * vertex.co.y)
@@ -203,7 +202,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=[64, 256], metavar="N", help="pixels a side (64 256)")
     parser.add_argument("--frames", type=int, default=12, metavar="N", help="frames that are timed (12)")
-    parser.add_argument("--held-frames", type=int, default=500, metavar="N", help="frames whose memory is watched (500)")
+    parser.add_argument("--held-frames", type=int, default=500, metavar="N",
+                        help="frames whose memory is watched (500)")  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="a hundredth of the triangles, few frames")
     parser.add_argument("--output", type=Path, metavar="FILE.json", help="where the figures go")
     options = parser.parse_args(arguments)

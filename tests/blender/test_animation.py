@@ -120,6 +120,32 @@ def test_each_frame_is_that_of_a_fresh_render(moving, tmp_path, animate_seed):
             assert shown.tobytes() == expected.tobytes(), (persistent, frame, np.abs(shown - expected).max())
 
 
+@pytest.mark.parametrize("position", ["CENTER", "END"])
+def test_each_blurred_frame_is_that_of_a_fresh_render(moving, tmp_path, position):
+    """Frames before it, which it goes to for its keys, and those after it leave nothing behind."""
+    moving.frame_end = 3
+    sharp = still(moving, tmp_path, 2)
+    render = moving.render
+    render.use_motion_blur, render.motion_blur_shutter, render.motion_blur_position = True, 0.9, position
+    fresh = [still(moving, tmp_path, frame) for frame in range(1, 4)]
+    assert fresh[1].tobytes() != sharp.tobytes()
+    for persistent in (False, True):
+        pictures = animation(moving, tmp_path, persistent)
+        for frame, (shown, expected) in enumerate(zip(pictures, fresh), 1):
+            assert shown.tobytes() == expected.tobytes(), (persistent, frame, np.abs(shown - expected).max())
+    render.use_persistent_data = True
+    for frame in (1, 3):  # sharp, then blurred, which takes in what Blender tells
+        moving.frame_set(frame)
+        render.use_motion_blur = frame == 3
+        bpy.ops.render.render()
+    render.use_motion_blur = False
+    moving.frame_set(2)
+    render.filepath = str(tmp_path / "sharp.exr")
+    bpy.ops.render.render(write_still=True)
+    render.use_persistent_data = False
+    assert pixels(tmp_path / "sharp.exr").tobytes() == sharp.tobytes()
+
+
 @pytest.mark.parametrize("persistent", [False, True])
 def test_only_what_changed_is_uploaded_and_built(moving, tmp_path, monkeypatch, persistent):
     """The camera moves in all frames, geometry changes in those where rows grow or objects come and go."""

@@ -150,6 +150,29 @@ def test_shapes_with_other_faces_do_not_deform(scene):
     assert taken.warnings and "its shape is not blurred" in taken.warnings[0] and '"Quad"' in taken.warnings[0]
 
 
+def test_velocities_tell_how_vertices_go(scene):
+    """Also of a mesh with other faces in each frame."""
+    set_world(scene)
+    quad = add_mesh(scene, "Quad")
+    velocities = quad.data.attributes.new("velocity", "FLOAT_VECTOR", "POINT").data
+    velocities[2].vector = (0.0, 0.0, 24.0)
+    velocities[3].vector = (float("nan"), 0.0, 0.0)
+    modifier = quad.modifiers.new("Array", "ARRAY")
+    modifier.count = 1
+    modifier.keyframe_insert("count", frame=FRAME)
+    modifier.count = 2
+    modifier.keyframe_insert("count", frame=FRAME + 1)
+    blur(2.0)
+    taken = taken_scene()
+    (deformation,) = taken.shutter.meshes
+    assert not taken.warnings and deformation.times.tolist() == [0.0, 0.5, 1.0]
+    ways = deformation.positions - deformation.positions[1]
+    np.testing.assert_allclose(ways[:, 2, 2], [-1.0, 0.0, 1.0], atol=1e-6)
+    assert not ways[:, [0, 1, 3]].any()
+    quad.cycles.use_deform_motion = False
+    assert taken_scene().shutter is None
+
+
 def test_what_is_not_there_at_times(scene):
     """It stays in its place where it comes or goes, and is not seen if it is not there in the middle."""
     set_world(scene)
@@ -223,6 +246,21 @@ def test_lights_and_cameras_move(scene):
     np.testing.assert_allclose(widths, 36.0 / np.array([50.0, 50.0, 75.0]), rtol=1e-5)
     lamp.cycles.use_motion_blur = scene.camera.cycles.use_motion_blur = False
     assert taken_scene().shutter is None
+
+
+@pytest.mark.parametrize("position", ["START", "END"])
+def test_the_camera_is_that_of_the_frame(quad, position):
+    """Though markers switch to others before and after it."""
+    scene = bpy.context.scene
+    cameras = [scene.camera]
+    for number in (1, 2):
+        cameras.append(add_object(scene, f"Camera {number}", scene.camera.data, location=(0.0, float(number), 5.0)))
+    for number, camera in enumerate(cameras):
+        scene.timeline_markers.new(camera.name, frame=FRAME - 1 + number).camera = camera
+    blur(2.0, position)
+    taken = taken_scene()
+    assert taken.camera.matrix[1, 3] == 1.0 and taken.shutter.camera is None
+    assert scene.camera == cameras[1]
 
 
 def test_materials_are_those_of_the_frame(quad):

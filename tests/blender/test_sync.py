@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rppm_addon.blender.export.sync import SceneSync
-from rppm_addon.scene import Camera, Scene
+from rppm_addon.scene import Camera, Instance, Scene
+from rppm_addon.scene.documents import field_names
 from rppm_addon.scene.sharing import equal
 
 CAMERA = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8)
@@ -179,7 +180,7 @@ def same(a: Scene, b: Scene) -> bool:
             (
                 scene.meshes[instance.mesh],
                 [scene.materials[material] for material in instance.materials],
-                *(value for name, value in vars(instance).items() if name not in {"mesh", "materials"}),
+                *(getattr(instance, name) for name in field_names(Instance) if name not in {"mesh", "materials"}),
             )
             for instance in scene.instances
         ]
@@ -261,3 +262,75 @@ def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
         bpy.context.view_layer.update()
         assert same(synced.scene, fresh()), edit.__name__
     assert not passes
+
+
+def test_a_mesh_that_bends_keeps_its_other_arrays(synced):
+    (before,) = (mesh for mesh in synced.scene.meshes if mesh.name == "Other")
+    edit_other_mesh()
+    bpy.context.view_layer.update()
+    (after,) = (mesh for mesh in synced.scene.meshes if mesh.name == "Other")
+    for name in ("corner_vertices", "triangle_corners", "triangle_slots"):
+        assert getattr(after, name) is getattr(before, name)
+    assert not np.array_equal(after.positions, before.positions)
+    assert not np.array_equal(after.corner_normals, before.corner_normals)
+    assert same(synced.scene, fresh())
+
+
+def test_a_mesh_whose_vertices_are_another_keeps_nothing_wrong(synced):
+    """More vertices, fewer, and as many in another order."""
+    mesh = bpy.data.meshes["Other"]
+    points, faces = [tuple(vertex.co) for vertex in mesh.vertices], [tuple(face.vertices) for face in mesh.polygons]
+    for some in (faces[:4], faces, [face[::-1] for face in faces], faces[::-1]):
+        mesh.clear_geometry()
+        mesh.from_pydata(points, [], some)
+        bpy.context.view_layer.update()
+        assert same(synced.scene, fresh())
+
+
+def test_many_objects_move_at_once_and_some_change_otherwise(synced):
+    root = _add("Root", None)
+    crowd = [_add(f"Crowd {number}", bpy.data.meshes["Cube" if number % 3 else "Other"]) for number in range(50)]
+    for number, source in enumerate(crowd):
+        source.location, source.parent = (number, 2.0, 0.0), root
+    bpy.context.view_layer.update()
+    chance = random.Random(3)
+    changes = (
+        lambda source: setattr(source, "color", (1.0, 0.5, 0.25, 1.0)),
+        lambda source: setattr(source, "pass_index", 3),
+        lambda source: setattr(source, "visible_shadow", False),
+        lambda source: setattr(source, "name", source.name + "!"),
+        lambda source: setattr(source, "scale", (1.0, 1.0, 0.0)),
+        lambda source: setattr(source, "data", bpy.data.meshes["Cube"]),
+        lambda source: source.__setitem__("heat", 0.5),
+        lambda source: source.modifiers.new("More", "SUBSURF"),
+        lambda source: setattr(source, "visible_camera", False),
+    )
+    for frame, change in enumerate(changes, 2):
+        root.location.x += 0.5
+        change(chance.choice(crowd))
+        bpy.context.view_layer.update()
+        assert same(synced.scene, fresh()), frame
+        root.location.y += 0.5
+        change(chance.choice(crowd))
+        bpy.context.scene.frame_set(frame)
+        assert same(synced.scene, fresh()), frame
+
+
+def test_what_is_multiplied_keeps_to_what_multiplies_it(synced):
+    """Two empties bring the same objects, one of them with a material of its own."""
+    collection = bpy.data.collections.new("Brought")
+    for name in ("Cube", "Twin"):
+        collection.objects.link(bpy.data.objects[name])
+    slot = bpy.data.objects["Twin"].material_slots[0]
+    slot.link, slot.material = "OBJECT", bpy.data.materials["Blue"]
+    for number in range(2):
+        empty = _add(f"Bringing {number}", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        empty.location.z = 3.0 + number
+    bpy.context.view_layer.update()
+    assert same(synced.scene, fresh())
+    scene = synced.scene
+    brought = [instance for instance in scene.instances if instance.matrix[2, 3] >= 3.0]
+    names = sorted((i.object_name, i.matrix[2, 3], scene.materials[i.materials[0]].name) for i in brought)
+    assert names == [("Cube", 3.0, "Red"), ("Cube", 4.0, "Red"), ("Twin", 3.0, "Blue"), ("Twin", 4.0, "Blue")]
+    assert len({instance.random for instance in brought}) == 4

@@ -29,13 +29,20 @@ def wait_for(what, condition):
 
 def renders_below(process):
     """The renders that a farm's workers have started; their parents are the workers."""
+    return _children_with(process, "rppm_addon.commands.farm.leash", recursive=True)
+
+
+def workers_of(process):
+    """The workers of a farm on this machine, also those that are about to start."""
+    return _children_with(process, "spawn_main", recursive=False)
+
+
+def _children_with(process, word, recursive):
     found = []
-    for child in psutil.Process(process.pid).children(recursive=True):
-        try:
-            if "rppm_addon.commands.farm.leash" in child.cmdline():
+    for child in psutil.Process(process.pid).children(recursive=recursive):
+        with contextlib.suppress(psutil.Error):
+            if word in " ".join(child.cmdline()):
                 found.append(child)
-        except psutil.Error:
-            continue
     return found
 
 

@@ -13,7 +13,7 @@ import pytest
 from rppm_addon.pictures import is_whole, read_exr
 from rppm_addon.session.checkpoint_file import read_summary
 
-from .conftest import ROOT, dask, renders_below, start_rppm, wait_for
+from .conftest import ROOT, dask, renders_below, start_rppm, wait_for, workers_of
 
 
 def farm(blend, folder, *options):
@@ -185,35 +185,49 @@ def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
             wait_for("its end", lambda lost=render[0]: not lost.is_running())
         output, errors = process.communicate(timeout=120)
     assert process.returncode == 1
-    assert "rppm: frame 1 failed: 2 workers were lost while they were at it" in errors
+    assert "rppm: frame 1 failed: its worker was lost 2 times" in errors
     assert "1 of 2 frames failed: frame 1" in errors
     assert output.count(" s on ") == 1
     assert [path.name for path in pictures(tmp_path)] == ["0002.exr"]
 
 
 @pytest.mark.long
+def test_a_worker_that_dies_while_it_starts_is_replaced(tmp_path, blend_files):
+    """Dask alone may not start it again."""
+    frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
+    with start_rppm("farm", blend_files[0], *frames) as process:
+        worker = wait_for("a render", lambda: renders_below(process))[0].parent()
+        worker.kill()
+        successor = wait_for("its successor", lambda: [found for found in workers_of(process) if found != worker])[0]
+        successor.kill()
+        output, errors = process.communicate(timeout=150)
+    assert process.returncode == 0, errors
+    assert output.count(" s on ") == 2
+    assert len(pictures(tmp_path)) == 2
+
+
+@pytest.mark.long
 def test_workers_of_a_scheduler_need_the_same_rppm(tmp_path, blend_files):
-    """By the commands of docs/farm.md; the scheduler has no RPPM, one worker has another."""
-    (tmp_path / "other" / "rppm_addon").mkdir(parents=True)
-    (tmp_path / "other" / "rppm_addon" / "__init__.py").write_text("")
-    (tmp_path / "nothing").mkdir()
-    (tmp_path / "nothing" / "rppm_addon.py").write_text("raise ImportError('no RPPM here')")
+    """By the commands of docs/farm.md; the scheduler and one worker have none."""
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "rppm_addon.py").write_text("raise ImportError('no RPPM here')")
     scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
     scheduler += ["--scheduler-file", str(tmp_path / "scheduler.json")]
     with contextlib.ExitStack() as stack:
-        stack.enter_context(dask(tmp_path / "nothing", *scheduler))
+        stack.enter_context(dask(other, *scheduler))
         wait_for("the scheduler", (tmp_path / "scheduler.json").exists)
         address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
         worker = ("worker", address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard", "--name")
         stack.enter_context(dask(ROOT, *worker, "same"))
-        stack.enter_context(dask(tmp_path / "other", *worker, "other"))
+        stack.enter_context(dask(other, *worker, "other"))
         with distributed.Client(address) as client:
             wait_for("both workers", lambda: len(client.scheduler_info()["workers"]) == 2)
         farm = ("farm", blend_files[0], "--frames", "1..2", "--scheduler", address)
         with start_rppm(*farm, "--iterations", 2, "-o", tmp_path / "####.exr") as process:
             output, errors = process.communicate(timeout=120)
         assert process.returncode == 0, errors
-        assert re.search(r"workers must run the same RPPM .* left out: tcp\S+: No module named", errors)
+        assert re.search(r"workers must run the same RPPM .* left out: tcp\S+: no RPPM here", errors)
         assert len(re.findall(r"^frame \d: \d+\.\d s on \S+:same$", output, re.MULTILINE)) == 2
         assert all(map(is_whole, pictures(tmp_path)))
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scenes
 from lobes import Lobe, LobeKind, material
+from test_shutter import everything_moves
 
 from rppm_addon.integrator import bands
 from rppm_addon.integrator.guide import LEARNING_ITERATIONS
@@ -111,6 +112,26 @@ def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mappe
     sums = [state.normal * state.surface_counts[..., None].astype(np.float64) for state in (before, part)]
     np.testing.assert_allclose(sum(sums) / np.maximum(counts, 1)[..., None], whole.normal, atol=1e-6)
     np.testing.assert_array_equal(np.where(before.depth < 1e10, before.depth, part.depth), whole.depth)
+
+
+def test_moments_of_an_open_shutter_are_those_of_the_whole(mapper, other_mapper):
+    """Each iteration has its time by its number, however one came to it."""
+    scene = everything_moves(busy_room(), 1.0)
+    mapper.build(scene)
+    early = run_until(mapper, 3)
+    whole = run_until(mapper, LAST)
+    other_mapper.build(scene)
+    other_mapper.resume(early)
+    assert_same(run_until(other_mapper, LAST), whole)
+    mapper.build(scene)
+    before = run_until(mapper, 18)
+    other_mapper.build(scene)
+    for _ in other_mapper.leave_out(18):
+        pass
+    part = run_until(other_mapper, LAST)
+    assert_same(part, whole, "wide_radius", "tallies", "learnt")
+    radiance = (18 * before.radiance.astype(np.float64) + part.radiance) / LAST
+    np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
 
 
 def test_the_pane_ends_paths(mapper):

@@ -93,6 +93,26 @@ def test_a_blurred_picture_after_others_is_the_same(mapper, other_mapper):
         np.testing.assert_array_equal(a, b)
 
 
+def test_a_state_goes_on_in_the_middle(mapper, other_mapper):
+    """Also where the lamp grows, so that lights share photons by powers that change."""
+    scene = everything_moves(room(), 1.0)
+    lamp = scene.lights[0]
+    scene.lights = [lamp, dataclasses.replace(lamp, name="other", matrix=scenes.placed(0.5, 0.5, 0.9))]
+    scene.shutter.lights[0].matrices[1] @= np.diag([3.0, 3.0, 1.0, 1.0])
+    mapper.update(scene)
+    states = []
+    for _ in range(7):
+        mapper.iterate()
+        states.append(mapper.state())
+    for stop in (2, 5):
+        other_mapper.build(scene)
+        other_mapper.resume(states[stop - 1])
+        for _ in range(stop, 7):
+            other_mapper.iterate()
+        np.testing.assert_array_equal(other_mapper.state().radiance, states[-1].radiance)
+        np.testing.assert_array_equal(other_mapper.state().tallies, states[-1].tallies)
+
+
 def test_radii_are_those_of_the_whole_time(mapper):
     scene = open_for(room(), instances=[way(BALL, room().instances[BALL].matrix, 4.0, 0.0, 3.0)])
     mapper.update(scene)

@@ -44,3 +44,23 @@ def test_engines_and_files_change(open_blender):
     assert blender.step("evaluate", text="scene.render.engine") == "RPPM"
     assert blender.step("evaluate", text="scene.rppm.iterations") == 1000000
     blender.quit()
+
+
+def test_an_animation_renders_what_the_background_renders(machine, open_blender):
+    """In one session of the renderer process, which is gone when the last frame is done."""
+    file = ["/mnt/moving.blend", "--render-output", "/mnt/background_####", "-s", "1", "-e", "4", "-a"]
+    blender_in_background(machine, *file)
+    blender = open_blender("moving.blend")
+    for path, value in ("filepath", "/mnt/window_####"), ("use_overwrite", True):
+        blender.step("assign", path=f"scene.render.{path}", value=value)
+    for name, frame in ("frame_start", 1), ("frame_end", 4):
+        blender.step("assign", path=f"scene.{name}", value=frame)
+    blender.point_at("VIEW_3D")
+    blender.press("ctrl+F12")
+    blender.wait_until("render_counts", 240.0, lambda counts: counts["completed"] == 1)
+    for frame in range(1, 5):
+        names = (f"{place}_{frame:04d}.png" for place in ("background", "window"))
+        background, window = (read_png(machine.folder / name).astype(float) for name in names)
+        assert window.shape == background.shape and window.max() > 100
+        np.testing.assert_array_equal(window, background)
+    blender.quit()

@@ -156,6 +156,17 @@ def test_a_bending_object(renderer, how):
     compare_with_cycles(renderer, how)
 
 
+@pytest.mark.long
+def test_vertices_that_say_how_fast_they_are(renderer):
+    stage()
+    thrown = bar()
+    velocities = thrown.data.attributes.new("velocity", "FLOAT_VECTOR", "POINT").data
+    for vertex, velocity in zip(thrown.data.vertices, velocities, strict=True):
+        velocity.vector = (20.0 + 10.0 * vertex.co.x, 0.0, 24.0 * vertex.co.x)  # of 24 frames a second
+    blur()
+    compare_with_cycles(renderer, "velocity")
+
+
 MOMENTS = (np.arange(12) + 0.5) / 12 - 0.5
 
 

@@ -11,14 +11,17 @@ from .matrices import rigid
 from .report import Report
 
 
-def export_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, report: Report) -> Camera:
-    """The scene's active camera as evaluated in the depsgraph.
+def export_camera(
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, report: Report, used: bpy.types.Object | None = None
+) -> Camera:
+    """The scene's active camera, or the one that is used in its place, as evaluated in the depsgraph.
 
     Raises SceneError when there is no camera that can be used.
     """
-    if scene.camera is None:
+    used = used or scene.camera
+    if used is None:
         raise SceneError("the scene has no camera; add one, or make one active with Scene properties > Camera")
-    camera_object = scene.camera.evaluated_get(depsgraph)
+    camera_object = used.evaluated_get(depsgraph)
     if camera_object.type != "CAMERA":
         raise SceneError(
             f'the active camera "{camera_object.name}" is no camera but an object of type {camera_object.type}; '

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random numbers that Cycles makes of whole numbers."""
 
+import functools
+
 _MIXED = ((2, 1, 14), (0, 2, 11), (1, 0, 25), (2, 1, 16), (0, 2, 4), (1, 0, 14), (2, 1, 24))
 """Which of three numbers is mixed with which, turned by how many bits."""
 
 
+@functools.lru_cache(1 << 16)
 def hashed(number: int) -> float:
     """From 0 to 1, the last mix of Bob Jenkins' lookup3 of a number and 0."""
     values = [(0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF] * 3

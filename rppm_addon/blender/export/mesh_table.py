@@ -47,6 +47,14 @@ class MeshTable:
         """A mesh is used as before."""
         self._seen.add(self._keys[place])
 
+    def knows(self, place: int) -> bool:
+        """Whether a mesh has not been forgotten."""
+        return place in self._keys
+
+    def add_owner(self, place: int, owner: int) -> None:
+        """An object brings a mesh that others have brought in this pass."""
+        self._owners[self._keys[place]].add(owner)
+
     def forget(self, owners: set[int]) -> None:
         """What these objects showed has changed."""
         self._before = {}

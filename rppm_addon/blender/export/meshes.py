@@ -66,6 +66,16 @@ def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray
     return positions, corner_vertices, _corner_normals(mesh, before.corner_normals)
 
 
+def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """(vertices, 3) float32 metres a second of the point attribute "velocity", 0 where it is not finite; None without
+    one."""
+    attribute = mesh.attributes.get("velocity")
+    if attribute is None or (attribute.domain, attribute.data_type) != ("POINT", "FLOAT_VECTOR"):
+        return None
+    velocities = elements(attribute.data, "vector", len(mesh.vertices), 3, np.float32)
+    return np.where(np.abs(velocities) < FARTHEST, velocities, np.float32(0.0))
+
+
 def _kept(before: np.ndarray, view: np.ndarray) -> np.ndarray:
     """The array before if it says the same as Blender's, or else a copy of that."""
     return before if same_bits(before, view) else view.copy()

@@ -15,7 +15,7 @@ from ...scene import CameraMovement, Deformation, Instance, Light, Mesh, Movemen
 from .camera import camera_pose, export_camera
 from .context import ExportContext
 from .matrices import usable_matrices
-from .meshes import read_shape
+from .meshes import read_shape, read_velocities
 from .objects import Identity, ObjectExporter, Placed, identity_of
 from .sync import read_edits
 
@@ -27,12 +27,12 @@ _MIDDLES = {"START": 0.5, "CENTER": 0.0, "END": -0.5}
 
 def is_blurred(depsgraph: bpy.types.Depsgraph, engine: bpy.types.RenderEngine | None) -> bool:
     """Whether a render blurs what moves. Only an engine in a render may go to other frames."""
-    render = depsgraph.scene.render
+    render = depsgraph.scene_eval.render
     return (
         engine is not None
         and not engine.is_preview
         and render.use_motion_blur
-        and getattr(depsgraph.view_layer, "use_motion_blur", True)  # Blender 5
+        and getattr(depsgraph.view_layer_eval, "use_motion_blur", True)  # Blender 5
         and render.motion_blur_shutter > 0.0
     )
 
@@ -64,6 +64,7 @@ class MotionExporter:
         self._cameras: dict[float, tuple[np.ndarray, tuple[float, ...]]] = {}
         self._steps: dict[Identity, int] = {}
         self._steps_of_shapes: dict[int, int] = {}
+        self._with_velocities: set[int] = set()
 
     def run(self, scene: Scene, objects: ObjectExporter, placed: Placed) -> Placed:
         """Give a scene its shutter, and what moves the places of the middle of the shutter's time.
@@ -72,16 +73,17 @@ class MotionExporter:
         """
         source = self._depsgraph.scene_eval
         frame, render = source.frame_current_final, source.render
-        length = render.motion_blur_shutter
+        length, seconds = render.motion_blur_shutter, render.motion_blur_shutter * render.fps_base / render.fps
         middle = frame + _MIDDLES[render.motion_blur_position] * length
-        curve = shutter_curve(self._depsgraph.scene.render.motion_blur_shutter_curve)
-        camera = self._depsgraph.scene.camera
+        curve = shutter_curve(render.motion_blur_shutter_curve)
+        camera = source.camera.original  # markers may switch to another one in between
         times = self._all_times()
         try:
             if middle != frame:
-                placed = self._go_to_middle(middle, scene, objects)
+                placed = self._go_to_middle(middle, scene, objects, camera)
             meshes = list(objects.meshes.meshes)
             bases = {placed.identities[id(instance)]: instance.mesh for instance in placed.instances}
+            self._follow_velocities(bases, meshes, seconds)
             changed: set[int] = set()
             for time in times:
                 self._context.report.progress("Exporting what moves")
@@ -100,7 +102,7 @@ class MotionExporter:
         whole = math.floor(frame)
         self._engine.frame_set(whole, frame - whole)
 
-    def _go_to_middle(self, middle: float, scene: Scene, objects: ObjectExporter) -> Placed:
+    def _go_to_middle(self, middle: float, scene: Scene, objects: ObjectExporter, camera: bpy.types.Object) -> Placed:
         """Materials and images stay those of the frame."""
         self._go_to(middle)
         images = self._context.images
@@ -108,7 +110,8 @@ class MotionExporter:
         self._context.read_from(self._depsgraph)
         images.frame = of_frame
         objects.meshes.forget(read_edits(self._depsgraph).shapes)
-        scene.camera = export_camera(self._depsgraph.scene_eval, self._depsgraph, self._context.report)
+        source, report = self._depsgraph.scene_eval, self._context.report
+        scene.camera = export_camera(source, self._depsgraph, report, camera)
         return objects.export(self._depsgraph, identify=True)
 
     def _all_times(self) -> list[float]:
@@ -118,11 +121,7 @@ class MotionExporter:
 
     def _look_around(self, time: float, bases: dict[Identity, int], meshes: list[Mesh], changed: set[int]) -> None:
         """Note where everything is, and the shape of what has changed."""
-        for instance in self._depsgraph.object_instances:
-            source = instance.object
-            owner = instance.parent if instance.is_instance else source
-            identity = identity_of(instance, source.original, owner.original)
-            steps, deforms = self._flags_for(identity, source, owner)
+        for identity, instance, source, steps, deforms in self._instances():
             self._steps[identity] = steps
             if steps == 0 or time not in step_times(steps):
                 continue
@@ -130,11 +129,39 @@ class MotionExporter:
             if np.isfinite(matrix).all():
                 self._matrices.setdefault(identity, {})[time] = matrix
             place = bases.get(identity)
-            if place is None or not deforms or source.type != "MESH":
+            if place is None or not deforms or source.type != "MESH" or place in self._with_velocities:
                 continue
             if time not in self._shapes.get(place, {}) and changed & set(identity[:2]):
                 self._shapes.setdefault(place, {})[time] = _shape(source.data, meshes[place])
                 self._steps_of_shapes[place] = steps
+
+    def _follow_velocities(self, bases: dict[Identity, int], meshes: list[Mesh], seconds: float) -> None:
+        """Meshes that say how fast their vertices are go straight on: their faces may be others at other times."""
+        known: set[int] = set()
+        for identity, _, source, steps, deforms in self._instances():
+            place = bases.get(identity)
+            if place is None or place in known or source.type != "MESH":
+                continue
+            known.add(place)
+            velocities = read_velocities(source.data) if steps and deforms else None
+            if velocities is not None:
+                mesh, way = meshes[place], velocities * np.float32(0.5 * seconds)
+                self._shapes[place] = {
+                    0.0: (mesh.positions - way, mesh.corner_normals),
+                    1.0: (mesh.positions + way, mesh.corner_normals),
+                }
+                self._steps_of_shapes[place] = 1
+                self._with_velocities.add(place)
+
+    def _instances(
+        self,
+    ) -> Iterator[tuple[Identity, bpy.types.DepsgraphObjectInstance, bpy.types.Object, int, bool]]:
+        """All that there is now, each with its object and what _flags_for gives; valid until the next one only."""
+        for instance in self._depsgraph.object_instances:
+            source = instance.object
+            owner = instance.parent if instance.is_instance else source
+            identity = identity_of(instance, source.original, owner.original)
+            yield identity, instance, source, *self._flags_for(identity, source, owner)
 
     def _flags_for(self, identity: Identity, source: bpy.types.Object, owner: bpy.types.Object) -> tuple[int, bool]:
         """Steps and whether shapes are blurred, by what the object and what multiplies it say."""
@@ -227,6 +254,6 @@ def _flags_of(source: bpy.types.Object) -> tuple[int, bool]:
 
 def _shape(mesh: bpy.types.Mesh, middle: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
     """Positions and corner normals of a mesh at another time; None if it is another mesh."""
-    positions, corner_vertices, corner_normals = read_shape(mesh)
+    positions, corner_vertices, corner_normals = read_shape(mesh, middle)
     same = len(positions) == len(middle.positions) and np.array_equal(corner_vertices, middle.corner_vertices)
     return (positions, corner_normals) if same and np.isfinite(positions).all() else None

@@ -30,6 +30,8 @@ class Edits:
     """Evaluated objects by session_uid."""
     shapes: set[int] = field(default_factory=set)
     """session_uid of the objects whose geometry has changed."""
+    looks: set[int] = field(default_factory=set)
+    """session_uid of the objects of which more may have changed than where they are, such as their materials."""
     materials: list[bpy.types.Material] = field(default_factory=list)
     world: bool = False
     images: bool = False
@@ -40,13 +42,16 @@ class Edits:
 def read_edits(depsgraph: bpy.types.Depsgraph) -> Edits:
     """The updates of a depsgraph since it was last evaluated."""
     edits = Edits()
-    for update in depsgraph.updates:
+    shapes, looks = (_flags(depsgraph.updates, name) for name in ("is_updated_geometry", "is_updated_shading"))
+    for number, update in enumerate(depsgraph.updates):
         block = update.id
         if isinstance(block, bpy.types.Object):
             uid = block.original.session_uid
             edits.objects[uid] = block
-            if update.is_updated_geometry:
+            if shapes[number]:
                 edits.shapes.add(uid)
+            if shapes[number] or looks[number]:
+                edits.looks.add(uid)
         elif isinstance(block, bpy.types.Material):
             edits.materials.append(block)
         elif isinstance(block, bpy.types.World):
@@ -57,6 +62,13 @@ def read_edits(depsgraph: bpy.types.Depsgraph) -> Edits:
             edits.others = True
     edits.others |= not depsgraph.updates
     return edits
+
+
+def _flags(updates: bpy.types.bpy_prop_collection, name: str) -> list[bool]:
+    values = np.zeros(len(updates), bool)
+    if len(values):
+        updates.foreach_get(name, values)
+    return values.tolist()
 
 
 _TOLD_BY_THEIR_USERS = (
@@ -110,8 +122,9 @@ class SceneSync:
                 self._world = export_world(source.world, self._context)
             self._world_may_change = self._context.untold > untold
         self._objects.meshes.forget(edits.shapes)
-        if self._placed is None or edits.others or any(asked) or not self._patch(edits):
-            self._placed = self._objects.export(depsgraph, shown, {} if any(asked) else self._unchanged(edits))
+        if self._placed is None or edits.others or any(asked) or not self._patch(depsgraph, edits):
+            unchanged, moved = ({}, {}) if any(asked) else self._known(edits)
+            self._placed = self._objects.export(depsgraph, shown, unchanged, moved)
         world, suns = self._world
         settings = export_settings(source, self._viewport)
         settings.validate()
@@ -148,33 +161,41 @@ class SceneSync:
             edits.world |= self._world_may_change
         self._frame = frame
 
-    def _unchanged(self, edits: Edits) -> dict[int, Instance]:
-        """Instances of the objects that the depsgraph does not name."""
+    def _known(self, edits: Edits) -> tuple[dict[int, Instance], dict[int, Instance]]:
+        """Instances of the objects that the depsgraph does not name, and of those that at most were moved."""
         if self._placed is None:
-            return {}
+            return {}, {}
         instances, alone = self._placed.instances, self._placed.alone
-        return {uid: instances[place] for uid, place in alone.items() if uid not in edits.objects}
+        unchanged, moved = {}, {}
+        for uid, place in alone.items():
+            if uid not in edits.objects:
+                unchanged[uid] = instances[place]
+            elif uid not in edits.looks:
+                moved[uid] = instances[place]
+        return unchanged, moved
 
-    def _patch(self, edits: Edits) -> bool:
+    def _patch(self, depsgraph: bpy.types.Depsgraph, edits: Edits) -> bool:
         """Put changed objects in their places; False when that is not enough."""
-        instances, lights = self._placed.instances, self._placed.lights
+        placed, changed = self._placed, []
         for uid, source in edits.objects.items():
             if source.is_instancer or len(source.particle_systems) > 0:
                 return False
-            if uid in self._placed.alone:
+            if uid in placed.alone:
                 if uid in edits.shapes and any(modifier.type == "NODES" for modifier in source.modifiers):
                     return False  # they may bring instances
-                with self._report.about(("object", uid)):
-                    instance = self._objects.instance(source)
-                if instance is None:
-                    return False
-                instances[self._placed.alone[uid]] = instance
-            elif uid in self._placed.lights_alone:
+                changed.append(uid)
+            elif uid in placed.lights_alone:
                 with self._report.about(("object", uid)):
                     light = self._objects.light(source, np.array(source.matrix_world, np.float64))
                 if light is None:
                     return False
-                lights[self._placed.lights_alone[uid]] = light
+                placed.lights[placed.lights_alone[uid]] = light
             elif source.type not in _SHAPELESS:
                 return False
+        before = [None if uid in edits.looks else placed.instances[placed.alone[uid]] for uid in changed]
+        instances = self._objects.instances(depsgraph, [edits.objects[uid] for uid in changed], before)
+        if any(instance is None for instance in instances):
+            return False
+        for uid, instance in zip(changed, instances, strict=True):
+            placed.instances[placed.alone[uid]] = instance
         return True

@@ -3,9 +3,10 @@
 
 import contextlib
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+import cryptography  # noqa: F401 (Security.temporary needs it, and says so too late)
 import dask
 import distributed
 from distributed.security import Security
@@ -15,9 +16,10 @@ from .errors import FarmError
 from .identity import identity
 
 CONNECT_SECONDS = 20.0
-_WITHOUT_WEB_PAGES = {
-    "distributed.scheduler.http.routes": [],
+_LOCAL = {
+    "distributed.scheduler.http.routes": [],  # no web pages
     "distributed.worker.http.routes": [],
+    "distributed.deploy.lost-worker-timeout": "20s",  # a worker that does not come back by itself is replaced then
 }
 
 
@@ -26,7 +28,8 @@ class Cluster:
     """Workers that run the same RPPM as this process."""
 
     client: distributed.Client
-    local: bool
+    replace_lost: Callable[[], None] | None = None
+    """Starts workers of this machine that did not come back by themselves; None where they are others' concern."""
 
     def __post_init__(self) -> None:
         self._identity = identity()
@@ -36,9 +39,13 @@ class Cluster:
     def workers(self) -> set[str]:
         """Addresses of the workers that are there now and may be given work."""
         there = set(self.client.scheduler_info()["workers"])
+        if self.replace_lost is not None:
+            self.replace_lost()
         new = sorted(there - self._known.keys())
         if new:
-            answers = self.client.run(identity_function(self.local), workers=new, on_error="return")
+            answers = self.client.run(
+                identity_function(local=self.replace_lost is not None), workers=new, on_error="return"
+            )
             self._known.update({worker: str(answer) for worker, answer in answers.items()})
         return {worker for worker in there if self._known.get(worker) == self._identity}
 
@@ -62,7 +69,7 @@ def remote_cluster(address: str, debug: bool) -> Iterator[Cluster]:
             f"no dask scheduler answers at {address} ({error}); start one with `dask scheduler` and give its address"
         ) from error
     with client:
-        yield Cluster(client, local=False)
+        yield Cluster(client)
 
 
 @contextlib.contextmanager
@@ -96,11 +103,11 @@ def local_cluster(devices: Sequence[str | None], allowed_failures: int, debug: b
         },
     }
     with (
-        dask.config.set(_WITHOUT_WEB_PAGES | {"distributed.scheduler.allowed-failures": allowed_failures}),
+        dask.config.set(_LOCAL | {"distributed.scheduler.allowed-failures": allowed_failures}),
         distributed.SpecCluster(workers, scheduler, security=security, silence_logs=level) as cluster,
         distributed.Client(cluster, security=security) as client,
     ):
-        yield Cluster(client, local=True)
+        yield Cluster(client, lambda: cluster.scale(len(devices)))
 
 
 def _log_level(debug: bool) -> int:

@@ -4,7 +4,7 @@
 import contextlib
 import dataclasses
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass
@@ -37,6 +37,8 @@ class Dispatcher:
         self._cluster, self._ledger, self._retries, self._should_stop = cluster, ledger, retries, should_stop
         self._client = cluster.client
         self._running: dict[distributed.Future, _Assignment] = {}
+        self._losses: Counter[Task] = Counter()
+        """How often all workers were lost that a task was meant for: the scheduler counts other losses."""
         self._told = ""
 
     def run(self, tasks: Sequence[Task], watch: Watch) -> list[Task]:
@@ -55,7 +57,14 @@ class Dispatcher:
                     seen = time.monotonic()
                 elif time.monotonic() - seen > _WORKER_SECONDS:
                     raise FarmError(f"no worker for {_WORKER_SECONDS:.0f} s. {self._cluster.refused()}".rstrip())
-                waiting.extendleft(self._stranded(workers))
+                for task in self._stranded(workers):
+                    self._losses[task] += 1
+                    if self._losses[task] <= self._retries:
+                        waiting.appendleft(task)
+                    else:
+                        failed.append(task.rest)
+                        watch.on_end(task, None)
+                        self._tell_loss(task.rest, self._losses[task], watch)
                 while waiting and len(self._running) < len(workers):
                     self._submit(waiting.popleft(), workers)
                 failed += self._collect(watch)
@@ -108,12 +117,14 @@ class Dispatcher:
         return failed
 
     def _tell(self, task: Task, error: BaseException, watch: Watch) -> None:
-        where, text = "", str(error)
-        if isinstance(error, TaskError):
-            where = f" on {error.worker}"
-        elif isinstance(error, distributed.KilledWorker):
-            text = f"{error.allowed_failures + 1} workers were lost while they were at it"
-        watch.warn(f"{task.name} failed{where}: {text}\n  {task.command_line}")
+        if isinstance(error, distributed.KilledWorker):
+            self._tell_loss(task, error.allowed_failures + 1, watch)
+            return
+        where = f" on {error.worker}" if isinstance(error, TaskError) else ""
+        watch.warn(f"{task.name} failed{where}: {error}\n  {task.command_line}")
+
+    def _tell_loss(self, task: Task, losses: int, watch: Watch) -> None:
+        watch.warn(f"{task.name} failed: its worker was lost {losses} times\n  {task.command_line}")
 
     def _warn(self, watch: Watch) -> None:
         refused = self._cluster.refused()
