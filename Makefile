@@ -16,8 +16,9 @@ setup: ## Install what is missing: system packages (Debian, as root) and .venv
 render: setup ## Render the sample scene inside Blender with RPPM to out/ (PNG and EXR)
 	$(RPPM) render docs/samples/first_light.blend -o out/first_light.exr -o out/first_light.png --json out/first_light.json
 
-sample: setup ## Build docs/samples/first_light.blend anew
-	$(BLENDER_PYTHON) docs/samples/first_light.py docs/samples/first_light.blend
+sample: setup ## Build docs/samples/*.blend anew
+	for name in first_light pool spotlight; do \
+		$(BLENDER_PYTHON) docs/samples/$$name.py docs/samples/$$name.blend || exit 1; done
 
 extension: setup ## Build the zip that Blender installs, to build/extension/ (EXTENSION=--split-platforms: one a platform)
 	.venv/bin/python extension/build.py $(EXTENSION)

@@ -193,7 +193,7 @@ def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
 
 @pytest.mark.long
 def test_a_worker_that_dies_while_it_starts_is_replaced(tmp_path, blend_files):
-    """Dask alone does not start it again."""
+    """Dask alone may not start it again."""
     frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
     with start_rppm("farm", blend_files[0], *frames) as process:
         worker = wait_for("a render", lambda: renders_below(process))[0].parent()

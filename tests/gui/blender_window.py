@@ -93,8 +93,9 @@ class BlenderWindow:
             self.wait_until("ready", 10.0)
 
     def press(self, key: str) -> None:
-        """Press and release a key, by its X11 name."""
-        self.machine.press("key", KEY_CODES.get(key, key))
+        """Press and release a key, by its X11 name, maybe after others that are held: ctrl+F12."""
+        *held, last = key.split("+")
+        self.machine.press("key", "+".join([*held, KEY_CODES.get(last, last)]))
 
     def quit(self) -> None:
         """Quit as a user does, and check that nothing stays behind."""

@@ -68,24 +68,24 @@ def shows(remote, scene, x, pictures):
 
 
 def test_only_what_is_new_is_sent(remote, scene, pictures, monkeypatch):
-    sent = []
+    sent = {}
     original = child_process.ChildProcess._send_part
 
     def watch(self, kind, session, number, part, **content):
-        sent.append((session, sorted(part.document) if kind == "members" else None))
+        sent.setdefault((session, number), set()).update(part.document if kind == "members" else ())
         original(self, kind, session, number, part, **content)
 
     monkeypatch.setattr(child_process.ChildProcess, "_send_part", watch)
     for x in (0.0, 0.3, 0.6):
         shows(remote, scene, x, pictures)
-    members = [names for _, names in sent if names is not None]
     assert len({session for session, _ in sent}) == 1
-    assert "meshes" in members[0] and members[1:] == [["camera"], ["camera"]]
+    first, *others = sent.values()
+    assert "meshes" in first and others == [{"camera"}, {"camera"}]
     assert len(remote.process.sessions) == 1
     remote.forget()
     assert not remote.process.sessions
     shows(remote, scene, 0.3, pictures)
-    assert "meshes" in sent[-2][1]
+    assert "meshes" in list(sent.values())[-1]
 
 
 def test_who_is_stopped_does_not_stop_the_next(remote, scene, pictures):
