@@ -15,6 +15,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 for folder in (ROOT, ROOT / "tests/benchmarks"):  # the checkout, installed or not
@@ -36,7 +37,7 @@ from rppm_addon.session.arrays import pack, unpack  # noqa: E402
 from rppm_addon.session.protocol import frame_message  # noqa: E402
 from rppm_addon.session.transfer import SceneReceiver, SceneSender  # noqa: E402
 
-STAGES = ("Blender", "export", "send", "receive", "upload", "gather", "fresh export")
+STAGES = ("Blender", "export", "send", "receive", "upload", "gather", "others", "fresh export")
 CAMERA = Camera(np.diag((1.0, 1.0, 1.0, 1.0)), (-1.0, 1.0, -1.0, 1.0), 32, 32)
 WARM_UP = 3
 """Frames before the first that counts: programs are made, buffers grow."""
@@ -78,28 +79,34 @@ class Device:
         self._mapper = ProgressivePhotonMapper(self.context, self._library)
 
     def take(self, scene: Scene, watch: Stopwatch) -> None:
-        gather = self._mapper._geometry._gather
-        run, seconds = gather.run, [0.0, 0.0]
+        """Counts as upload what Geometry and the attributes of surfaces take, but for the gathering of triangles."""
+        geometry, resolve = self._mapper._geometry, self._mapper._resolve
+        spent = {owner: np.zeros(2) for owner in (geometry, resolve, geometry._gather)}
 
-        def timed(*arguments: object) -> None:
-            self.context.finish()
-            wall, busy = time.perf_counter(), time.process_time()
-            run(*arguments)
-            self.context.finish()
-            seconds[0] += time.perf_counter() - wall
-            seconds[1] += time.process_time() - busy
+        def timed(owner: object, work: Callable) -> Callable:
+            def run(*arguments: object, **named: object) -> None:
+                self.context.finish()
+                started = np.array([time.perf_counter(), time.process_time()])
+                work(*arguments, **named)
+                self.context.finish()
+                spent[owner] += np.array([time.perf_counter(), time.process_time()]) - started
 
-        gather.run = timed
-        wall, busy = time.perf_counter(), time.process_time()
-        try:
+            return run
+
+        started = np.array([time.perf_counter(), time.process_time()])
+        with (
+            mock.patch.object(geometry, "build", timed(geometry, geometry.build)),
+            mock.patch.object(resolve, "build", timed(resolve, resolve.build)),
+            mock.patch.object(geometry._gather, "run", timed(geometry._gather, geometry._gather.run)),
+        ):
             self._mapper.update(scene)
             self.context.finish()
-        finally:
-            gather.run = run
+        whole = np.array([time.perf_counter(), time.process_time()]) - started
         self._mapper._build_deep_cubemap = lambda: None
-        watch.seconds["gather"].append((seconds[0], seconds[1]))
-        rest = time.perf_counter() - wall - seconds[0], time.process_time() - busy - seconds[1]
-        watch.seconds["upload"].append(rest)
+        gather = spent[geometry._gather]
+        upload = spent[geometry] + spent[resolve] - gather
+        for name, seconds in (("gather", gather), ("upload", upload), ("others", whole - upload - gather)):
+            watch.seconds[name].append(tuple(seconds.tolist()))
 
     def release(self) -> None:
         self._mapper.release()
