@@ -272,8 +272,16 @@ class Emission:
         self._lights.upload(self._table)
         return float(self._table["photon_count"] @ useful[:, 1] / before)
 
-    def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
-        """Emit ``count`` photons: their first rays and the flux they carry."""
+    def run(
+        self,
+        rays: moderngl.Buffer,
+        photon_paths: moderngl.Buffer,
+        world_radiances: moderngl.Buffer,
+        count: int,
+        seed: int,
+        iteration: int,
+    ) -> None:
+        """Emit ``count`` photons: their first rays, the flux they carry, and how bright the world is there."""
         self.use_maps()
         self._program.run(
             count,
@@ -282,6 +290,7 @@ class Emission:
                 **self._guide.buffers,
                 "Rays": rays,
                 "PhotonPaths": photon_paths,
+                "WorldRadiances": world_radiances,
                 "Targets": self._targets.buffer,
             },
             {**self.parameters(seed, iteration, count), "target_count": self._target_count},

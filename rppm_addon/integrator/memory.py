@@ -83,6 +83,7 @@ def expected_memory(width: int, height: int, photons: int, segments: int) -> Mem
             "photon hits": HIT.size * photons,
             "photon closures": CLOSURE.size * photons,
             "photon departures": DEPARTURE.size * photons,
+            "world radiances": 4 * photons,
         },
         "camera paths": {
             "camera rays": RAY.size * band,
