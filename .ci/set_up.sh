@@ -61,5 +61,5 @@ if [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ]; then
 fi
 echo "set-up: Python packages into .venv (Blender as a module among them: a few minutes the first time)"
 [ -x .venv/bin/python ] || "$python" -m venv .venv
-.venv/bin/python -m pip install --quiet --disable-pip-version-check --root-user-action=ignore -e '.[blender,test]'
+.venv/bin/python -m pip install --quiet --disable-pip-version-check --root-user-action=ignore -e '.[blender,farm,test]'
 echo "$wanted" >"$stamp"

@@ -75,7 +75,7 @@ def write_exr(
         "colorInteropID": "lin_rec709_scene",
         **{f"rppm.{name}": str(value) for name, value in (metadata or {}).items()},
     }
-    with _renamed_when_whole(path) as temporary:
+    with renamed_when_whole(path) as temporary:
         OpenEXR.File(header, channels).write(temporary)
 
 
@@ -125,6 +125,43 @@ def read_exr(path: str | Path) -> ExrPicture:
     )
 
 
+def is_whole(path: str | Path) -> bool:
+    """Whether an EXR (of any number of parts) or PNG file is there and can be read to its end."""
+    try:
+        return _png_is_whole(Path(path)) if Path(path).suffix == ".png" else _exr_is_whole(Path(path))
+    except (OSError, RuntimeError, ValueError, TypeError, KeyError, struct.error, zlib.error):
+        return False
+
+
+def _exr_is_whole(path: Path) -> bool:
+    import OpenEXR
+
+    if not path.is_file():
+        return False
+    with OpenEXR.File(str(path), header_only=True) as file:
+        announced = len(file.parts)
+    with OpenEXR.File(str(path)) as file:  # a part whose pixels cannot be read is left out
+        return 0 < announced == len(file.parts)
+
+
+def _png_is_whole(path: Path) -> bool:
+    """Checks each chunk's sum and that the pictures' rows are all there, of a PNG that is not interlaced."""
+    data = path.read_bytes()
+    place, kind, rows, compressed = 8, b"", 0, b""
+    while kind != b"IEND" and place + 12 <= len(data):
+        (length,) = struct.unpack_from(">I", data, place)
+        kind, content = data[place + 4 : place + 8], data[place + 8 : place + 8 + length]
+        if data[place + 8 + length :][:4] != struct.pack(">I", zlib.crc32(kind + content)):
+            return False
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack_from(">IIBB", content)
+            rows = height * (1 + (width * depth * {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[color] + 7) // 8)
+        elif kind == b"IDAT":
+            compressed += content
+        place += 12 + length
+    return kind == b"IEND" and rows == len(zlib.decompress(compressed))
+
+
 def standard_view(combined: np.ndarray) -> np.ndarray:
     """The picture as Blender's Standard view shows it on an sRGB display.
 
@@ -154,7 +191,7 @@ def write_png(path: str | Path, pixels: np.ndarray) -> None:
         (b"IDAT", zlib.compress(rows.tobytes(), 6)),
         (b"IEND", b""),
     ]
-    with _renamed_when_whole(path) as temporary, open(temporary, "wb") as file:
+    with renamed_when_whole(path) as temporary, open(temporary, "wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n")
         for kind, data in chunks:
             file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
@@ -177,8 +214,8 @@ def _planes(array: np.ndarray) -> list[np.ndarray]:
 
 
 @contextlib.contextmanager
-def _renamed_when_whole(path: str | Path) -> Iterator[str]:
-    """A temporary name in the folder of ``path`` that becomes ``path`` when all went well."""
+def renamed_when_whole(path: str | Path) -> Iterator[str]:
+    """A temporary name in the folder of ``path`` that becomes ``path`` when all went well. Raises PictureError."""
     path = Path(path)
     temporary = None
     try:
@@ -191,7 +228,7 @@ def _renamed_when_whole(path: str | Path) -> Iterator[str]:
         os.chmod(temporary, 0o666 & ~mask)
         os.replace(temporary, path)
     except (OSError, RuntimeError) as error:
-        raise PictureError(f"{path} cannot be written ({error}); choose another place with -o") from error
+        raise PictureError(f"{path} cannot be written ({error}); choose another place") from error
     finally:
         if temporary is not None and os.path.exists(temporary):
             os.unlink(temporary)

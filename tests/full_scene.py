@@ -9,6 +9,8 @@ from lobes import Lobe, LobeKind, image_world, material
 from rppm_addon.scene import (
     AttributeDomain,
     Camera,
+    CameraMovement,
+    Deformation,
     DirectLight,
     Image,
     Instance,
@@ -17,10 +19,12 @@ from rppm_addon.scene import (
     Material,
     Mesh,
     MeshAttribute,
+    Movement,
     NodeGraph,
     Particle,
     RenderSettings,
     Scene,
+    Shutter,
 )
 from rppm_addon.scene.meshes import RayVisibility
 
@@ -68,6 +72,13 @@ def full_scene() -> Scene:
         images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],
         settings=RenderSettings(iterations=7, direct_light=DirectLight.PHOTONS),
         exposure=2.0,
+        shutter=Shutter(
+            np.linspace(0, 1, 5),
+            [Movement(0, np.array([0, 0.5, 1]), rng.random((3, 4, 4)))],
+            [Movement(0, np.array([0, 1.0]), rng.random((2, 4, 4)))],
+            [Deformation(1, np.array([0, 1.0]), rng.random((2, 4, 3), np.float32), rng.random((2, 4, 3), np.float32))],
+            CameraMovement(np.array([0, 1.0]), rng.random((2, 4, 4)), rng.random((2, 4))),
+        ),
         warnings=["w"],
     )
 

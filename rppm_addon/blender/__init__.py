@@ -1,7 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RPPM inside Blender: the only floor that imports bpy."""
 
-from . import engine, operators, panels, preferences, properties, renderer_process, renderer_thread, reports
+from . import (
+    broken_frames,
+    engine,
+    following,
+    operators,
+    panels,
+    preferences,
+    properties,
+    renderer_process,
+    renderer_thread,
+    reports,
+)
 
 
 def register() -> None:
@@ -12,10 +23,14 @@ def register() -> None:
     panels.register()
     preferences.register()
     renderer_process.register()
+    following.register()
+    broken_frames.register()
 
 
 def unregister() -> None:
     """Undo register, end the renderer process and release the graphics device."""
+    broken_frames.unregister()
+    following.unregister()
     renderer_process.unregister()
     preferences.unregister()
     panels.unregister()

@@ -9,15 +9,18 @@ import bpy
 import numpy as np
 
 from ..scene import Scene
-from ..scene.errors import RppmError
+from ..scene.errors import RppmError, SceneError
 from ..session.observers import RenderObserver, current_observer
 from ..session.render_job import RenderJob
 from ..session.sessions import SessionKind
-from . import renderer_process, renderer_thread
-from .export import ExportStopped, export_scene
+from . import broken_frames, renderer_process, renderer_thread
+from .export import ExportStopped, FrameExporter, export_scene, is_blurred
+from .export.camera import frame_size
+from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
 
 if TYPE_CHECKING:
+    from ..session.continuation import Continuation
     from ..session.results import Frame, Progress, RenderResult, RenderStatistics
 
 logger = logging.getLogger(__name__)
@@ -53,7 +56,7 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
 
 
 def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> None:
-    scene = export_scene(depsgraph, engine, observer.should_stop)
+    scene = _export(engine, depsgraph, observer)
     _report_warnings(engine, scene.warnings)
     if not observer.on_scene(scene):
         return
@@ -71,6 +74,36 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     if result.statistics.iterations and not engine.is_preview:
         record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
+
+
+def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> Scene:
+    if engine.is_preview:
+        return export_scene(depsgraph, engine, observer.should_stop)
+    _check_size(engine, depsgraph.scene.render)
+    if not depsgraph.scene.render.use_persistent_data or is_blurred(depsgraph, engine):
+        # Going to other frames, a blurred render takes in what Blender would tell the next one of.
+        engine.exporter = None
+        return follow(export_scene(depsgraph, engine, observer.should_stop))
+    # Blender keeps engine and depsgraph, and tells what has changed.
+    if getattr(engine, "exporter", None) is None:
+        engine.exporter = FrameExporter()
+    return follow(
+        engine.exporter.export(
+            depsgraph,
+            lambda: engine.test_break() or observer.should_stop(),
+            lambda text: engine.update_stats("", text),
+        )
+    )
+
+
+def _check_size(engine: bpy.types.RenderEngine, render: bpy.types.RenderSettings) -> None:
+    """Raise SceneError where a script has changed the resolution of frames that Blender has laid out already."""
+    wanted, laid_out = frame_size(render), (engine.resolution_x, engine.resolution_y)
+    if wanted != laid_out:
+        raise SceneError(
+            f"the resolution has changed to {wanted[0]} x {wanted[1]} while Blender renders pictures of "
+            f"{laid_out[0]} x {laid_out[1]}; change it before the render begins, or render such frames one at a time"
+        )
 
 
 def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
@@ -104,7 +137,10 @@ def _render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) 
 
 def _fail(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver, text: str) -> None:
     engine.error_set(text)
-    engine.report({"ERROR"}, text)
+    if engine.is_animation:
+        broken_frames.report(engine, depsgraph, text)
+    else:
+        engine.report({"ERROR"}, text)
     if not engine.is_preview:
         record_error(depsgraph.scene.session_uid, text)
     observer.on_error(text)
@@ -136,6 +172,10 @@ class _FinalJob(RenderJob):
     @property
     def snapshots(self) -> tuple[float, ...]:
         return self._observer.snapshots
+
+    @property
+    def continuation(self) -> "Continuation | None":
+        return self._observer.continuation
 
     def should_stop(self) -> bool:
         return self._engine.test_break() or self._observer.should_stop()

@@ -199,6 +199,14 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         default=DEFAULTS.seed,
         min=0,
     )
+    animate_seed: BoolProperty(
+        name="Animate Seed",
+        description=(
+            "Give each frame noise of its own, which a film averages to the eye and a denoiser over time removes; "
+            "otherwise the noise stands still while things move"
+        ),
+        default=False,
+    )
     cubemap_resolution: IntProperty(
         name="Cubemap Resolution",
         description=(

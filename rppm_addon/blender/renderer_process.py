@@ -18,6 +18,8 @@ from ..session.sessions import SessionKind
 
 _EXTENSIONS = "bl_ext"
 _process: RendererProcess | None = None
+_final: remote_rendering.RemoteRenderer | None = None
+"""Of all final renders."""
 _lock = threading.Lock()
 
 
@@ -37,8 +39,20 @@ def is_used() -> bool:
 
 
 def render(scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
-    """Render in the process, as remote_rendering.render does."""
-    return remote_rendering.render(renderer_process(), scene, job, kind)
+    """Render in the process as RemoteRenderer.render does; what final renders leave there is for the next."""
+    global _final
+    process = renderer_process()
+    if kind is not SessionKind.FINAL:
+        return remote_rendering.render(process, scene, job, kind)
+    if _final is None or _final.process is not process:
+        _final = remote_rendering.RemoteRenderer(process, kind)
+    return _final.render(scene, job)
+
+
+def forget() -> None:
+    """Have the process give back what final renders have left there."""
+    if _final is not None:
+        _final.forget()
 
 
 def close() -> None:

@@ -83,6 +83,10 @@ class _Conversation:
             self.stop.set()
 
 
+_FORGET = object()
+"""In place of a job."""
+
+
 class RendererThread:
     """Owns the thread and, in it, the Renderer; one render at a time."""
 
@@ -102,6 +106,11 @@ class RendererThread:
             self._jobs.put((conversation, contextvars.copy_context()))
             return conversation.attend()
 
+    def forget(self) -> None:
+        """Give back what the device holds of the last scene, once no render is under way."""
+        if self._thread is not None and self._thread.is_alive():
+            self._jobs.put(_FORGET)
+
     def release(self) -> None:
         """Release the renderer and end the thread; a later render starts anew."""
         with self._lock:
@@ -113,6 +122,10 @@ class RendererThread:
     def _run(self) -> None:
         renderer = None
         while (job := self._jobs.get()) is not None:
+            if job is _FORGET:
+                if renderer is not None:
+                    renderer.forget()
+                continue
             conversation, context = job
             result = error = None
             try:
@@ -146,6 +159,7 @@ def _render(renderer: Any, conversation: _Conversation) -> "RenderResult":
         should_stop=conversation.stop.is_set,
         snapshots=conversation.ask(lambda: job.snapshots),
         on_snapshot=lambda seconds, frame: conversation.ask(job.on_snapshot, seconds, frame),
+        continuation=conversation.ask(lambda: job.continuation),
     )
 
 
@@ -162,6 +176,11 @@ _shared = RendererThread()
 def render(scene: Scene, job: RenderJob) -> "RenderResult":
     """Render with the Renderer that all renders of this Blender share."""
     return _shared.render(scene, job)
+
+
+def forget() -> None:
+    """Give back what the device holds of the last scene."""
+    _shared.forget()
 
 
 def release() -> None:

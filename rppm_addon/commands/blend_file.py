@@ -9,7 +9,11 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TextIO
 
+import numpy as np
+
+from ..pictures import PictureError
 from ..scene import Scene
 from ..scene.errors import RppmError, SceneError
 from ..session.observers import RenderObserver, observing
@@ -34,6 +38,25 @@ class BlendRequest:
     values: list[tuple[str, str]] = field(default_factory=list)
     """Data paths and what to set them to."""
 
+    def as_plain(self) -> dict[str, object]:
+        """The request as JSON has it, for whoever is to open the same picture's scene later."""
+        return {
+            "path": str(self.path.resolve()),
+            "frame": self.frame,
+            "resolution": self.resolution and list(self.resolution),
+            "values": [list(value) for value in self.values],
+        }
+
+    @classmethod
+    def from_plain(cls, plain: dict[str, object]) -> "BlendRequest":
+        """The request that as_plain gave."""
+        return cls(
+            Path(plain["path"]),
+            plain["frame"],
+            plain["resolution"] and tuple(plain["resolution"]),
+            [tuple(value) for value in plain["values"]],
+        )
+
 
 @dataclass
 class BlenderReport:
@@ -49,22 +72,52 @@ class BlenderReport:
     """Evaluating the scene and exporting it."""
 
 
-def render_blend_file(request: BlendRequest, recorder: RenderRecorder, show_output: bool = False) -> BlenderReport:
-    """Render a .blend with the engine RPPM; the recorder writes EXR, Blender writes PNG.
+class BlendFile:
+    """An open .blend file, to be rendered."""
 
-    Raises RppmError.
-    """
-    pictures = [path for path in recorder.request.outputs if path.suffix == ".png"]
-    with _opened(request, show_output) as (bpy, report):
-        _render(bpy, request, recorder, report)
+    def __init__(self, bpy, request: BlendRequest, report: BlenderReport, output: TextIO) -> None:
+        self._bpy = bpy
+        self._request = request
+        self.report = report
+        self.output = output
+        """Standard output, where Blender's own words do not go."""
+
+    def set_frame(self, frame: int) -> None:
+        """Go to a frame."""
+        scene = self._bpy.context.scene
+        if scene.frame_current != frame:
+            scene.frame_set(frame)
+        self.report.frame = frame
+
+    def render(self, recorder: RenderRecorder) -> None:
+        """Render with the engine RPPM. Raises RppmError when the recorder gets no result."""
+        _render(self._bpy, self._request, recorder, self.report)
         if recorder.error is not None:
             raise BlenderError(recorder.error)
         if recorder.result is None:
-            raise BlenderError(f"{request.path}: the engine gave no picture; run again with --debug to see why")
+            raise BlenderError(f"{self._request.path}: the engine gave no picture; run again with --debug to see why")
+
+    def write(self, recorder: RenderRecorder) -> None:
+        """Write what has been rendered: the recorder EXR, Blender PNG. Raises RppmError."""
         recorder.write_files()
-        for path in pictures:
-            _save_png(bpy, path)
-    return report
+        for path in recorder.request.outputs:
+            if path.suffix == ".png":
+                _save_png(self._bpy, path)
+
+
+@contextlib.contextmanager
+def opened_blend_file(request: BlendRequest, show_output: bool = False) -> Iterator[BlendFile]:
+    """The file, open and set up as the request says. Raises RppmError."""
+    with _opened(request, show_output) as (bpy, report, output):
+        yield BlendFile(bpy, request, report, output)
+
+
+def render_blend_file(request: BlendRequest, recorder: RenderRecorder, show_output: bool = False) -> BlenderReport:
+    """Render one picture of a .blend and write it. Raises RppmError."""
+    with opened_blend_file(request, show_output) as file:
+        file.render(recorder)
+        file.write(recorder)
+    return file.report
 
 
 class _SceneTaker(RenderObserver):
@@ -85,7 +138,7 @@ class _SceneTaker(RenderObserver):
 def export_blend_file(request: BlendRequest, show_output: bool = False) -> Scene:
     """The scene that a render of the .blend would be given. Raises RppmError."""
     taker = _SceneTaker()
-    with _opened(request, show_output) as (bpy, report):
+    with _opened(request, show_output) as (bpy, report, _):
         _render(bpy, request, taker, report)
     if taker.error is not None:
         raise BlenderError(taker.error)
@@ -96,11 +149,11 @@ def export_blend_file(request: BlendRequest, show_output: bool = False) -> Scene
 
 @contextlib.contextmanager
 def _opened(request: BlendRequest, show_output: bool) -> Iterator[tuple]:
-    """bpy with the engine registered and the file open and set up; yields bpy and the report."""
+    """bpy with the engine registered and the file open and set up; yields bpy, the report, and standard output."""
     if not request.path.is_file():
         raise SceneError(f"{request.path} does not exist; give the path of a .blend file")
     start = time.perf_counter()
-    with _quiet_output(show_output):
+    with _quiet_output(show_output) as output:
         try:
             import bpy
         except ImportError as error:
@@ -117,7 +170,7 @@ def _opened(request: BlendRequest, show_output: bool) -> Iterator[tuple]:
             report.load_seconds = time.perf_counter() - start - report.start_seconds
             _prepare(bpy, request)
             report.frame = bpy.context.scene.frame_current
-            yield bpy, report
+            yield bpy, report, output
         finally:
             unregister()  # an engine still registered at exit crashes or hangs Blender
 
@@ -145,14 +198,15 @@ def _prepare(bpy, request: BlendRequest) -> None:
         layer.use = layer == used[0]
     for path, value in request.values:
         set_data_path((scene, bpy.data), path, value)
-    if scene.camera is None:
-        raise SceneError(
-            f'{request.path}: scene "{scene.name}" has no camera; add one in Blender and make it the active camera, '
-            'or name one: --set \'camera=objects["Camera"]\''
-        )
 
 
 def _render(bpy, request: BlendRequest, observer: RenderRecorder | _SceneTaker, report: BlenderReport) -> None:
+    scene = bpy.context.scene
+    if scene.camera is None:
+        raise SceneError(
+            f'{request.path}: scene "{scene.name}" has no camera; add one in Blender and make it the active camera, '
+            "or name one: --set 'camera=objects[\"Camera\"]'"
+        )
     start = time.perf_counter()
     with observing(observer):
         try:
@@ -180,21 +234,63 @@ def _save_png(bpy, path: Path) -> None:
             bpy.data.images["Render Result"].save_render(str(temporary), scene=scene)
             os.replace(temporary, path)
     except (OSError, RuntimeError) as error:
-        raise BlenderError(f"{path} cannot be written ({_one_line(error)}); choose another place with -o") from error
+        raise PictureError(f"{path} cannot be written ({_one_line(error)}); choose another place with -o") from error
+
+
+def save_view(request: BlendRequest, combined: np.ndarray, path: Path) -> None:
+    """Save a picture as PNG by the scene's view transform, as a render of the .blend would.
+
+    ``combined`` (H, W, 4) is Frame.combined. Raises RppmError, also when the file is not where it was.
+    """
+    with _opened(request, show_output=False) as (bpy, _, _):
+        scene = bpy.context.scene
+
+        class Shown(bpy.types.RenderEngine):
+            """Has the picture already: Blender's own way from a render's result to a file is the one to go."""
+
+            bl_idname = "RPPM_SHOWN"
+            bl_label = "RPPM (a picture that is there)"
+
+            def render(self, depsgraph: object) -> None:
+                result = self.begin_result(0, 0, combined.shape[1], combined.shape[0])
+                pixels = np.ascontiguousarray(combined, np.float32)
+                result.layers[0].passes["Combined"].rect.foreach_set(pixels.reshape(-1))
+                self.end_result(result)
+
+        _remove_contents(scene)  # nothing of it is looked at: nothing is to be evaluated
+        bpy.utils.register_class(Shown)
+        try:
+            scene.render.engine = Shown.bl_idname
+            bpy.ops.render.render()
+            _save_png(bpy, path)
+        finally:
+            scene.render.engine = ENGINE
+            bpy.utils.unregister_class(Shown)
+
+
+def _remove_contents(scene: object) -> None:
+    """Leave an opened scene nothing but its camera."""
+    collection, camera = scene.collection, scene.camera
+    for child in list(collection.children):
+        collection.children.unlink(child)
+    for linked in list(collection.objects):
+        collection.objects.unlink(linked)
+    collection.objects.link(camera)
 
 
 @contextlib.contextmanager
-def _quiet_output(show: bool) -> Iterator[None]:
-    """Keep what Blender itself prints, below Python, off the terminal."""
+def _quiet_output(show: bool) -> Iterator[TextIO]:
+    """Keep what Blender itself prints, below Python, off the terminal; yields what still leads there."""
     if show:
-        yield
+        yield sys.stdout
         return
     sys.stdout.flush()
     saved, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, 1)
     os.close(nothing)
     try:
-        yield
+        with open(os.dup(saved), "w", encoding=sys.stdout.encoding) as output:
+            yield output
     finally:
         sys.stdout.flush()
         os.dup2(saved, 1)

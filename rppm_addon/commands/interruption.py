@@ -1,25 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ctrl-C ends a render early instead of throwing its picture away."""
+"""Ctrl-C, and a machine that is shut down, end a render early instead of throwing its picture away."""
 
 import signal
 from types import FrameType
 
 
 class Interruption:
-    """While entered, the first Ctrl-C sets ``asked``; a second one raises KeyboardInterrupt."""
+    """While entered, the first SIGINT (Ctrl-C) or SIGTERM sets ``asked``; a second one raises KeyboardInterrupt."""
 
     def __init__(self) -> None:
         self.asked = False
-        self._previous = None
+        self.status = 0
+        """Exit status of a program that a signal ended, as shells have it."""
+        self._previous: dict[int, object] = {}
 
     def __enter__(self) -> "Interruption":
-        self._previous = signal.signal(signal.SIGINT, self._handle)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self._previous[number] = signal.signal(number, self._handle)
         return self
 
     def __exit__(self, *_: object) -> None:
-        signal.signal(signal.SIGINT, self._previous)
+        for number, handler in self._previous.items():
+            signal.signal(number, handler)
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
         if self.asked:
             raise KeyboardInterrupt
-        self.asked = True
+        self.asked, self.status = True, 128 + number

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..pictures import Placement, standard_view, write_exr, write_png
-from ..scene import Camera, RenderSettings, Scene
+from ..scene import RenderSettings, Scene
 from ..scene.quantities import count_text
 from ..session.observers import RenderObserver
+from .checkpoints import StillKeeper, placement_of
 from .progress_bar import ProgressBar
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class RenderRecorder(RenderObserver):
         bar: ProgressBar,
         should_stop: Callable[[], bool],
         write_png_file: bool,
+        keeper: StillKeeper | None = None,
     ) -> None:
         self.request = request
         self.result: RenderResult | None = None
@@ -68,12 +70,16 @@ class RenderRecorder(RenderObserver):
         self._bar = bar
         self._should_stop = should_stop
         self._write_png_file = write_png_file
+        self._keeper = keeper
         self._progress: Progress | None = None
 
     def on_scene(self, scene: Scene) -> bool:
         self.scene_time = time.perf_counter()
         self.scene = scene
         scene.settings = apply_settings(scene.settings, self.request.settings)
+        if self._keeper is not None:
+            iterations = None if self.request.seconds is not None else scene.settings.iterations
+            self.continuation = self._keeper.begin(scene, iterations)
         self._bar.show(0.0, "preparing the device")
         return True
 
@@ -110,7 +116,8 @@ class RenderRecorder(RenderObserver):
             "photons": progress.photons if progress else 0,
             "file": str(path),
         }
-        _write_frame(path, frame, scene.camera, {key: entry[key] for key in ("seconds", "iterations", "photons")})
+        metadata = {key: entry[key] for key in ("seconds", "iterations", "photons")}
+        write_frame(path, frame, placement_of(scene.camera), metadata)
         self.snapshots_written.append(entry)
 
     def on_finish(self, result: "RenderResult", scene: Scene) -> None:
@@ -121,7 +128,7 @@ class RenderRecorder(RenderObserver):
         self.error = text
 
     def write_files(self) -> None:
-        """Write the outputs of a finished render. Raises PictureError."""
+        """Write the outputs of a finished render, or its part. Raises PictureError."""
         result, scene = self.result, self.scene
         statistics = result.statistics
         metadata = {
@@ -133,17 +140,20 @@ class RenderRecorder(RenderObserver):
         }
         for path in self.request.outputs:
             if path.suffix == ".exr":
-                _write_frame(path, result.frame, scene.camera, metadata)
+                write_frame(path, result.frame, placement_of(scene.camera), metadata)
             elif self._write_png_file:
                 write_png(path, standard_view(result.frame.combined))
+        if self._keeper is not None:
+            self._keeper.finish()
 
     def report(self) -> dict[str, object]:
         """What happened, for --json: plain values only."""
         scene, result = self.scene, self.result
         return {
-            "files": [str(path) for path in self.request.outputs],
+            "files": [str(path) for path in self.files],
             "resolution": list(scene.camera.resolution),
             "interrupted": self._should_stop(),
+            "resumed_iterations": self._keeper.resumed_iterations if self._keeper else 0,
             "seconds": self.seconds,
             "renderer_seconds": self.renderer_seconds,
             "settings": {
@@ -162,8 +172,14 @@ class RenderRecorder(RenderObserver):
         width, height = self.scene.camera.resolution
         return (
             f"{statistics.iterations} iterations, {count_text(statistics.photons)} photons in {self.seconds:.1f} s "
-            f"at {width}x{height} on {statistics.device}: {', '.join(str(path) for path in self.request.outputs)}"
+            f"at {width}x{height} on {statistics.device}: {', '.join(str(path) for path in self.files)}"
         )
+
+    @property
+    def files(self) -> list[Path]:
+        """What has been written."""
+        part = [self._keeper.request.part] if self._keeper and self._keeper.part_written else []
+        return [*self.request.outputs, *part]
 
 
 def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> RenderSettings:
@@ -173,15 +189,9 @@ def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> Re
     return settings
 
 
-def _write_frame(path: Path, frame: "Frame", camera: Camera, metadata: Mapping[str, object]) -> None:
-    x, y, _, _ = camera.region
+def write_frame(path: Path, frame: "Frame", placement: Placement, metadata: Mapping[str, object]) -> None:
+    """Write a frame's picture and passes as EXR. Raises PictureError."""
     layers = {"Depth": frame.depth, "Normal": frame.normal}
     if frame.deep_cubemap is not None:
         layers["Deep Cubemap"] = frame.deep_cubemap
-    write_exr(
-        path,
-        frame.combined,
-        layers,
-        metadata,
-        Placement(camera.width, camera.height, x, y),
-    )
+    write_exr(path, frame.combined, layers, metadata, placement)

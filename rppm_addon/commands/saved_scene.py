@@ -24,6 +24,7 @@ def render_saved_scene(path: Path, recorder: RenderRecorder, resolution: tuple[i
             should_stop=recorder.should_stop,
             snapshots=recorder.snapshots,
             on_snapshot=lambda seconds, frame: recorder.on_snapshot(seconds, frame, scene),
+            continuation=recorder.continuation,
         )
         recorder.on_finish(result, scene)
     recorder.write_files()

@@ -56,8 +56,12 @@ class GrowingBuffer:
         """Hold a contiguous array's bytes from the buffer's start. Raises DeviceError as require does."""
         data = np.ascontiguousarray(array)
         self.require(data.nbytes)
-        if data.nbytes:
-            self.buffer.write(data.reshape(-1).view(np.uint8))
+        self.write(data)
+
+    def write(self, array: np.ndarray, offset: int = 0) -> None:
+        """Put a contiguous array's bytes where there is room for them, so many bytes from the buffer's start."""
+        if array.nbytes:
+            self.buffer.write(array.reshape(-1).view(np.uint8), offset=offset)
 
     def read(self, dtype: np.dtype, count: int, offset: int = 0) -> np.ndarray:
         """(count,) array of a dtype from a byte offset on."""

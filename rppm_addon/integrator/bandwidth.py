@@ -37,13 +37,19 @@ def wide_radius(diffused_photons: int, expected: int, bounds_low: np.ndarray, bo
     return math.sqrt(expected * area / (math.pi * max(diffused_photons, 1)))
 
 
-def fitted_wide_radius(radius: float, expected: int, counts: np.ndarray) -> float:
+def photons_found(counts: np.ndarray) -> float:
+    """Photons that half of the view finds or more, of those that each pixel with an importon found, (n,).
+
+    Where half of the view finds next to none, the mean tells more than the median.
+    """
+    return max(float(np.median(counts)), 0.5 * float(np.mean(counts))) if len(counts) else 0.0
+
+
+def fitted_wide_radius(radius: float, expected: int, found: float) -> float:
     """The radius, metres, with which half of the view would find ``expected`` photons or more.
 
-    Infinite if none are found. ``counts`` (n,) are those that pixels with an importon found with ``radius``. Where half
-    of the view finds next to none, the mean tells more than the median.
+    Infinite if none are found. ``found`` is what photons_found says of ``radius``.
     """
-    found = max(float(np.median(counts)), 0.5 * float(np.mean(counts))) if len(counts) else 0.0
     return radius * math.sqrt(expected / found) if found > 0 else math.inf
 
 

@@ -19,7 +19,7 @@ from ..scene.scene import Scene
 from .emitters import Emitters
 from .environment import Environment
 from .geometry import Geometry
-from .guide import Guide, learns_after
+from .guide import Guide
 from .lamp_maps import LampMaps
 from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
@@ -29,6 +29,8 @@ from .targets import caustic_targets
 log = logging.getLogger(__name__)
 
 _SOFT = 32
+_LEARNED = ("photon_count", "first_photon", "cells", "first_cell")
+"""Of a light's record, what follows from what photons were good for."""
 
 LIGHT_PARAMETERS = {
     "scene_centre": "vec3",
@@ -108,7 +110,7 @@ class Emission:
         self._target_count = 0
         self.environment = Environment(context)
         self.lamp_maps = LampMaps(context)
-        self._guide = Guide(context, library)
+        self.guide = Guide(context, library)
         self._table = LIGHT.zeros(0)
         self._weights = np.zeros(0)
         self._names: list[str] = []
@@ -136,7 +138,7 @@ class Emission:
             "photon targets": self._targets.size,
             "environment": self.environment.memory_bytes,
             "lamp maps": self.lamp_maps.memory_bytes,
-            **self._guide.memory_bytes,
+            **self.guide.memory_bytes,
         }
 
     @property
@@ -172,10 +174,12 @@ class Emission:
         resolve: Resolve,
         keep_world: bool = False,
         keep_lamps: bool = False,
+        keep_learned: bool = False,
     ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        keep_world, keep_lamps: the world, or all light objects, are those of the last call.
+        keep_world, keep_lamps: the world, or all light objects, are those of the last call. keep_learned: the lights
+        are those of the last call at another time, and what was learned of them holds.
         Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
@@ -219,6 +223,7 @@ class Emission:
         if sum(weights) <= 0:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
+        kept = self._table if keep_learned and names == self._names else None
         self._names, self._powers = names, powers
         self.photon_flux = sum(powers) / scene.settings.photons
         # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
@@ -228,8 +233,14 @@ class Emission:
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
-        self._table, self._weights, self._photons = table, np.array(weights), scene.settings.photons
-        self.begin()
+        self._table, self._photons = table, scene.settings.photons
+        if kept is not None and np.array_equal(kept["kind"], table["kind"]):
+            for column in _LEARNED:
+                table[column] = kept[column]
+            self._lights.upload(table)
+        else:
+            self._weights = np.array(weights)
+            self.begin()
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
@@ -249,7 +260,7 @@ class Emission:
     def begin(self) -> None:
         """Forget what photons were good for, as before the first iteration."""
         self._share_photons(self._weights)
-        self._guide.build(self._table, self._photons)
+        self.guide.build(self._table, self._photons)
         self._lights.upload(self._table)
 
     def _share_photons(self, weights: np.ndarray) -> None:
@@ -257,20 +268,28 @@ class Emission:
         self._table["photon_count"] = counts
         self._table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
-    def learn(self, photons: moderngl.Buffer, segments: int, iteration: int) -> float:
-        """Of an iteration's splatted photons, learn where to send those of the next ones.
+    def tally(self, photons: moderngl.Buffer, segments: int) -> None:
+        """Count what an iteration's photons were good for, once they have been splatted."""
+        self.guide.tally(photons, self._photons, segments)
+
+    def learn(self) -> float:
+        """Of what has been tallied, learn where to send the photons of the next iterations.
 
         Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
         of use from now on.
         """
-        self._guide.tally(photons, self._photons, segments)
-        if not learns_after(iteration):
-            return 1.0
-        weights, useful = self._guide.learn()
+        weights, useful = self.guide.learn()
         before = self._table["photon_count"] @ useful[:, 0]
         self._share_photons(self._weights * weights)
         self._lights.upload(self._table)
         return float(self._table["photon_count"] @ useful[:, 1] / before)
+
+    def restore(self, tallies: np.ndarray, learnt: np.ndarray | None) -> None:
+        """Know what the guide of this scene's lights knew (Guide.restore, which tells what is raised)."""
+        weights = self.guide.restore(tallies, learnt)
+        if weights is not None:
+            self._share_photons(self._weights * weights)
+            self._lights.upload(self._table)
 
     def run(
         self,
@@ -287,7 +306,7 @@ class Emission:
             count,
             {
                 **self.buffers,
-                **self._guide.buffers,
+                **self.guide.buffers,
                 "Rays": rays,
                 "PhotonPaths": photon_paths,
                 "WorldRadiances": world_radiances,
@@ -316,7 +335,7 @@ class Emission:
         self._lights.release()
         self.emitters.release()
         self._targets.release()
-        self._guide.release()
+        self.guide.release()
         self.lamp_maps.release()
         self.environment.release()
 

@@ -54,7 +54,12 @@ class Emitters:
 
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
-        found = [_may_emit(scene, placement, materials) for placement in geometry.placements]
+        dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
+        found = [
+            _may_emit(scene, placement, materials)
+            for placement in geometry.placements
+            if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
+        ]
         records, corners, kinds, varying = (
             np.concatenate([parts[k] for parts in found]) if found else np.zeros((0,), kind)
             for k, kind in enumerate((EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool))

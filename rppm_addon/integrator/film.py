@@ -16,7 +16,10 @@ Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iter
 
 
 class Film:
-    """Means over the iterations, 16 bytes of radiance and alpha and 16 of normal and depth a pixel."""
+    """Means over the iterations, 16 bytes of radiance and alpha and 20 of normal, depth and their count a pixel.
+
+    ``iteration`` counts, from 1, those that are in the film.
+    """
 
     def __init__(self, context: Context, library: ProgramLibrary, width: int, height: int) -> None:
         self._surface_program = library.compute("film/surface.comp")
@@ -26,11 +29,13 @@ class Film:
         self._surface = GrowingBuffer(context, "film surface", remedy)
         self._radiance.require(16 * width * height)
         self._surface.require(16 * width * height)
+        self._surface_counts = GrowingBuffer(context, "film surface counts", remedy)
+        self._surface_counts.require(4 * width * height)
         self.width, self.height = width, height
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {buffer.name: buffer.size for buffer in (self._radiance, self._surface)}
+        return {buffer.name: buffer.size for buffer in (self._radiance, self._surface, self._surface_counts)}
 
     def add_surface(
         self, camera: moderngl.Buffer, importons: Importons, count: int, first_pixel: int, iteration: int, segment: int
@@ -44,6 +49,7 @@ class Film:
                 "Rays": importons.rays.buffer,
                 "CameraPaths": importons.paths.buffer,
                 "Surfaces": self._surface.buffer,
+                "SurfaceCounts": self._surface_counts.buffer,
             },
             {"count": count, "first_pixel": first_pixel, "iteration": iteration, "segment": segment},
         )
@@ -67,6 +73,16 @@ class Film:
         surface = self._surface.read(np.float32, 4 * self.width * self.height).reshape(self.height, self.width, 4)
         return surface[..., :3].copy(), surface[..., 3].copy()
 
+    def read_surface_counts(self) -> np.ndarray:
+        """(height, width) uint32 iterations that the mean normal is of: those whose path did not end before."""
+        return self._surface_counts.read(np.uint32, self.width * self.height).reshape(self.height, self.width).copy()
+
+    def restore(self, radiance: np.ndarray, normal: np.ndarray, depth: np.ndarray, surface_counts: np.ndarray) -> None:
+        """Take the means that read_radiance, read_surface and read_surface_counts gave."""
+        self._radiance.upload(radiance)
+        self._surface.upload(np.concatenate([normal, depth[..., None]], axis=-1))
+        self._surface_counts.upload(surface_counts)
+
     def release(self) -> None:
-        self._radiance.release()
-        self._surface.release()
+        for buffer in (self._radiance, self._surface, self._surface_counts):
+            buffer.release()

@@ -2,6 +2,7 @@
 """Indexed arrays to world-space triangles, gathered on the GPU."""
 
 import logging
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,6 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..scene.meshes import Instance, Mesh, RayVisibility
 from ..scene.scene import Scene
-from ..scene.sharing import same_members
 from .records import TRIANGLE_ATTRIBUTES
 
 log = logging.getLogger(__name__)
@@ -36,10 +36,30 @@ INSTANCE_ENTRY = Record(
 Record("GatherParameters", fallback_point="vec3", triangle_count="uint", instance_count="uint")
 
 
-def finite_bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
-    """Lowest and highest finite coordinates of a mesh in object space, each (3,); None without any."""
-    positions = mesh.positions.reshape(-1, 3)
-    lowest, highest = positions.min(axis=0, initial=np.inf), positions.max(axis=0, initial=-np.inf)
+_MESH_ARRAYS = {
+    "Positions": ("positions", np.dtype(np.float32)),
+    "CornerVertices": ("corner_vertices", np.dtype(np.uint32)),
+    "CornerNormals": ("corner_normals", np.dtype(np.float32)),
+    "CornerUvs": ("corner_uv", np.dtype(np.float32)),
+    "TriangleCorners": ("triangle_corners", np.dtype(np.uint32)),
+    "TriangleSlots": ("triangle_slots", np.dtype(np.uint32)),
+}
+"""Buffers that hold arrays of all meshes: the member of Mesh, and the type in the buffer."""
+_STARTS = {
+    "mesh_triangle": "triangle_corners",
+    "mesh_corner": "corner_vertices",
+    "mesh_vertex": "positions",
+    "mesh_uv": "corner_uv",
+}
+"""Members of InstanceEntry that tell where a mesh's part of such an array begins."""
+_BLOCK = 256
+"""Vertices that are compared side by side: NumPy is slow at reducing many short rows."""
+
+
+def finite_bounds(positions: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Lowest and highest finite coordinates of points (..., 3), each (3,); None without any."""
+    positions = positions.reshape(-1, 3)
+    lowest, highest = (_by_column(reduce, positions) for reduce in (np.minimum.reduce, np.maximum.reduce))
     if not np.isfinite([lowest, highest]).all():
         finite = positions[np.isfinite(positions).all(axis=1)]
         if not len(finite):
@@ -48,7 +68,27 @@ def finite_bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
     return lowest.astype(np.float64), highest.astype(np.float64)
 
 
-@dataclass
+def _by_column(reduce: Callable[..., np.ndarray], positions: np.ndarray) -> np.ndarray:
+    """(3,) least or greatest of the columns of (n, 3); not finite without rows."""
+    whole = len(positions) // _BLOCK * _BLOCK
+    parts = [positions[whole:], np.full((1, 3), np.nan)] if len(positions) == 0 else [positions[whole:]]
+    if whole:
+        blocks = np.ascontiguousarray(positions[:whole]).reshape(-1, 3 * _BLOCK)
+        parts.append(reduce(blocks, axis=0).reshape(-1, 3))
+    return reduce(np.concatenate(parts), axis=0)
+
+
+def box_corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(3, 8) corners of a box."""
+    return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1)
+
+
+def fits(corners: np.ndarray) -> np.ndarray:
+    """Whether boxes (..., 3, 8) are finite and not too far away for their triangles to be rendered."""
+    return (np.abs(corners) < 1e15).all(axis=(-2, -1))  # false for NaN as well
+
+
+@dataclass(slots=True)
 class Placement:
     """An instance, its first world triangle, and its world bounds in metres (maybe not finite)."""
 
@@ -75,19 +115,16 @@ class Geometry:
             name: GrowingBuffer(context, f"geometry {name}", remedy)
             for name in (
                 "Instances",
-                "Positions",
-                "CornerVertices",
-                "CornerNormals",
-                "CornerUvs",
-                "TriangleCorners",
-                "TriangleSlots",
                 "SlotMaterials",
+                *_MESH_ARRAYS,
             )
         }
         self.triangles = GrowingBuffer(context, "world triangles", remedy)
         self.attributes = GrowingBuffer(context, "triangle attributes", remedy)
-        self._meshes: list[Mesh] = []
-        self._mesh_bounds: list[tuple[np.ndarray, np.ndarray] | None] = []
+        self._arrays: dict[str, list[np.ndarray]] = {}
+        """What lies one behind the other in the buffers of that name."""
+        self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
+        """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
         self.triangle_count = 0
         self.placements: list[Placement] = []
         self.bounds_low = self.bounds_high = np.zeros(3)
@@ -107,85 +144,40 @@ class Geometry:
         buffers = [*self._inputs.values(), self.triangles, self.attributes]
         return {buffer.name: buffer.size for buffer in buffers}
 
-    def build(self, scene: Scene, default_material: int) -> None:
-        """Upload the meshes and gather all instances. ``default_material`` serves empty slots.
+    def build(self, scene: Scene, default_material: int, swept: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+        """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
+        bounds enclose in any case, each (3,), low and high.
 
-        Meshes that are the very objects of the last build are not uploaded again: moving instances
-        uploads the instances only. Whoever changes a mesh gives a new one.
+        Arrays that are the very objects of the last build are not uploaded again: moving instances uploads the
+        instances only, bending a mesh its positions and normals. Whoever changes an array gives a new one.
         Raises DeviceError when the device cannot hold them.
         """
         used = sorted({instance.mesh for instance in scene.instances})
         meshes = [scene.meshes[index] for index in used]
-        place = {index: position for position, index in enumerate(used)}
-        unchanged = same_members(meshes, self._meshes)
-        bounds = self._mesh_bounds if unchanged else [finite_bounds(mesh) for mesh in meshes]
-
-        def starts(lengths: list[int]) -> np.ndarray:
-            return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
-
-        vertex_start = starts([len(mesh.positions) for mesh in meshes])
-        corner_start = starts([len(mesh.corner_vertices) for mesh in meshes])
-        triangle_start = starts([mesh.triangle_count for mesh in meshes])
-        uv_start = starts([0 if mesh.corner_uv is None else len(mesh.corner_uv) for mesh in meshes])
-
-        instances = [
-            i for i in scene.instances if bounds[place[i.mesh]] is not None and scene.meshes[i.mesh].triangle_count
-        ]
-        entries = INSTANCE_ENTRY.zeros(len(instances))
-        slots: list[int] = []
-        placements: list[Placement] = []
-        low, high = np.full(3, np.inf), np.full(3, -np.inf)
-        first = 0
-        for entry, instance in zip(entries, instances, strict=True):
-            mesh = place[instance.mesh]
-            entry["row0"], entry["row1"], entry["row2"] = instance.matrix[:3]
-            entry["first_triangle"], entry["mesh_triangle"] = first, triangle_start[mesh]
-            entry["mesh_corner"], entry["mesh_vertex"] = corner_start[mesh], vertex_start[mesh]
-            entry["mesh_uv"] = _NO_UV if meshes[mesh].corner_uv is None else uv_start[mesh]
-            materials = [m if 0 <= m < len(scene.materials) else default_material for m in instance.materials]
-            entry["first_slot"], entry["slot_count"] = len(slots), max(1, len(materials))
-            slots.extend(materials or [default_material])
-            entry["shadowless"] = not instance.visibility & RayVisibility.SHADOW
-            first += meshes[mesh].triangle_count
-            corners = np.array(np.meshgrid(*zip(*bounds[mesh], strict=True))).reshape(3, -1)
-            world = instance.matrix[:3, :3] @ corners + instance.matrix[:3, 3:]
-            placements.append(Placement(instance, int(entry["first_triangle"]), world.min(axis=1), world.max(axis=1)))
-            if np.isfinite(world).all() and np.abs(world).max() < 1e15:
-                low, high = np.minimum(low, world.min(axis=1)), np.maximum(high, world.max(axis=1))
-            else:
-                log.warning(
-                    "object %s has a matrix that is not finite; its triangles are left out", instance.object_name
-                )
-        self.triangle_count = first
-        self.placements = placements
-        if not np.isfinite(low).all():
-            low = high = np.zeros(3)
-        self.bounds_low, self.bounds_high = low, high
-
-        def joined(arrays: list[np.ndarray], dtype: type) -> np.ndarray:
-            return (
-                np.concatenate([a.reshape(-1).astype(dtype, copy=False) for a in arrays])
-                if arrays
-                else np.zeros(1, dtype)
-            )
-
-        uploads = {
-            "Instances": entries,
-            "SlotMaterials": np.array(slots or [default_material], np.uint32),
+        bounds = self._bounds_of(meshes)
+        places = {
+            index: place
+            for place, index in enumerate(used)
+            if bounds[place] is not None and meshes[place].triangle_count
         }
-        if not unchanged:
-            uploads |= {
-                "Positions": joined([m.positions for m in meshes], np.float32),
-                "CornerVertices": joined([m.corner_vertices for m in meshes], np.uint32),
-                "CornerNormals": joined([m.corner_normals for m in meshes], np.float32),
-                "CornerUvs": joined([m.corner_uv for m in meshes if m.corner_uv is not None], np.float32),
-                "TriangleCorners": joined([m.triangle_corners for m in meshes], np.uint32),
-                "TriangleSlots": joined([m.triangle_slots for m in meshes], np.uint32),
-            }
-        self._meshes = []  # should an upload fail
-        for name, array in uploads.items():
-            self._inputs[name].upload(array)
-        self._meshes, self._mesh_bounds = meshes, bounds
+        instances = [instance for instance in scene.instances if instance.mesh in places]
+        which = np.array([places[instance.mesh] for instance in instances], np.int64)
+        lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which]
+        ends = np.cumsum(lengths)
+        self.triangle_count = int(ends[-1]) if len(ends) else 0
+        entries = INSTANCE_ENTRY.zeros(len(instances))
+        entries["first_triangle"] = ends - lengths
+        slots: list[int] = []
+        if instances:
+            for field, member in _STARTS.items():
+                entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
+            entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
+            slots = _fill(entries, instances, len(scene.materials), default_material)
+        corners = np.array([box_corners(*(box or np.zeros((2, 3)))) for box in bounds]).reshape(-1, 3, 8)
+        self._enclose(instances, entries["first_triangle"].tolist(), corners[which], swept)
+        self._upload_meshes(meshes)
+        self._inputs["Instances"].upload(entries)
+        self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
         self.triangles.require(48 * max(1, self.triangle_count))
         self.attributes.require(TRIANGLE_ATTRIBUTES.size * max(1, self.triangle_count))
         buffers = {name: buffer.buffer for name, buffer in self._inputs.items()}
@@ -196,6 +188,99 @@ class Geometry:
             {"fallback_point": self.centre, "triangle_count": self.triangle_count, "instance_count": len(instances)},
         )
 
+    def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
+        """Finite bounds of each mesh, found once for each array of positions."""
+        known, self._bounds = self._bounds, {}
+        for positions in (mesh.positions for mesh in meshes):
+            if id(positions) not in self._bounds:
+                self._bounds[id(positions)] = known.get(id(positions)) or (positions, finite_bounds(positions))
+        return [self._bounds[id(mesh.positions)][1] for mesh in meshes]
+
+    def _enclose(
+        self,
+        instances: list[Instance],
+        first_triangles: list[int],
+        corners: np.ndarray,
+        swept: tuple[np.ndarray, np.ndarray] | None,
+    ) -> None:
+        """List the placements of instances, and enclose them. corners: (n, 3, 8) of the boxes that their meshes lie in."""
+        low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
+        self.placements = []
+        if instances:
+            matrices = np.array([instance.matrix for instance in instances], np.float64)
+            world = matrices[:, :3, :3] @ corners + matrices[:, :3, 3:]
+            lows, highs, good = world.min(axis=2), world.max(axis=2), fits(world)
+            self.placements = list(map(Placement, instances, first_triangles, lows, highs))
+            low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
+            high = np.maximum(high, highs[good].max(axis=0, initial=-np.inf))
+            for index in np.flatnonzero(~good):
+                name = instances[index].object_name
+                log.warning("object %s has a matrix that is not finite; its triangles are left out", name)
+        if not np.isfinite(low).all():
+            low = high = np.zeros(3)
+        self.bounds_low, self.bounds_high = low, high
+
+    def _upload_meshes(self, meshes: list[Mesh]) -> None:
+        """Write the arrays that were not written to their places before, together where they lie together."""
+        for name, (member, dtype) in _MESH_ARRAYS.items():
+            arrays = [array for mesh in meshes if (array := getattr(mesh, member)) is not None]
+            before = self._arrays.pop(name, [])  # should an upload fail
+            buffer = self._inputs[name]
+            offsets = _starts([array.size * dtype.itemsize for array in arrays])
+            if buffer.require(int(offsets[-1])) or [a.shape for a in before] != [a.shape for a in arrays]:
+                before = [None] * len(arrays)
+            changed = [index for index, array in enumerate(arrays) if array is not before[index]]
+            for run in _runs(changed):
+                data = [_flat(arrays[index], dtype) for index in run]
+                buffer.write(data[0] if len(data) == 1 else np.concatenate(data), int(offsets[run[0]]))
+            self._arrays[name] = arrays
+
     def release(self) -> None:
         for buffer in [*self._inputs.values(), self.triangles, self.attributes]:
             buffer.release()
+
+
+def _fill(entries: np.ndarray, instances: list[Instance], materials: int, default_material: int) -> list[int]:
+    """Matrices, shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
+    matrices = np.array([instance.matrix for instance in instances], np.float64)
+    for row in range(3):
+        entries[f"row{row}"] = matrices[:, row]
+    visibility = np.array([int(instance.visibility) for instance in instances])
+    entries["shadowless"] = visibility & int(RayVisibility.SHADOW) == 0
+    slots: list[int] = []
+    ranges: dict[tuple[int, ...], tuple[int, int]] = {}
+    for key in map(tuple, [instance.materials for instance in instances]):
+        if key not in ranges:
+            ranges[key] = len(slots), max(1, len(key))
+            slots += [m if 0 <= m < materials else default_material for m in key] or [default_material]
+    chosen = [ranges[tuple(instance.materials)] for instance in instances]
+    entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
+    return slots
+
+
+def _starts(lengths: list[int]) -> np.ndarray:
+    """(n + 1,) where parts of these lengths begin, and their end."""
+    return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
+
+
+def _length(array: np.ndarray | None) -> int:
+    return 0 if array is None else len(array)
+
+
+def _flat(array: np.ndarray, dtype: np.dtype) -> np.ndarray:
+    """(n,) of the type in the buffer, without a copy where the bits are the same."""
+    flat = np.ascontiguousarray(array).reshape(-1)
+    if flat.dtype.kind in "iu" and flat.dtype.itemsize == dtype.itemsize and dtype.kind == "u":
+        return flat.view(dtype)
+    return flat.astype(dtype, copy=False)
+
+
+def _runs(indices: list[int]) -> list[list[int]]:
+    """Ascending numbers, those together that follow each other."""
+    runs: list[list[int]] = []
+    for index in indices:
+        if runs and runs[-1][-1] + 1 == index:
+            runs[-1].append(index)
+        else:
+            runs.append([index])
+    return runs

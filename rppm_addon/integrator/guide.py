@@ -93,6 +93,8 @@ class Guide:
         self._photon_cells = GrowingBuffer(context, "photon cells", "lower the photons per iteration")
         self._cells: list[tuple[int, int, int, int]] = []
         self._probabilities: list[np.ndarray] = []
+        self.learnt: np.ndarray | None = None
+        """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -110,6 +112,7 @@ class Guide:
         lights["cells"] = self._cells
         lights["first_cell"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
         self._choose_by([np.full(count, 1.0 / count) for count in counts])
+        self.learnt = None
         self._tallies.upload(np.zeros((counts.sum(), 2), np.uint32))
         self._photon_cells.require(4 * photons)
 
@@ -125,24 +128,44 @@ class Guide:
         self._probabilities = found
         self._starts.upload(np.concatenate([starts(probability) for probability in found]))
 
+    def read_tallies(self) -> np.ndarray:
+        """(cells, 2) uint32: the photons that left through each cell so far, and those that were of use."""
+        count = sum(int(np.prod(cells)) for cells in self._cells)
+        return self._tallies.read(np.uint32, 2 * count).reshape(-1, 2).copy()
+
     def learn(self) -> tuple[np.ndarray, np.ndarray]:
         """Choose cells by the tallies from now on.
 
         Returns each light's mean root of the usefulness, (n,), and the shares of its photons that should have been
         of use before and will be from now on, (n, 2).
         """
-        counts = np.prod(self._cells, axis=1)
-        tallies = self._tallies.read(np.uint32, 2 * counts.sum()).reshape(-1, 2).astype(np.float64)
-        found, weights, shares, first = [], [], [], 0
-        for cells, count, before in zip(self._cells, counts, self._probabilities, strict=True):
-            part = tallies[first : first + count].reshape(*cells[::-1], 2)
-            estimate = usefulness(part[..., 0], part[..., 1]).ravel()
-            found.append(probabilities(estimate))
-            weights.append(np.sqrt(estimate).mean())
-            shares.append((before @ estimate, found[-1] @ estimate))
+        before = self._probabilities
+        weights, estimates = self._choose_by_tallies(self.read_tallies())
+        shares = [(b @ estimate, now @ estimate) for b, now, estimate in zip(before, self._probabilities, estimates)]
+        return weights, np.array(shares)
+
+    def restore(self, tallies: np.ndarray, learnt: np.ndarray | None) -> np.ndarray | None:
+        """Know what read_tallies and ``learnt`` said; returns what learn said of the lights, or None before it.
+
+        Raises ValueError when these are not the cells that were tallied.
+        """
+        shape = (sum(int(np.prod(cells)) for cells in self._cells), 2)
+        if tallies.shape != shape or (learnt is not None and learnt.shape != shape):
+            raise ValueError(f"the lights have {shape[0]} cells, not {len(tallies)}")
+        self._tallies.upload(tallies)
+        return None if learnt is None else self._choose_by_tallies(learnt)[0]
+
+    def _choose_by_tallies(self, tallies: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Each light's mean root of the usefulness, and the usefulness of its cells."""
+        self.learnt = tallies
+        estimates, first = [], 0
+        for cells in self._cells:
+            count = int(np.prod(cells))
+            part = tallies[first : first + count].astype(np.float64).reshape(*cells[::-1], 2)
+            estimates.append(usefulness(part[..., 0], part[..., 1]).ravel())
             first += count
-        self._choose_by(found)
-        return np.array(weights), np.array(shares)
+        self._choose_by([probabilities(estimate) for estimate in estimates])
+        return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates
 
     def release(self) -> None:
         for buffer in (self._starts, self._tallies, self._photon_cells):

@@ -5,7 +5,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .bands import bands_of
-from .records import CAMERA_PATH, CLOSURE, DEPARTURE, GATHERING_VERTEX, HIT, IMPORTON, PHOTON, PHOTON_PATH, RAY
+from .records import (
+    CAMERA_PATH,
+    CLOSURE,
+    DEPARTURE,
+    FLUX_GROUP,
+    FLUX_SUMS,
+    GATHERING_VERTEX,
+    HIT,
+    IMPORTON,
+    PHOTON,
+    PHOTON_PATH,
+    RAY,
+)
 
 PPM_BUFFERS = ("film", "gathered radiance", "photons")
 """Running mean of radiance (16 R), sums of splats (48 bytes a pixel of one band of rows), photons (64 M L)."""
@@ -84,6 +96,8 @@ def expected_memory(width: int, height: int, photons: int, segments: int) -> Mem
             "photon closures": CLOSURE.size * photons,
             "photon departures": DEPARTURE.size * photons,
             "world radiances": 4 * photons,
+            "emitted photons": PHOTON_PATH.size * photons,
+            "flux sums": FLUX_SUMS.size * -(-photons // FLUX_GROUP),
         },
         "camera paths": {
             "camera rays": RAY.size * band,
@@ -106,6 +120,6 @@ def expected_memory(width: int, height: int, photons: int, segments: int) -> Mem
             "gathered radiance": 48 * band,
             "diffused photons": 4 * band,
         },
-        "passes": {"film": 16 * pixels, "film surface": 16 * pixels},
+        "passes": {"film": 16 * pixels, "film surface": 16 * pixels, "film surface counts": 4 * pixels},
     }
     return reckon_memory(groups, pixels, photons, segments)

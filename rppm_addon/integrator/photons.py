@@ -8,7 +8,17 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
-from .records import CLOSURE, DEPARTURE, HIT, PHOTON, PHOTON_ACTIVE, PHOTON_ESCAPED, PHOTON_PATH, RAY
+from .records import (
+    CLOSURE,
+    DEPARTURE,
+    FLUX_GROUP,
+    FLUX_NAMES,
+    FLUX_SUMS,
+    HIT,
+    PHOTON,
+    PHOTON_PATH,
+    RAY,
+)
 from .stages import Stages
 
 Record(
@@ -23,6 +33,7 @@ Record(
     looks_back="uint",
 )
 Record("DepartParameters", count="uint", segment="uint")
+Record("BalanceParameters", photon_count="uint", segments="uint")
 
 
 class Photons:
@@ -30,8 +41,10 @@ class Photons:
     of each path the world's radiance where it began, the largest channel, 0 from other lights."""
 
     def __init__(self, context: Context, library: ProgramLibrary, photon_count: int, segments: int) -> None:
+        self._context = context
         self._scatter = library.compute("photons/scatter.comp")
         self._depart = library.compute("photons/depart.comp")
+        self._balance = library.compute("photons/balance.comp")
         self.photon_count, self.segments = photon_count, segments
         remedy = "lower the photons per iteration or the photon path length"
         self.photons = GrowingBuffer(context, "photons", remedy)
@@ -42,6 +55,8 @@ class Photons:
         self._departures = GrowingBuffer(context, "photon departures", remedy)
         self.world_radiances = GrowingBuffer(context, "world radiances", remedy)
         self.world_radiances.require(4 * photon_count)
+        self._emitted = GrowingBuffer(context, "emitted photons", remedy)
+        self._sums = GrowingBuffer(context, "flux sums", remedy)
         self.photons.require(PHOTON.size * photon_count * segments)
         for buffer, record in (
             (self._paths, PHOTON_PATH),
@@ -49,20 +64,15 @@ class Photons:
             (self._hits, HIT),
             (self._closures, CLOSURE),
             (self._departures, DEPARTURE),
+            (self._emitted, PHOTON_PATH),
         ):
             buffer.require(record.size * photon_count)
+        self._sums.require(FLUX_SUMS.size * -(-photon_count // FLUX_GROUP))
 
     @property
     def _buffers(self) -> tuple[GrowingBuffer, ...]:
-        return (
-            self.photons,
-            self._paths,
-            self._rays,
-            self._hits,
-            self._closures,
-            self._departures,
-            self.world_radiances,
-        )
+        paths = self._paths, self._rays, self._hits, self._closures, self._departures
+        return self.photons, *paths, self._emitted, self._sums, self.world_radiances
 
     @property
     def _blocks(self) -> dict[str, moderngl.Buffer]:
@@ -85,6 +95,7 @@ class Photons:
         for segment in range(self.segments):
             if segment == 0:
                 self._emit(stages, iteration)
+                self._context.moderngl.copy_buffer(self._emitted.buffer, self._paths.buffer)
             else:
                 with timers.stage("photon tracing"):
                     stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
@@ -144,10 +155,21 @@ class Photons:
             if stages.emission.has_falloff:
                 stages.emission.fall_off(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
 
-    def read_emitted(self, stages: Stages, iteration: int) -> np.ndarray:
-        """(photon_count, 3) flux in W with which an iteration's photons leave their lights."""
-        self._emit(stages, iteration)
-        return self._paths.read(PHOTON_PATH.dtype, self.photon_count)["flux"]
+    def flux_balance(self) -> dict[str, float]:
+        """Where the flux of the last iteration went, W summed over the channels.
+
+        ``deposited`` is what the paths still carried to their last vertex, where they are cut off; ``absorbed`` is what
+        the vertices before kept. ``lost`` is flux on a ray of which no segment tells: it must be zero.
+        Russian roulette makes single events absorb more or less than their share, the sum being right.
+        """
+        groups = -(-self.photon_count // FLUX_GROUP)
+        self._balance.run(
+            self.photon_count,
+            {"Emitted": self._emitted.buffer, "Photons": self.photons.buffer, "Sums": self._sums.buffer},
+            {"photon_count": self.photon_count, "segments": self.segments},
+        )
+        sums = self._sums.read(FLUX_SUMS.dtype, groups)
+        return {name: float(sums[name].sum(dtype=np.float64)) for name in FLUX_NAMES}
 
     def read(self) -> np.ndarray:
         """(segments, photon_count) PHOTON records of the last iteration."""
@@ -157,35 +179,3 @@ class Photons:
     def release(self) -> None:
         for buffer in self._buffers:
             buffer.release()
-
-
-def flux_balance(emitted: np.ndarray, photons: np.ndarray) -> dict[str, float]:
-    """Where the flux of an iteration went, W summed over the channels.
-
-    ``emitted`` is (paths, 3), the flux each path left its light with; ``photons`` what
-    Photons.read gives. ``deposited`` is what the paths still carried to their last vertex, where they
-    are cut off; ``absorbed`` is what the vertices before kept. ``lost`` is flux on a ray of which no
-    segment tells: it must be zero.
-    Russian roulette makes single events absorb more or less than their share, the sum being right.
-    """
-    active = (photons["flags"] & PHOTON_ACTIVE) != 0
-    escaped = (photons["flags"] & PHOTON_ESCAPED) != 0
-    carried = emitted.astype(np.float64)
-    absorbed = deposited = gone = lost = 0.0
-    for segment in range(len(photons)):
-        scattered = photons["scattered_flux"][segment].astype(np.float64)
-        hit = active[segment] & ~escaped[segment]
-        gone += carried[escaped[segment]].sum()
-        if segment == len(photons) - 1:
-            deposited = carried[hit].sum()
-        else:
-            absorbed += (carried[hit] - scattered[hit]).sum()
-        lost += carried[~active[segment]].sum()
-        carried = np.where(hit[:, None], scattered, 0.0)
-    return {
-        "emitted": float(emitted.sum(dtype=np.float64)),
-        "absorbed": float(absorbed),
-        "deposited": float(deposited),
-        "escaped": float(gone),
-        "lost": float(lost + carried.sum()),
-    }

@@ -14,6 +14,8 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
+from ..scene.errors import CheckpointError
+from ..scene.motion import MovingScene
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
 from .bands import bands_of
@@ -21,6 +23,7 @@ from .bandwidth import (
     EXPECTED_BY_RAY,
     EXPECTED_PHOTONS,
     fitted_wide_radius,
+    photons_found,
     radius_by_ray,
     radius_in_pixels,
     radius_limits,
@@ -29,7 +32,7 @@ from .bandwidth import (
     widest_radius,
 )
 from .camera_view import camera_view, is_rasterized
-from .changes import changes_between, snapshot
+from .changes import Changes, changes_between, snapshot
 from .deep_cubemap import DeepCubemap
 from .direct_light import DirectLight
 from .emission import Emission
@@ -41,17 +44,20 @@ from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
 from .inspection import inspect_deep_cubemap
 from .memory import Memory, reckon_memory
-from .photons import Photons, flux_balance
+from .photons import Photons
 from .placement import cubemap_centres, radius_about
 from .primary_rays import PrimaryRays
 from .resolve import Resolve
 from .shadow_catcher import ShadowCatcher
+from .shutter import moment, swept_bounds
 from .splatting import Splatting, StoredPhotons, radiance_quantum
 from .stages import Stages
+from .state import RenderState
 
 log = logging.getLogger(__name__)
 
 _MOST_CORE_TRIANGLES = 64
+_NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
 class ProgressivePhotonMapper:
@@ -67,15 +73,27 @@ class ProgressivePhotonMapper:
         self._deep_cubemap = DeepCubemap(context, library)
         self._resolve = Resolve(context, library)
         self.iteration = 0
+        """The last that was run, counted from 1."""
+        self._left_out = 0
+        """So many iterations come before those of the film."""
         self.build_seconds = 0.0
+        self.scene: Scene | None = None
+        """With a shutter, as it is at the iteration's moment."""
+        self._given: Scene | None = None
+        """The scene, its shutter included."""
         self._built: Scene | None = None
         """What stands on the device; None is nothing that a change could be told from."""
         self._warnings: dict[str, list[str]] = {}
         """What was said when a part was built, which holds for scenes after it as well."""
+        self._moving: MovingScene | None = None
+        self._swept = _NOWHERE
+        """What things move through while the shutter is open (swept_bounds)."""
         self._wanted_centre = np.full(3, np.nan)
         self._views: list = []
+        self._views_are_for: tuple | None = None
         self._wide_radius = 0.0
-        self._diffused_photons: list[np.ndarray] = []
+        self._diffused_photons_found: float | None = None
+        """What photons_found says of the last iteration, if they were counted."""
 
     def build(self, scene: Scene) -> None:
         """Init(): take a scene, allocate its buffers and build the deep cubemap.
@@ -85,46 +103,77 @@ class ProgressivePhotonMapper:
         self._built = None
         self.update(scene)
 
-    def update(self, scene: Scene, keep_centre: bool = False) -> None:
+    def update(self, scene: Scene, stray: float = 0.0) -> None:
         """Take another scene like build, but build only what rests on members that are not the very objects of the
         scene before; so nobody may change those.
 
-        keep_centre: leave the deep cubemap where it is though the camera has moved, which changes no picture. Raises
-        as build does; what is built then is built anew the next time.
+        stray: how far from where the deep cubemap's centre should be it may stay, in radii of the scene, which changes
+        no picture. Raises as build does; what is built then is built anew the next time.
         """
         start = time.perf_counter()
-        settings = scene.settings
-        settings.validate()
+        scene.settings.validate()
         changes = changes_between(self._built, scene)
         self._built = None
         self._restart(scene)
-        self._materials.follow(scene)
-        if changes.materials:
-            with self._hearing("materials"):
-                self._materials.build(scene)
-        if changes.geometry:
-            self._geometry.build(scene, self._materials.default_material)
-        if changes.geometry or changes.materials:
-            with self._hearing("resolve"):
-                self._resolve.build(scene, self._geometry, self._materials)
-        self._resolve.look_from(scene.camera, settings.seed)
-        if changes.geometry or changes.materials or changes.lights:
-            with self._hearing("emission"):
-                self._emission.build(
-                    scene, self._geometry, self._materials, self._resolve, not changes.world, not changes.lamps
-                )
-        else:
-            self._emission.begin()
+        self._moving = MovingScene(scene) if scene.shutter is not None else None
+        swept = swept_bounds(scene) if scene.shutter is not None else _NOWHERE
+        changes.geometry |= not np.array_equal(swept, self._swept)
+        self._swept = swept
+        self._build_parts(changes)
         wanted = next(cubemap_centres(scene, self._geometry))
-        moved = not keep_centre and not np.array_equal(wanted, self._wanted_centre)
-        if changes.geometry or changes.cubemap or moved:
-            with self.timers.stage("deep cubemap"):
-                self._build_deep_cubemap()
+        strayed = not np.linalg.norm(wanted - self._wanted_centre) <= stray * self._geometry.radius
+        if changes.geometry or changes.cubemap or strayed:
+            self._build_deep_cubemap()
         for text in itertools.chain(*self._warnings.values()):
             scene.warn(text)
         self._open_views()
         self._built = snapshot(scene)
         self.build_seconds = time.perf_counter() - start
+
+    def _build_parts(self, changes: Changes, keep_learned: bool = False) -> None:
+        """What rests on the scene's members that have changed, but for the deep cubemap.
+
+        keep_learned: go on with what was learned of the lights.
+        """
+        scene = self.scene
+        self._materials.follow(scene)
+        if changes.materials:
+            with self._hearing("materials"):
+                self._materials.build(scene)
+        if changes.geometry:
+            self._geometry.build(scene, self._materials.default_material, self._swept)
+        if changes.geometry or changes.materials:
+            with self._hearing("resolve"):
+                self._resolve.build(scene, self._geometry, self._materials)
+        self._resolve.look_from(scene.camera, scene.settings.seed)
+        if changes.geometry or changes.materials or changes.lights:
+            with self._hearing("emission"):
+                self._emission.build(
+                    scene,
+                    self._geometry,
+                    self._materials,
+                    self._resolve,
+                    not changes.world,
+                    not changes.lamps,
+                    keep_learned,
+                )
+        elif not keep_learned:
+            self._emission.begin()
+
+    def _move(self) -> None:
+        """Take the scene as it is at the iteration's moment, and build anew what rests on what has moved.
+
+        The deep cubemap's centre stays: it changes no picture, and a camera that moves alone costs nothing.
+        """
+        given = self._given
+        self.scene = self._moving.at(given.shutter.time_of(moment(self.iteration, given.settings.seed)))
+        changes = changes_between(self._built, self.scene)
+        self._built = None
+        with self.timers.stage("motion"):
+            self._build_parts(changes, keep_learned=True)
+        if changes.geometry:
+            self._build_deep_cubemap()
+        self._built = snapshot(self.scene)
 
     @contextlib.contextmanager
     def _hearing(self, part: str) -> Iterator[None]:
@@ -138,6 +187,19 @@ class ProgressivePhotonMapper:
 
     def _open_views(self) -> None:
         """What the camera's side of an iteration needs, for the scene's camera and settings."""
+        camera, settings = self.scene.camera, self.scene.settings
+        if not self._views:
+            self._make_views()
+        self._stages = Stages(
+            settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
+        )
+        self._radius_scale = radius_in_pixels(settings, camera)
+        footprints = self._first_footprints()
+        self._leaves_importon = footprints > 0
+        self._limits = radius_limits(settings, footprints, self._geometry.radius)
+        self._widest_radius = widest_radius(footprints, self._geometry.bounds_low, self._geometry.bounds_high)
+
+    def _make_views(self) -> None:
         camera, settings = self.scene.camera, self.scene.settings
         width, height = camera.resolution
         self._bands = bands_of(width, height)
@@ -164,38 +226,33 @@ class ProgressivePhotonMapper:
             self._shadow_catcher,
             self.film,
         ]
-        self._stages = Stages(
-            settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
-        )
-        self._radius_scale = radius_in_pixels(settings, camera)
-        footprints = self._first_footprints()
-        self._leaves_importon = footprints > 0
-        self._limits = radius_limits(settings, footprints, self._geometry.radius)
-        self._widest_radius = widest_radius(footprints, self._geometry.bounds_low, self._geometry.bounds_high)
+        self._views_are_for = _views_for(self.scene)
 
     def _restart(self, scene: Scene) -> None:
         """Forget the picture: iterations begin anew with a scene."""
-        self._release_views()
-        self.iteration = 0
-        self._diffused_photons = []
+        if self._views_are_for != _views_for(scene):
+            self._release_views()
+        self.iteration = self._left_out = 0
+        self._diffused_photons_found = None
         self._wide_radius = 0.0
-        self.scene = scene
+        self.scene = self._given = scene
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the centre: those are tested by every ray that passes it."""
-        centres = list(cubemap_centres(self.scene, self._geometry))
+        centres = list(cubemap_centres(self._given, self._geometry))
         self._wanted_centre = centres[0]
-        for centre in centres:
-            self.centre = centre
-            self._deep_cubemap.build(
-                self._geometry.triangles.buffer,
-                self._geometry.triangle_count,
-                centre,
-                radius_about(centre, self._geometry),
-                self.scene.settings.cubemap_resolution,
-            )
-            if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
-                return
+        with self.timers.stage("deep cubemap"):
+            for centre in centres:
+                self.centre = centre
+                self._deep_cubemap.build(
+                    self._geometry.triangles.buffer,
+                    self._geometry.triangle_count,
+                    centre,
+                    radius_about(centre, self._geometry),
+                    self.scene.settings.cubemap_resolution,
+                )
+                if self._deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
+                    return
 
     def iterate(self) -> None:
         """One iteration of Algorithm 1."""
@@ -208,7 +265,14 @@ class ProgressivePhotonMapper:
         An iteration that is not run to its end leaves the film unfinished: go on with update or build.
         """
         self.iteration += 1
+        if self.iteration > 1 and learns_after(self.iteration - 1):
+            with self.timers.stage("learning"):
+                self._learn()
+        if self._moving is not None:
+            self._move()
+            yield
         self._trace_photons()
+        diffused_photons: list[np.ndarray] = []
         yield
         for first_row, rows in self._bands:
             self._direct_camera_hits(first_row, rows)
@@ -226,12 +290,72 @@ class ProgressivePhotonMapper:
                 else:
                     self._indirect_splatting(segment)
                 yield
-            if self._gathers:
-                self._share_gathered_light()
-            self._update_film()
+            if self._enters_film:
+                if self._gathers:
+                    self._share_gathered_light()
+                self._update_film()
             if self._splatting.counting:
-                self._diffused_photons.append(self._splatting.diffused_photons(self._count))
+                diffused_photons.append(self._splatting.diffused_photons(self._count))
+        if self.iteration <= LEARNING_ITERATIONS:
+            with self.timers.stage("learning"):
+                self._tally(diffused_photons)
         yield
+
+    def leave_out(self, iterations: int) -> Iterator[None]:
+        """Begin after so many iterations, in steps, which are left out of the film: to be said before the first.
+
+        Of these, only those are run that later ones learn from.
+        """
+        self._left_out = iterations
+        while self.iteration < min(iterations, LEARNING_ITERATIONS):
+            yield from self.steps()
+        if iterations > LEARNING_ITERATIONS:
+            self.iteration = LEARNING_ITERATIONS + 1
+            self._learn()
+            self.iteration = iterations
+
+    @property
+    def iterations_in_film(self) -> int:
+        return max(self.iteration - self._left_out, 0)
+
+    @property
+    def _enters_film(self) -> bool:
+        return self.iteration > self._left_out
+
+    def state(self) -> RenderState:
+        """What iterations to come rest on; to be asked for between iterations."""
+        normal, depth = self.film.read_surface()
+        return RenderState(
+            left_out=self._left_out,
+            iteration=self.iteration,
+            wide_radius=self._wide_radius,
+            diffused_photons_found=self._diffused_photons_found,
+            radiance=self.film.read_radiance(),
+            normal=normal,
+            depth=depth,
+            surface_counts=self.film.read_surface_counts(),
+            tallies=self._emission.guide.read_tallies(),
+            learnt=self._emission.guide.learnt,
+        )
+
+    def resume(self, state: RenderState) -> None:
+        """Go on where a mapper was that took the same scene; to be said before the first iteration.
+
+        Raises CheckpointError when the state is none of this scene.
+        """
+        shape = (self.film.height, self.film.width)
+        if state.radiance.shape[:2] != shape:
+            raise CheckpointError(
+                f"the checkpoint has {state.radiance.shape[1]}x{state.radiance.shape[0]} pixels, "
+                f"not {shape[1]}x{shape[0]}; begin anew"
+            )
+        try:
+            self._emission.restore(state.tallies, state.learnt)
+        except ValueError as error:
+            raise CheckpointError(f"the checkpoint is none of this scene's: {error}; begin anew") from error
+        self.film.restore(state.radiance, state.normal, state.depth, state.surface_counts)
+        self._left_out, self.iteration = state.left_out, state.iteration
+        self._wide_radius, self._diffused_photons_found = state.wide_radius, state.diffused_photons_found
 
     @property
     def _gathers(self) -> bool:
@@ -295,9 +419,8 @@ class ProgressivePhotonMapper:
         self.iteration = 0
 
     def flux_balance(self) -> dict[str, float]:
-        """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (photons.flux_balance)."""
-        photons = self._photons.read()
-        return flux_balance(self._photons.read_emitted(self._stages, self.iteration), photons)
+        """Emitted, absorbed, deposited, escaped and lost flux of the last iteration, W (Photons.flux_balance)."""
+        return self._photons.flux_balance()
 
     @property
     def deep_cubemap(self) -> DeepCubemap:
@@ -337,9 +460,6 @@ class ProgressivePhotonMapper:
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
-        if 1 < self.iteration <= LEARNING_ITERATIONS + 1:
-            with self.timers.stage("learning"):
-                self._learn()
         self._photons.run(self._stages, self.iteration)
         # With next-event rays direct photons would count direct light twice.
         indirect_only = self.scene.settings.direct_light is DirectLightMode.RAYS
@@ -358,17 +478,21 @@ class ProgressivePhotonMapper:
             learns_after(self.iteration),
         )
 
+    def _tally(self, diffused_photons: list[np.ndarray]) -> None:
+        """Of what use the iteration's photons were, and how many diffused ones pixels found, (pixels,) by band."""
+        self._emission.tally(self._photons.photons.buffer, self._photons.segments)
+        self._diffused_photons_found = None
+        if diffused_photons:
+            self._diffused_photons_found = photons_found(np.concatenate(diffused_photons)[self._leaves_importon])
+
     def _learn(self) -> None:
-        """From the iteration before: where photons are of use, and how many diffused ones pixels find."""
-        before = self.iteration - 1
-        gain = self._emission.learn(self._photons.photons.buffer, self._photons.segments, before)
-        if self._diffused_photons:
-            shrunk = self._wide_radius * shrinkage(before, self.scene.settings.alpha)
-            counts = np.concatenate(self._diffused_photons)[self._leaves_importon]
-            # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, self._expected, counts) / math.sqrt(min(gain, 4.0))
-            self._wide_radius = min(fitted, self._widest_radius)
-            self._diffused_photons = []
+        """From the iterations before: where photons are of use, and how many diffused ones pixels find."""
+        gain = self._emission.learn()
+        shrunk = self._wide_radius * shrinkage(self.iteration - 1, self.scene.settings.alpha)
+        # Few photons make bold promises: the radius is at most halved before they are kept.
+        fitted = fitted_wide_radius(shrunk, self._expected, self._diffused_photons_found) / math.sqrt(min(gain, 4.0))
+        self._wide_radius = min(fitted, self._widest_radius)
+        self._diffused_photons_found = None
 
     def _roulette_seed(self) -> int:
         """Odd, so never 0, and another one for each iteration and seed."""
@@ -397,9 +521,10 @@ class ProgressivePhotonMapper:
                 self._importons.trace(self._stages, self._count)
         with self.timers.stage("camera resolve"):
             self._importons.resolve(self._stages, self._count, self.iteration, segment)
-        self.film.add_surface(
-            self._gbuffer.camera, self._importons, self._count, self._first_pixel, self.iteration, segment
-        )
+        if self._enters_film:
+            self.film.add_surface(
+                self._gbuffer.camera, self._importons, self._count, self._first_pixel, self.iterations_in_film, segment
+            )
 
     def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
         with self.timers.stage("camera scattering"):
@@ -419,7 +544,7 @@ class ProgressivePhotonMapper:
             )
 
     def _add_direct_light(self, segment: int) -> None:
-        if self.scene.settings.direct_light is not DirectLightMode.RAYS:
+        if self.scene.settings.direct_light is not DirectLightMode.RAYS or not self._enters_film:
             return
         with self.timers.stage("direct light"):
             self._direct_light.run(
@@ -494,16 +619,28 @@ class ProgressivePhotonMapper:
         """UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)."""
         with self.timers.stage("film"):
             self.film.add(
-                self._importons.radiances.buffer, self._splatting, self._count, self._first_pixel, self.iteration
+                self._importons.radiances.buffer,
+                self._splatting,
+                self._count,
+                self._first_pixel,
+                self.iterations_in_film,
             )
 
     def _release_views(self) -> None:
         for view in self._views:
             view.release()
         self._views = []
+        self._views_are_for = None
 
     def release(self) -> None:
         """Give all buffers back."""
         self._release_views()
         for part in (self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve):
             part.release()
+
+
+def _views_for(scene: Scene) -> tuple:
+    """What the sizes and kinds of the camera's side depend on: scenes that agree in it take over the buffers."""
+    camera, settings = scene.camera, scene.settings
+    catchers = any(instance.shadow_catcher for instance in scene.instances)
+    return is_rasterized(camera), camera.resolution, settings.photons, settings.photon_path_length, catchers

@@ -103,6 +103,11 @@ PHOTON = Record(
 """One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
 ``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it."""
 
+FLUX_GROUP = 64
+"""Paths whose fluxes the device sums (shaders/photons/balance.comp)."""
+FLUX_NAMES = ("emitted", "absorbed", "deposited", "escaped", "lost")
+FLUX_SUMS = Record("FluxSums", **dict.fromkeys((*FLUX_NAMES, "unused0", "unused1", "unused2"), "float"))
+
 PHOTON_ACTIVE = 1
 PHOTON_STORED = 2
 PHOTON_ESCAPED = 4

@@ -43,6 +43,7 @@ Record(
     resolution="uint",
     quanta="float",
     gathers="uint",
+    counting="uint",
     **_CAUSTIC_PARAMETERS,
 )
 
@@ -225,6 +226,8 @@ class Splatting:
             "resolution": self._resolution,
             "quanta": 1.0 / self.quantum,
             "gathers": gathers,
+            # Nothing plays roulette here, which what is counted is doubled for.
+            "counting": self.counting and not self._counting["roulette"],
             **photons.parameters,
         }
         stored = {"Photons": photons.photons, "StoredPhotons": self._stored.buffer}
@@ -260,7 +263,13 @@ class Splatting:
         )
         self._core_program.run(
             self.stored_count,
-            {**stored, **photons.blocks, "Core": self._core.buffer, **gathered},
+            {
+                **stored,
+                **photons.blocks,
+                "Core": self._core.buffer,
+                "DiffusedPhotons": self._diffused_photons.buffer,
+                **gathered,
+            },
             {**cube, "count": self.stored_count},
         )
 

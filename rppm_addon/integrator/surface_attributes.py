@@ -8,6 +8,7 @@ from ..gl.context import Context
 from ..gl.records import Record
 from ..scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
 from ..scene.scene import Scene
+from ..scene.sharing import same_members
 from .geometry import Geometry
 
 SHADING_INSTANCE = Record(
@@ -48,6 +49,8 @@ class SurfaceAttributes:
         self._instances = GrowingBuffer(context, "shading instances", "remove instances")
         self._values = GrowingBuffer(context, "mesh attributes", "use fewer attributes in materials")
         self.count = 0
+        self._sources: dict[int, tuple] = {}
+        """Of what lies at a place of the values, that from which it was made."""
 
     @property
     def buffers(self) -> dict:
@@ -58,80 +61,110 @@ class SurfaceAttributes:
         return {buffer.name: buffer.size for buffer in (self._instances, self._values)}
 
     def build(self, scene: Scene, geometry: Geometry, names: list[str]) -> None:
-        """Upload what the nodes of the scene's materials need. ``names``: the attributes that they read."""
+        """Upload what the nodes of the scene's materials need. ``names``: the attributes that they read.
+
+        Values that come from the very arrays of the last build and have the same place are not written again.
+        """
         self.count = len(names)
-        records = SHADING_INSTANCE.zeros(max(1, len(geometry.placements)))
-        table = np.zeros((len(geometry.placements), self.count, 2), np.uint32)
-        values: list[np.ndarray] = []
-        known: dict[tuple, tuple[int, int]] = {}
-        end = table.size
-        for index, placement in enumerate(geometry.placements):
-            instance = placement.instance
-            mesh = scene.meshes[instance.mesh]
-            _fill(records[index], instance, mesh, placement.first_triangle)
-            for number, name in enumerate(names):
-                own = instance.attributes.get(name)
-                key = (instance.mesh, name) if own is None else (name, *own)
-                if key not in known:
-                    array = _per_corner(mesh, name) if own is None else np.tile(own, (3 * mesh.triangle_count, 1))
-                    known[key] = (0, 0)
-                    if array is not None and array.size:
-                        known[key] = (end, array.shape[1])
-                        values.append(np.ascontiguousarray(array, np.float32).view(np.uint32).ravel())
-                        end += array.size
-                table[index, number] = known[key]
+        instances = [placement.instance for placement in geometry.placements]
+        records = SHADING_INSTANCE.zeros(max(1, len(instances)))
+        if instances:
+            _fill(records, instances, scene.meshes)
+            records["first_triangle"] = [placement.first_triangle for placement in geometry.placements]
         self._instances.upload(records)
-        self._values.upload(np.concatenate([table.ravel(), *values]) if end else np.zeros(1, np.uint32))
+        self._upload_values(scene.meshes, instances, names)
+
+    def _upload_values(self, meshes: list[Mesh], instances: list[Instance], names: list[str]) -> None:
+        table = np.zeros((len(instances), self.count, 2), np.uint32)
+        places: dict[tuple, tuple[int, int]] = {}
+        values: dict[int, tuple[MeshAttribute, Mesh]] = {}
+        end = table.size
+        for number, name in enumerate(names if instances else ()):
+            column = []
+            for instance in instances:
+                own = instance.attributes.get(name) if instance.attributes else None
+                key = (instance.mesh, name) if own is None else (name, *own)
+                if key not in places:
+                    mesh = meshes[instance.mesh]
+                    attribute = mesh.attributes.get(name) if own is None else _constant(own, mesh)
+                    places[key] = (0, 0)
+                    if attribute is not None and mesh.triangle_count:
+                        places[key] = (end, attribute.values.shape[1])
+                        values[end] = attribute, mesh
+                        end += 3 * mesh.triangle_count * attribute.values.shape[1]
+                column.append(places[key])
+            table[:, number] = column
+        before, self._sources = self._sources, {}  # should an upload fail
+        if self._values.require(4 * end):
+            before = {}
+        self._values.write(table)
+        sources = {}
+        for place, (attribute, mesh) in values.items():
+            sources[place] = attribute.domain, attribute.values, mesh.triangle_corners, mesh.corner_vertices
+            if not same_members(sources[place], before.get(place, ())):
+                self._values.write(_per_corner(attribute, mesh), 4 * place)
+        self._sources = sources
 
     def release(self) -> None:
         self._instances.release()
         self._values.release()
 
 
-def _fill(record: np.ndarray, instance: Instance, mesh: Mesh, first_triangle: int) -> None:
-    size = np.asarray(mesh.texture_size, np.float64)
-    record["texture_location"] = mesh.texture_location
-    record["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)
-    rows = _inverse(instance.matrix)
-    record["to_object0"], record["to_object1"], record["to_object2"] = rows[:3]
-    record["location"] = instance.matrix[:3, 3]
-    record["color"], record["random"] = instance.color, instance.random
-    record["object_index"], record["first_triangle"] = instance.object_index, first_triangle
-    record["visibility"], record["holdout"] = int(instance.visibility), instance.holdout
-    record["shadow_catcher"] = instance.shadow_catcher
-    particle = instance.particle
-    if particle is not None:
+def _fill(records: np.ndarray, instances: list[Instance], meshes: list[Mesh]) -> None:
+    """All but the first triangles."""
+    which = np.array([instance.mesh for instance in instances])
+    used = np.unique(which)
+    place = np.searchsorted(used, which)
+    size = np.array([meshes[index].texture_size for index in used], np.float64)
+    records["texture_location"] = np.array([meshes[index].texture_location for index in used])[place]
+    records["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)[place]
+    matrices = np.array([instance.matrix for instance in instances], np.float64)
+    inverses = _inverses(matrices)
+    for row in range(3):
+        records[f"to_object{row}"] = inverses[:, row]
+    records["location"] = matrices[:, :3, 3]
+    for name in ("color", "random", "object_index", "holdout", "shadow_catcher"):
+        records[name] = [getattr(instance, name) for instance in instances]
+    records["visibility"] = [int(instance.visibility) for instance in instances]
+    multiplied = [index for index, instance in enumerate(instances) if instance.particle is not None]
+    if multiplied:
         for name in ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity"):
-            record[f"particle_{name}"] = getattr(particle, name)
+            records[f"particle_{name}"][multiplied] = [getattr(instances[i].particle, name) for i in multiplied]
 
 
 def object_record(matrix: np.ndarray) -> np.ndarray:
     """() SHADING_INSTANCE of an object without a mesh, whose generated coordinates are those of the object."""
     record = SHADING_INSTANCE.zeros(1)[0]
-    rows = _inverse(np.asarray(matrix, np.float64))
-    record["to_object0"], record["to_object1"], record["to_object2"] = rows[:3]
+    (inverse,) = _inverses(np.asarray(matrix, np.float64)[None])
+    record["to_object0"], record["to_object1"], record["to_object2"] = inverse[:3]
     record["location"] = matrix[:3, 3]
     record["texture_location"], record["texture_scale"] = 0.5, 1.0
     record["color"] = 1.0
     return record
 
 
-def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """(4, 4), all 0 where there is none, as for an instance without extent."""
+def _inverses(matrices: np.ndarray) -> np.ndarray:
+    """(n, 4, 4), all 0 where there is none, as for an instance without extent."""
     try:
-        return np.linalg.inv(matrix)
+        return np.linalg.inv(matrices)
     except np.linalg.LinAlgError:
-        return np.zeros((4, 4))
+        if len(matrices) == 1:
+            return np.zeros_like(matrices)
+        return np.concatenate([_inverses(matrix[None]) for matrix in matrices])
 
 
-def _per_corner(mesh: Mesh, name: str) -> np.ndarray | None:
-    """(3 * triangles, components) values of an attribute at the triangles' corners; None when it is not there."""
-    attribute: MeshAttribute | None = mesh.attributes.get(name)
-    if attribute is None:
-        return None
+def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:
+    """What has the same value on all triangles."""
+    values = np.tile(np.array(value, np.float32), (mesh.triangle_count, 1))
+    return MeshAttribute(AttributeDomain.TRIANGLE, values)
+
+
+def _per_corner(attribute: MeshAttribute, mesh: Mesh) -> np.ndarray:
+    """(3 * triangles, components) float32 values at the triangles' corners."""
     corners = mesh.triangle_corners.reshape(-1)
+    values = np.ascontiguousarray(attribute.values, np.float32)
     if attribute.domain is AttributeDomain.CORNER:
-        return attribute.values[corners]
+        return values.take(corners, axis=0)
     if attribute.domain is AttributeDomain.POINT:
-        return attribute.values[mesh.corner_vertices[corners]]
-    return np.repeat(attribute.values, 3, axis=0)
+        return values.take(mesh.corner_vertices.take(corners), axis=0)
+    return np.repeat(values, 3, axis=0)

@@ -64,10 +64,10 @@ def caustic_targets(scene: Scene, geometry: Geometry) -> np.ndarray:
     def sharp(material: Material) -> bool:
         return any(_makes_caustics(node) for node in _visible_shaders(material.graph))
 
-    casters = [sharp(material) for material in scene.materials]
+    casters = {index for index, material in enumerate(scene.materials) if sharp(material)}
     spheres = []
-    for placement in geometry.placements:
-        if not any(casters[m] for m in placement.instance.materials if 0 <= m < len(casters)):
+    for placement in geometry.placements if casters else ():
+        if casters.isdisjoint(placement.instance.materials):
             continue
         low, high = placement.low, placement.high
         radius = 0.5 * float(np.linalg.norm(high - low))

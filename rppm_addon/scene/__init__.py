@@ -6,6 +6,7 @@ from .images import Image
 from .lights import Light, LightKind, World
 from .materials import Material
 from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
+from .motion import CameraMovement, Deformation, Movement, MovingScene, Shutter
 from .node_graphs import Link, NodeGraph, ShaderNode
 from .scene import Scene
 from .settings import DirectLight, RenderSettings
@@ -15,6 +16,8 @@ __all__ = [
     "Aperture",
     "AttributeDomain",
     "Camera",
+    "CameraMovement",
+    "Deformation",
     "DirectLight",
     "Image",
     "Instance",
@@ -24,6 +27,8 @@ __all__ = [
     "Material",
     "Mesh",
     "MeshAttribute",
+    "Movement",
+    "MovingScene",
     "NodeGraph",
     "Panorama",
     "PanoramaKind",
@@ -32,6 +37,7 @@ __all__ = [
     "RenderSettings",
     "Scene",
     "ShaderNode",
+    "Shutter",
     "World",
     "load_scene",
     "save_scene",

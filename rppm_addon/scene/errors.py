@@ -14,6 +14,10 @@ class SettingsError(RppmError):
     """A setting has a value that cannot be used."""
 
 
+class CheckpointError(RppmError):
+    """A checkpoint cannot be read, gone on from or merged."""
+
+
 class DeviceError(RppmError):
     """The graphics device or its driver cannot do what is asked."""
 

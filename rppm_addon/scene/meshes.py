@@ -66,7 +66,7 @@ class RayVisibility(enum.IntFlag):
     ALL = 31
 
 
-@dataclass
+@dataclass(slots=True)
 class Particle:
     """What the Particle Info node tells of the particle that an instance stands for."""
 
@@ -82,7 +82,7 @@ class Particle:
     angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-@dataclass
+@dataclass(slots=True)
 class Instance:
     """A mesh placed in the world."""
 

@@ -11,6 +11,7 @@ from .images import Image
 from .lights import Light, World
 from .materials import Material
 from .meshes import Instance, Mesh
+from .motion import Shutter
 from .settings import RenderSettings
 
 log = logging.getLogger(__name__)
@@ -32,6 +33,8 @@ class Scene:
     """Factor on every radiance of the film (Cycles' film exposure)."""
     cubemap_centre: np.ndarray | None = None
     """(3,) metres where the deep cubemap's centre goes; None is automatic."""
+    shutter: Shutter | None = None
+    """What moves while the picture is taken; None is nothing."""
     warnings: list[str] = field(default_factory=list)
     """What is rendered only in part, a line each, naming object or material and node."""
 

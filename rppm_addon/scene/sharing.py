@@ -6,11 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .documents import field_names
 from .scene import Scene
 
 LISTS = ("meshes", "instances", "materials", "lights", "images")
 _LARGE = {"meshes", "images"}
 _MEMBERS = ("camera", "world", "settings")
+_SMALL = 1 << 10
+_PART = 1 << 16
 
 
 def equal(a: object, b: object) -> bool:
@@ -20,14 +23,32 @@ def equal(a: object, b: object) -> bool:
     if type(a) is not type(b):
         return False
     if isinstance(a, np.ndarray):
-        return a.dtype == b.dtype and np.array_equal(a, b)
+        return same_bits(a, b)
     if dataclasses.is_dataclass(a):
-        return all(equal(getattr(a, f.name), getattr(b, f.name)) for f in dataclasses.fields(a))
+        return all(equal(getattr(a, name), getattr(b, name)) for name in field_names(type(a)))
     if isinstance(a, list | tuple):
         return len(a) == len(b) and all(map(equal, a, b))
     if isinstance(a, dict):
         return a.keys() == b.keys() and all(equal(value, b[key]) for key, value in a.items())
     return a == b
+
+
+def same_bits(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether two arrays have the same shape, type and bits."""
+    if a is b:
+        return True
+    if a.shape != b.shape or a.dtype != b.dtype:
+        return False
+    if a.nbytes <= _SMALL or a.dtype.itemsize != 4 or not (a.flags.c_contiguous and b.flags.c_contiguous):
+        return a.tobytes() == b.tobytes()
+    x, y = a.reshape(-1).view(np.uint32), b.reshape(-1).view(np.uint32)
+    # In parts: what has changed mostly differs from the beginning, and the results stay in a cache.
+    return all((x[start : start + _PART] == y[start : start + _PART]).all() for start in range(0, len(x), _PART))
+
+
+def keep_equal(before: np.ndarray | None, after: np.ndarray) -> np.ndarray:
+    """The array before, if there is one and it says the same."""
+    return before if before is not None and same_bits(before, after) else after
 
 
 def _shared_list(before: list, after: list, by_identity: bool) -> list:
@@ -47,21 +68,21 @@ def same_members(a: Sequence, b: Sequence) -> bool:
     return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
 
 
-def share(before: Scene | None, after: Scene) -> Scene:
+def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Scene:
     """The scene after a change, with the very objects of the scene before wherever they are equal.
 
-    Meshes and images, which are large, are taken for equal only if they are the same. When nothing differs the
-    result is the scene before.
+    Meshes and images, which are large, are taken for equal only if they are the same, unless ``compare_large`` says
+    that they have been exported anew. When nothing differs the result is the scene before.
     """
     if before is None:
         return after
     values: dict[str, object] = {}
     for name in LISTS:
-        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE)
+        values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE and not compare_large)
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)
         values[name] = old if equal(old, new) else new
-    rest = ("exposure", "cubemap_centre", "warnings")
+    rest = ("exposure", "cubemap_centre", "shutter", "warnings")
     if all(equal(getattr(before, name), getattr(after, name)) for name in rest) and all(
         value is getattr(before, name) for name, value in values.items()
     ):

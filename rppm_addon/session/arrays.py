@@ -11,6 +11,8 @@ from .shared_memory import SharedBlock
 
 _ALIGNMENT = 64
 _SMALL = 1 << 10
+LARGE = 1 << 20
+"""Bytes from which on an array is not copied more often than it must be."""
 _MOST_INLINE = 1 << 15
 """Bytes that the message itself takes: a moved camera needs no shared memory."""
 
@@ -28,7 +30,10 @@ def pack(arrays: Sequence[np.ndarray]) -> tuple[dict, SharedBlock | None]:
     block = SharedBlock.create(size) if size > _MOST_INLINE else None
     memory = bytearray(size) if block is None else block.memory
     for run, (_, shape, offset) in zip(runs, layout, strict=True):
-        np.stack(run, out=np.ndarray(shape, run[0].dtype, memory, offset))
+        if block is not None and run[0].nbytes >= LARGE:
+            block.write(offset, np.ascontiguousarray(run[0]))
+        else:
+            np.stack(run, out=np.ndarray(shape, run[0].dtype, memory, offset))
     description = {"layout": layout, "size": size}
     if block is None:
         return {**description, "bytes": base64.b64encode(memory).decode()}, None
@@ -36,7 +41,7 @@ def pack(arrays: Sequence[np.ndarray]) -> tuple[dict, SharedBlock | None]:
 
 
 def unpack(description: dict) -> list[np.ndarray]:
-    """The arrays, as copies of the receiver's own.
+    """The arrays, as copies of the receiver's own, but for LARGE ones: these stay in the block's memory.
 
     Raises ProtocolError for a description that pack has not made.
     """
@@ -46,7 +51,7 @@ def unpack(description: dict) -> list[np.ndarray]:
         if "block" in description:
             block = SharedBlock.open(description["block"], size)
         memory = base64.b64decode(description["bytes"]) if block is None else block.memory
-        runs = [_copy(memory, *layout) for layout in description["layout"]]
+        runs = [_run(memory, *layout) for layout in description["layout"]]
         return [run[place, ...] for run in runs for place in range(len(run))]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ProtocolError(f"arrays cannot be read ({error})") from error
@@ -67,9 +72,13 @@ def _runs(arrays: Sequence[np.ndarray]) -> list[list[np.ndarray]]:
     return runs
 
 
-def _copy(memory: object, kind: str, shape: list[int], offset: int) -> np.ndarray:
+def _run(memory: object, kind: str, shape: list[int], offset: int) -> np.ndarray:
     """A run of arrays, as the rows of one."""
     dtype = np.dtype(kind)
     if dtype.hasobject:  # bytes are not to be taken for addresses
         raise ValueError(f"an array of {dtype}")
-    return np.ndarray(shape, dtype, memory, offset).copy()
+    run = np.ndarray(shape, dtype, memory, offset)
+    if run.nbytes < LARGE:
+        return run.copy()
+    # Unlike the array above, what frombuffer makes keeps the memory from being closed.
+    return np.frombuffer(memory, np.uint8, run.nbytes, offset).view(dtype).reshape(shape)

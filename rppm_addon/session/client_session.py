@@ -44,6 +44,12 @@ class Session:
         """Render this no more."""
         self.process.close_session(self)
 
+    @property
+    def is_open(self) -> bool:
+        """Whether neither the session nor the process was closed."""
+        with self.process.changed:
+            return self.process.sessions.get(self.number) is self
+
     # For the process's threads, with its ``changed`` held.
 
     def introduce(self) -> None:
@@ -145,17 +151,33 @@ class ViewportSession(Session):
 
 
 class RenderSession(Session):
-    """A scene that is rendered once, to its end."""
+    """Scenes that are each rendered once, to their end, one after the other."""
 
     def __init__(self, process: "RendererProcess", number: int, kind: SessionKind) -> None:
         super().__init__(process, number, kind)
         self.events: queue.SimpleQueue[tuple[str, dict]] = queue.SimpleQueue()
         """What the process tells, in the protocol's words; "started" when there is a process."""
+        self.introduced = False
+        """Whether there has been a process that knows the session; scenes shown to another one will reach it."""
         self._snapshots: tuple[float, ...] = ()
         self._stopping = False
+        self._generation = 0
+
+    def begin(self, scene: Scene) -> None:
+        """Render a scene to its end; no other one may be under way. What it shares with the scene before stays."""
+        with self.process.changed:
+            self._stopping = False
+            self._generation += 1
+            self.show(scene, self._generation, False)
+
+    def rest(self) -> None:
+        """The scene is rendered: a process that is started anew need not begin again with it."""
+        with self.process.changed:
+            self._snapshot = None
+            self._due = False
 
     def expect_snapshots(self, seconds: tuple[float, ...]) -> None:
-        """Ask for the picture at ascending times; to be said before the scene is shown."""
+        """Ask for the picture at ascending times; to be said before a scene begins."""
         with self.process.changed:
             self._snapshots = seconds
             self.process.post("expect_snapshots", session=self.number, seconds=seconds)
@@ -170,13 +192,14 @@ class RenderSession(Session):
         with self.process.changed:
             if not self._stopping:
                 self._stopping = True
-                self.process.post("stop", session=self.number)
+                self.process.post("stop", session=self.number, generation=self._generation)
 
     def introduce(self) -> None:
         super().introduce()
+        self.introduced = True
         self.process.post("expect_snapshots", session=self.number, seconds=self._snapshots)
         if self._stopping:
-            self.process.post("stop", session=self.number)
+            self.process.post("stop", session=self.number, generation=self._generation)
         self.events.put(("started", {}))
 
     def fail(self, text: str) -> None:

@@ -10,7 +10,7 @@ observer first; the engine asks for it and tells it what happens, in this order:
     observer.on_start(scene)                 # immediately before Renderer.render(scene, ...)
     renderer.render(scene, on_progress=...,  # calls observer.on_progress(progress)
         should_stop=...,                     # true as well when observer.should_stop() is true
-        snapshots=observer.snapshots,        # read after on_start
+        snapshots=observer.snapshots,        # read after on_start, as is observer.continuation
         on_snapshot=...)                     # calls observer.on_snapshot(seconds, frame, scene)
     observer.on_finish(result, scene)        # also after a stopped render
     observer.on_error(text)                  # wherever the engine reports an error to Blender
@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 from ..scene import Scene
 
 if TYPE_CHECKING:
+    from .continuation import Continuation
     from .renderer import Frame, Progress, RenderResult
 
 
@@ -34,6 +35,9 @@ class RenderObserver:
 
     snapshots: tuple[float, ...] = ()
     """Ascending seconds since on_start at which on_snapshot wants a frame."""
+
+    continuation: "Continuation | None" = None
+    """Where the render begins and who keeps it; in the background only (RenderJob.continuation)."""
 
     def on_scene(self, scene: Scene) -> bool:
         """The scene is complete and no renderer has been made for it yet.

@@ -15,7 +15,7 @@ pause session, paused
 expect_snapshots session, seconds     a render is to send its picture at these times
 want_picture session                  a render is to send its picture once
 received session                      the render's oldest frame is copied: its shared memory is free
-stop session                          a render is to end with what it has
+stop session, generation              the render of a scene is to end with what it has
 close session, dead                   dead are the handles of members that nothing uses any more
 forget dead                           the same without closing
 ping
@@ -40,7 +40,7 @@ import json
 import struct
 from typing import BinaryIO
 
-VERSION = 1
+VERSION = 2
 LONGEST_MESSAGE = 1 << 28
 _LENGTH = struct.Struct("<I")
 

@@ -2,6 +2,7 @@
 """Renders in the renderer's process, for a caller that waits for them."""
 
 import queue
+import threading
 import time
 
 from ..scene import errors
@@ -16,22 +17,66 @@ STOP_SECONDS = 10.0
 """How long the process may take to stop; then the render ends without a picture."""
 
 
-def render(process: RendererProcess, scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
-    """Render a scene; returns and raises what Renderer.render does, and RendererError when the process fails.
+class RemoteRenderer:
+    """Renders scene after scene in one session: what they share is sent and uploaded once."""
 
-    Callbacks run in the caller's thread, while the process goes on. A process that dies is started anew and begins
-    again with the scene.
-    """
-    session = process.open(kind)
+    def __init__(self, process: RendererProcess, kind: SessionKind) -> None:
+        self.process = process
+        self._kind = kind
+        self._idle: RenderSession | None = None
+        self._lock = threading.Lock()
+
+    def render(self, scene: Scene, job: RenderJob) -> RenderResult:
+        """Render a scene; returns and raises what Renderer.render does, and RendererError when the process fails.
+
+        Callbacks run in the caller's thread, while the process goes on. A process that dies is started anew and begins
+        again with the scene.
+        """
+        with self._lock:
+            session, self._idle = self._idle, None
+        if session is None or not session.is_open:
+            session = self.process.open(self._kind)
+        result = None
+        try:
+            result = _attend(self.process, session, scene, job)
+        finally:
+            if result is None:
+                session.close()
+        if result.statistics.iterations == 0:
+            session.close()  # the process may still be at it
+        else:
+            session.rest()
+            with self._lock:
+                self._idle = session
+        return result
+
+    def forget(self) -> None:
+        """Have the process give back what it keeps of the last scene. A render under way goes on."""
+        with self._lock:
+            session, self._idle = self._idle, None
+        if session is not None:
+            session.close()
+
+
+def render(process: RendererProcess, scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
+    """Render one scene as RemoteRenderer.render does, of which nothing is kept."""
+    renderer = RemoteRenderer(process, kind)
     try:
-        return _attend(process, session, scene, job)
+        return renderer.render(scene, job)
     finally:
-        session.close()
+        renderer.forget()
 
 
 def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job: RenderJob) -> RenderResult:
-    shown = False
+    def begin() -> None:
+        job.on_start()
+        session.expect_snapshots(tuple(job.snapshots))
+        session.begin(scene)
+
+    shown = session.introduced
     stopped_at: float | None = None
+    if shown:
+        begin()
     while True:
         if stopped_at is None and job.should_stop():
             stopped_at = time.monotonic()
@@ -44,9 +89,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
             continue
         if event == "started" and not shown:
             shown = True
-            job.on_start()
-            session.expect_snapshots(tuple(job.snapshots))
-            session.show(scene, 1, False)
+            begin()
         elif event == "progress":
             if job.on_progress(Progress(**content["progress"])):
                 session.want_picture()

@@ -4,6 +4,7 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .continuation import Continuation
     from .results import Frame, Progress
 
 POLL_SECONDS = 0.05
@@ -17,6 +18,9 @@ class RenderJob:
     """
 
     snapshots: tuple[float, ...] = ()
+
+    continuation: "Continuation | None" = None
+    """Where to begin and who keeps the render, read after on_start; renders in the renderer's process begin and end."""
 
     def should_stop(self) -> bool:
         """Whether the render is to end with what it has."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A session of the renderer's process that renders one scene to its end: F12, or a preview."""
+"""A session of the renderer's process that renders scenes to their end: F12, an animation, or a preview."""
 
 import collections
 import dataclasses
@@ -17,7 +17,10 @@ from .shared_memory import SharedBlock
 
 
 class Rendering:
-    """Renders the scene that it is shown, slice by slice, and tells what becomes of it."""
+    """Renders the scene that it is shown, slice by slice, and tells what becomes of it.
+
+    What the next scene shares with it stays on the device.
+    """
 
     def __init__(self, context: Context, library: ProgramLibrary, send: Callable[..., None]) -> None:
         self._context = context
@@ -28,7 +31,9 @@ class Rendering:
         self._mapper: ProgressivePhotonMapper | None = None
         self._render: SlicedRender | None = None
         self._slices: Iterator[None] | None = None
-        self._stopping = False
+        self._generation = 0
+        self._stopped = 0
+        """The newest generation that is to end."""
         self._picture_wanted = False
         self._blocks: collections.deque[SharedBlock] = collections.deque()
         """What lies in shared memory until Blender has copied it."""
@@ -40,11 +45,17 @@ class Rendering:
     def show(self, scene: Scene, generation: int, navigating: bool) -> None:
         """Render this scene."""
         self._scene = scene
+        self._generation = generation
         self._slices = None
+        self._picture_wanted = False
 
-    def stop(self) -> None:
-        """End with what there is."""
-        self._stopping = True
+    def stop(self, generation: int) -> None:
+        """End the render of this generation with what there is; another one goes on, or will begin."""
+        self._stopped = generation
+
+    @property
+    def _stopping(self) -> bool:
+        return self._stopped == self._generation
 
     def want_picture(self) -> None:
         """Send the picture as soon as an iteration is complete."""

@@ -8,6 +8,9 @@ import numpy as np
 
 from ..scene.scene import Scene
 
+NOTHING_HIT = 1e10
+"""Depth where nothing is hit, as Cycles writes it."""
+
 
 @dataclass
 class Frame:
@@ -16,7 +19,7 @@ class Frame:
     combined: np.ndarray
     """(height, width, 4) float32 scene-linear Rec.709, premultiplied alpha."""
     depth: np.ndarray
-    """(height, width) float32, metres along the view axis; 1e10 where nothing is hit."""
+    """(height, width) float32, metres along the view axis; NOTHING_HIT where nothing is."""
     normal: np.ndarray
     """(height, width, 3) float32 world-space shading normals; 0 where nothing is hit."""
     deep_cubemap: np.ndarray | None = None
@@ -80,7 +83,7 @@ def empty_result(scene: Scene, device: str) -> RenderResult:
     width, height = scene.camera.resolution
     frame = Frame(
         np.zeros((height, width, 4), np.float32),
-        np.full((height, width), 1e10, np.float32),
+        np.full((height, width), NOTHING_HIT, np.float32),
         np.zeros((height, width, 3), np.float32),
         np.zeros((height, width, 3), np.float32) if scene.settings.deep_cubemap_pass else None,
     )

@@ -13,6 +13,8 @@ import re
 import secrets
 import sys
 
+import numpy as np
+
 _LABEL = "rppm"
 _NAME = re.compile(r"(/proc/\d+/fd/\d+):(\d+)")
 
@@ -67,6 +69,19 @@ class SharedBlock:
             return cls(name, mmap.mmap(file, size))
         finally:
             os.close(file)
+
+    def write(self, offset: int, array: np.ndarray) -> None:
+        """Put a contiguous array's bytes there; quicker than through ``memory``, which is cleared page by page first.
+
+        Raises OSError when there is not so much memory.
+        """
+        data = memoryview(array.reshape(-1).view(np.uint8))
+        if self._file is None:
+            self.memory[offset : offset + len(data)] = data
+            return
+        while data:
+            written = os.pwrite(self._file, data, offset)
+            data, offset = data[written:], offset + written
 
     def withdraw(self) -> None:
         """Let nobody open the block any more; who has it open keeps it. May be called more than once."""

@@ -3,17 +3,22 @@
 
 A scene's members (its meshes, images, materials, lights, instances, world, camera and settings) are not changed after
 they were handed over. A member that the receiver has is therefore sent as its handle, a number, and the receiver's
-scenes share members as the sender's do. What no session's newest scene uses is forgotten on both sides.
+scenes share members as the sender's do. Large arrays have handles as well: a mesh that bends has the corners that it
+had. What no session's newest scene uses is forgotten on both sides.
 """
 
 import dataclasses
+import functools
+import itertools
 import typing
 from collections.abc import Sequence
 
 import numpy as np
 
+from ..scene.columns import decode_columns, encode_columns
 from ..scene.documents import decode, encode
 from ..scene.scene import Scene
+from .arrays import LARGE
 
 _HINTS = typing.get_type_hints(Scene)
 _SINGLE = {name: kind for name, kind in _HINTS.items() if dataclasses.is_dataclass(kind)}
@@ -23,6 +28,10 @@ _LISTS = {
     if typing.get_origin(kind) is list and dataclasses.is_dataclass(typing.get_args(kind)[0])
 }
 _VALUES = {name: kind for name, kind in _HINTS.items() if name not in _SINGLE and name not in _LISTS}
+_ARRAYS = "arrays"
+_IN_COLUMNS = {"instances"}
+"""Members of which there are thousands."""
+_PART_COLUMNS = 4096
 _PART_MEMBERS = 256
 _PART_BYTES = 1 << 25
 """What one message says of new members. Turning a document into text holds the interpreter, and Blender with it."""
@@ -42,10 +51,10 @@ class Part:
         self._bytes += array.nbytes
         return len(self.arrays) - 1
 
-    def add(self, field: str, handle: int, member: object) -> None:
-        """Say what a member is."""
-        self._members += 1
-        self.document.setdefault(field, []).append([handle, encode(member, self.keep)])
+    def add(self, field: str, entry: object, members: int = 1) -> None:
+        """Say what members are."""
+        self._members += members
+        self.document.setdefault(field, []).append(entry)
 
     @property
     def is_full(self) -> bool:
@@ -56,8 +65,13 @@ class SceneSender:
     """Knows which members the receiver has."""
 
     def __init__(self) -> None:
-        self._members: dict[int, tuple[int, object]] = {}
-        """Handle and member by the member's id, which stays its own as long as the member is kept here."""
+        self._members: dict[int, tuple[int, object, Sequence[int]]] = {}
+        """By the member's id, which stays its own as long as the member is kept here, its handle, the member and the
+        ids of its large arrays."""
+        self._arrays: dict[int, tuple[int, np.ndarray]] = {}
+        """The same of large arrays, which members share."""
+        self._users: dict[int, int] = {}
+        """How many members have a large array."""
         self._used: dict[int, set[int]] = {}
         """Ids of the members of each session's newest scene."""
         self._handles = 0
@@ -68,41 +82,22 @@ class SceneSender:
 
         Raises TypeError for a scene with something in it that no document can hold; the receiver then has no part.
         """
-        parts, whole = [Part()], Part()
-        added: list[int] = []
-        used: set[int] = set()
-        known = self._members
-
-        def handles(field: str, members: Sequence[object]) -> list[int]:
-            result = []
-            for member in members:
-                entry = known.get(id(member))
-                if entry is None:
-                    if parts[-1].is_full:
-                        parts.append(Part())
-                    self._handles += 1
-                    parts[-1].add(field, self._handles, member)
-                    entry = known[id(member)] = (self._handles, member)
-                    added.append(id(member))
-                result.append(entry[0])
-            used.update(map(id, members))
-            return result
-
+        message = _NewMembers(self)
         try:
+            whole = Part()
             whole.document = {
                 "members": {
-                    **{name: handles(name, [getattr(scene, name)])[0] for name in _SINGLE},
-                    **{name: handles(name, getattr(scene, name)) for name in _LISTS},
+                    **{name: message.handles(name, [getattr(scene, name)])[0] for name in _SINGLE},
+                    **{name: message.handles(name, getattr(scene, name)) for name in _LISTS},
                 },
                 "values": {name: encode(getattr(scene, name), whole.keep) for name in _VALUES},
             }
         except BaseException:
-            for member in added:
-                del known[member]
+            message.withdraw()
             raise
-        before, self._used[session] = self._used.get(session, set()), used
+        before, self._used[session] = self._used.get(session, set()), message.used
         whole.document["dead"] = self._forget(before)
-        return [part for part in parts if part.document], whole
+        return message.parts, whole
 
     def close(self, session: int) -> list[int]:
         """Forget a session; returns the handles that the receiver is to forget."""
@@ -110,7 +105,98 @@ class SceneSender:
 
     def _forget(self, candidates: set[int]) -> list[int]:
         unused = candidates.difference(*self._used.values())
-        return [self._members.pop(member)[0] for member in unused]
+        if not unused:
+            return []
+        handles = []
+        for key in unused:
+            handle, _, arrays = self._members.pop(key)
+            handles.append(handle)
+            for array in arrays:
+                self._users[array] -= 1
+                if self._users[array] == 0:
+                    del self._users[array]
+                    handles.append(self._arrays.pop(array)[0])
+        return handles
+
+
+class _NewMembers:
+    """What one scene has that the receiver does not have yet."""
+
+    def __init__(self, sender: SceneSender) -> None:
+        self._sender = sender
+        self._parts = [Part()]
+        self._array_parts: list[Part] = []
+        self._added: list[int] = []
+        self._asked: list[int] = []
+        """Ids of large arrays, as often as new members have them."""
+        self.used: set[int] = set()
+        """Ids of all members of the scene."""
+
+    @property
+    def parts(self) -> list[Part]:
+        """Arrays come before the members that have them."""
+        return self._array_parts + [part for part in self._parts if part.document]
+
+    def handles(self, field: str, members: Sequence[object]) -> list[int]:
+        """The handles of a scene's members, of which new ones are to be told."""
+        known = self._sender._members
+        ids = list(map(id, members))
+        self.used.update(ids)
+        new = {key: member for key, member in zip(ids, members, strict=True) if key not in known}
+        if field in _IN_COLUMNS:
+            self._tell_in_columns(field, new)
+        else:
+            for key, member in new.items():
+                if self._parts[-1].is_full:
+                    self._parts.append(Part())
+                part, large = self._parts[-1], []
+                document = encode(member, functools.partial(self._keep, part, large))
+                part.add(field, [self._give(key, member, large), document])
+        return [known[key][0] for key in ids]
+
+    def _tell_in_columns(self, field: str, new: dict[int, object]) -> None:
+        for start in range(0, len(new), _PART_COLUMNS):
+            chosen = dict(itertools.islice(new.items(), start, start + _PART_COLUMNS))
+            if self._parts[-1].is_full:
+                self._parts.append(Part())
+            part = self._parts[-1]
+            document = encode_columns(list(chosen.values()), _LISTS[field], part.keep)
+            first = self._sender._handles + 1
+            for key, member in chosen.items():
+                self._give(key, member)
+            part.add(field, [first, document], _PART_MEMBERS)
+
+    def _give(self, key: int, member: object, large: Sequence[int] = ()) -> int:
+        self._sender._handles += 1
+        self._sender._members[key] = self._sender._handles, member, large
+        self._added.append(key)
+        return self._sender._handles
+
+    def _keep(self, part: Part, large: list[int], array: np.ndarray) -> int | str:
+        """A large array goes by itself, and only once."""
+        if array.nbytes < LARGE:
+            return part.keep(array)
+        sender, key = self._sender, id(array)
+        if key not in sender._arrays:
+            sender._handles += 1
+            sender._arrays[key] = sender._handles, array
+            alone = Part()
+            alone.add(_ARRAYS, [sender._handles, {"array": alone.keep(array)}])
+            self._array_parts.append(alone)
+        large.append(key)
+        self._asked.append(key)
+        sender._users[key] = sender._users.get(key, 0) + 1
+        return str(sender._arrays[key][0])
+
+    def withdraw(self) -> None:
+        """Nothing is told after all."""
+        sender = self._sender
+        for key in self._added:
+            del sender._members[key]
+        for key in self._asked:
+            sender._users[key] -= 1
+            if sender._users[key] == 0:
+                del sender._users[key], sender._arrays[key]
 
 
 class SceneReceiver:
@@ -118,13 +204,18 @@ class SceneReceiver:
 
     def __init__(self) -> None:
         self._members: dict[int, object] = {}
+        """Large arrays are among them."""
 
     def learn(self, document: dict, arrays: Sequence[np.ndarray]) -> None:
         """Take a part that tells of new members. Raises KeyError, TypeError or ValueError for what is none."""
-        kinds = _SINGLE | _LISTS
-        for name, members in document.items():
-            for handle, member in members:
-                self._members[handle] = decode(member, kinds[name], arrays)
+        kinds = _SINGLE | _LISTS | {_ARRAYS: np.ndarray}
+        found = _Found(self._members, arrays)
+        for name, entries in document.items():
+            for handle, entry in entries:
+                if name in _IN_COLUMNS:
+                    self._members.update(enumerate(decode_columns(entry, kinds[name], found), handle))
+                else:
+                    self._members[handle] = decode(entry, kinds[name], found)
 
     def receive(self, document: dict, arrays: Sequence[np.ndarray]) -> Scene:
         """The scene of the part that tells of it, once its members are known. Raises as learn does."""
@@ -141,3 +232,13 @@ class SceneReceiver:
         """Forget members that no session uses any more."""
         for handle in handles:
             self._members.pop(handle, None)
+
+
+class _Found:
+    """Arrays by their references: places in the message, or handles as text."""
+
+    def __init__(self, members: dict[int, object], arrays: Sequence[np.ndarray]) -> None:
+        self._members, self._arrays = members, arrays
+
+    def __getitem__(self, reference: int | str) -> np.ndarray:
+        return self._members[int(reference)] if isinstance(reference, str) else self._arrays[reference]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A viewport's session in the renderer's process."""
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -94,7 +95,7 @@ class Viewing:
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
         mapper, settings = self._mapper, scene.settings
-        mapper.update(at_level(scene, level), keep_centre=level < 1.0)
+        mapper.update(at_level(scene, level), stray=math.inf if level < 1.0 else 0.0)
         built = time.perf_counter()
         yield
         while mapper.iteration < settings.iterations:

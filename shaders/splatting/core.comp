@@ -15,6 +15,7 @@ layout(std430, binding = 2) readonly buffer Core { uint core_count; uint core_im
 layout(std430, binding = 3) readonly buffer Importons { Importon importons[]; };
 #include "common/importon.glsl"
 #include "splatting/gathered.glsl"
+#include "splatting/diffused.glsl"
 
 void main() {
     uint index = invocation_index();
@@ -25,7 +26,9 @@ void main() {
     if (dot(p, p) > reach * reach) return;
     for (uint k = 0u; k < core_count; ++k) {
         vec3 radiance;
-        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance))
+        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance)) {
             add_gathered(core_importons[k], photon, radiance, parameters.quanta);
+            count_diffused(core_importons[k], photon, parameters.counting);
+        }
     }
 }

@@ -46,6 +46,10 @@ class RecordingLayout:
     def template_preview(self, owner):
         self.record.templates.append(owner)
 
+    def template_curve_mapping(self, data, name):
+        assert isinstance(getattr(data, name), bpy.types.CurveMapping)
+        self.record.properties.append(name)
+
     def template_node_view(self, tree, node, socket):
         assert node.id_data == tree and socket.node == node
         self.record.templates.append(socket)

@@ -28,6 +28,7 @@ COUNTERPARTS = {
     "CYCLES_MATERIAL_PT_volume": "RPPM_PT_material_volume",
     "CYCLES_PT_context_material": "EEVEE_MATERIAL_PT_context_material",
     # object
+    "CYCLES_OBJECT_PT_motion_blur": "RPPM_PT_object_motion_blur",
     "CYCLES_OBJECT_PT_visibility": "OBJECT_PT_visibility",
     "CYCLES_OBJECT_PT_visibility_ray_visibility": "RPPM_PT_ray_visibility",
     # render
@@ -40,6 +41,8 @@ COUNTERPARTS = {
     "CYCLES_RENDER_PT_film_transparency": "RPPM_PT_film",
     "CYCLES_RENDER_PT_light_paths": "RPPM_PT_paths",
     "CYCLES_RENDER_PT_light_paths_max_bounces": "RPPM_PT_paths",
+    "CYCLES_RENDER_PT_motion_blur": "RPPM_PT_motion_blur",
+    "CYCLES_RENDER_PT_motion_blur_curve": "RPPM_PT_motion_blur_curve",
     "CYCLES_RENDER_PT_performance": "RPPM_PT_performance",
     "CYCLES_RENDER_PT_performance_acceleration_structure": "RPPM_PT_deep_cubemap",
     "CYCLES_RENDER_PT_performance_memory": "RPPM_PT_performance",
@@ -67,7 +70,6 @@ EXCLUDED = {
     "CYCLES_LIGHT_PT_settings": f"portals, bounces and unshadowed lights: {NOT_RENDERED}",
     "CYCLES_MATERIAL_PT_settings_volume": OF_CYCLES,
     "CYCLES_OBJECT_PT_lightgroup": f"light groups: {NOT_RENDERED}",
-    "CYCLES_OBJECT_PT_motion_blur": f"motion blur: {NOT_RENDERED}",
     "CYCLES_OBJECT_PT_shading_caustics": "caustics need no switch",
     "CYCLES_OBJECT_PT_shading_gi_approximation": OF_CYCLES,
     "CYCLES_OBJECT_PT_visibility_culling": OF_CYCLES,
@@ -107,7 +109,6 @@ OLDER = {
 """Panels that Cycles had before Blender 5, and why RPPM has nothing for them."""
 EXCLUDED_BEGINNINGS = {
     "CYCLES_RENDER_PT_bake": "textures are not baked",
-    "CYCLES_RENDER_PT_motion_blur": f"motion blur: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_performance_compositor": "is the compositor's, which needs no engine",
     "CYCLES_RENDER_PT_sampling_path_guiding": OF_CYCLES,
     "CYCLES_RENDER_PT_sampling_render_denoise": f"denoising: {NOT_RENDERED}",

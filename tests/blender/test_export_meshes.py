@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_object, export, new_material
 
-from rppm_addon.blender.export import triangles
+from rppm_addon.blender.export import element_arrays
 
 
 def naive_arrays(mesh):
@@ -181,18 +181,37 @@ def two_quads():
     ]
 
 
-def test_triangles_are_read_by_pointer_only_where_that_is_right(scene, monkeypatch):
+def test_elements_are_read_by_pointer_only_where_that_is_right(scene, monkeypatch):
     mesh = evaluated(monkey(scene))
     mesh.calc_loop_triangles()
-    assert triangles.pointer_view_is_right(mesh)
-    by_pointer = triangles.triangle_corners(mesh)
-    monkeypatch.setattr(triangles, "_pointer_view_is_right", False)
-    np.testing.assert_array_equal(triangles.triangle_corners(mesh), by_pointer)
+    triangles = mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32
+    assert element_arrays.view_is_right(*triangles)
+    by_pointer = element_arrays.elements(*triangles).copy()
+    key = type(mesh.loop_triangles[0]).__name__, "loops"
+    monkeypatch.setitem(element_arrays._views_are_right, key, False)
+    np.testing.assert_array_equal(element_arrays.elements(*triangles), by_pointer)
     # Another layout must be noticed, and then not be used.
-    monkeypatch.setattr(triangles, "_pointer_view_is_right", None)
-    monkeypatch.setattr(triangles, "_by_pointer", lambda mesh: by_pointer[:, ::-1])
-    np.testing.assert_array_equal(triangles.triangle_corners(mesh), by_pointer)
-    assert triangles._pointer_view_is_right is False
+    monkeypatch.delitem(element_arrays._views_are_right, key)
+    monkeypatch.setattr(element_arrays, "_by_pointer", lambda *_: by_pointer[:, ::-1])
+    np.testing.assert_array_equal(element_arrays.elements(*triangles), by_pointer)
+    assert element_arrays._views_are_right[key] is False
+
+
+@pytest.mark.parametrize("collection", ["loop_triangles", "loop_triangle_polygons", "corner_normals", "uv", "position"])
+def test_all_that_meshes_are_made_of_lies_in_a_row(scene, collection):
+    mesh = evaluated(monkey(scene))
+    mesh.calc_loop_triangles()
+    if collection == "uv":
+        arguments = mesh.uv_layers[0].uv, "vector", len(mesh.loops), 2, np.float32
+    elif collection == "position":
+        arguments = mesh.attributes["position"].data, "vector", len(mesh.vertices), 3, np.float32
+    elif collection == "corner_normals":
+        arguments = mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32
+    elif collection == "loop_triangles":
+        arguments = mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32
+    else:
+        arguments = mesh.loop_triangle_polygons, "value", len(mesh.loop_triangles), 1, np.int32
+    assert element_arrays.view_is_right(*arguments)
 
 
 def test_one_triangle_and_no_triangle(scene):

@@ -11,8 +11,8 @@ from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.scene import DirectLight, RenderSettings
 
 ELSEWHERE = {"film_transparent"}  # a property that Blender itself has
-# an object of Blender's, exported as a point, and what viewports have apart
-BESIDES = {"cubemap_centre_object", "viewport_iterations", "viewport_photons", "viewport_paused"}
+# what makes the seed another one, an object of Blender's, exported as a point, and what viewports have apart
+BESIDES = {"animate_seed", "cubemap_centre_object", "viewport_iterations", "viewport_photons", "viewport_paused"}
 
 
 def test_properties_are_the_settings_with_their_defaults(scene):
@@ -103,3 +103,24 @@ def test_the_cubemap_centre_follows_its_object(scene):
     scene.rppm.cubemap_centre_object = empty
     bpy.context.view_layer.update()
     assert export(scene).cubemap_centre == pytest.approx([1.5, 2, 3])
+
+
+def test_an_animated_seed_is_another_one_in_each_frame(scene):
+    def seeds(seed, frames=range(-3, 30)):
+        scene.rppm.seed = seed
+        found = []
+        for frame in frames:
+            scene.frame_set(frame)
+            found.append(export(scene).settings.seed)
+        return found
+
+    assert set(seeds(5)) == {5}
+    scene.rppm.animate_seed = True
+    first, second = seeds(5), seeds(6)
+    assert first == seeds(5)
+    assert len({*first, *second}) == len(first) + len(second)
+    assert all(0 <= seed < 1 << 31 for seed in first)
+    export(scene).settings.validate()
+    # One bit of the frame turns about half of the bits.
+    turned = [(a ^ b).bit_count() for a, b in zip(first, first[1:])]
+    assert 12 <= sum(turned) / len(turned) <= 19

@@ -89,6 +89,21 @@ def test_the_panorama_panel(scene):
         assert name in drawn(panel, context).properties
 
 
+def test_motion_blur_panels(scene):
+    records = drawn_panels(panels.motion.CLASSES, context_of(scene))
+    shown = {name for record in records.values() for name in record.properties}
+    assert shown == {"use_motion_blur", "motion_blur_position", "motion_blur_shutter", "motion_blur_shutter_curve"}
+    assert len(records["RPPM_PT_motion_blur_curve"].operators) == 6
+    panel = panels.motion.RPPM_PT_object_motion_blur
+    context = context_of(scene, object=add_mesh(scene))
+    assert drawn(panel, context).properties == ["use_motion_blur", "motion_steps", "use_deform_motion"]
+    for seen in (scene.camera, add_light(scene, "SUN")):
+        context = context_of(scene, object=seen)
+        assert panel.poll(context) and drawn(panel, context).properties == ["use_motion_blur", "motion_steps"]
+    assert not panel.poll(context_of(scene, object=add_object(scene, "Empty", None)))
+    assert not panel.poll(context_of(scene))
+
+
 def test_material_and_world_panels_edit_the_output_that_is_exported(scene):
     material = new_material()
     tree = material.node_tree

@@ -12,6 +12,7 @@ import pytest
 
 import rppm_addon
 from rppm_addon.blender import renderer_process, renderer_thread
+from rppm_addon.session import child_process
 from rppm_addon.session.client import ProcessState
 from rppm_addon.session.observers import RenderObserver, observing
 from rppm_addon.session.sessions import SessionKind
@@ -71,6 +72,44 @@ def test_the_process_renders_what_the_thread_does(lit, windowed, monkeypatch):
             for name in ("combined", "depth", "normal"):
                 np.testing.assert_array_equal(getattr(before, name), getattr(after, name))
     assert rendered().frames[-1].combined[16, 16, 0] == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+def test_an_animation_sends_only_what_changes(lit, windowed, monkeypatch, tmp_path, persistent):
+    """And its frames are those of the thread, bit for bit."""
+    lit.frame_start, lit.frame_end = 1, 3
+    lit.render.filepath = str(tmp_path / "####")
+    for frame in (1, 2, 3):
+        lit.camera.location.x = 0.1 * frame
+        lit.camera.keyframe_insert("location", frame=frame)
+    sent = []
+    original = child_process.ChildProcess._send_part
+
+    def watch(self, kind, session, number, part, **content):
+        sent.append((session, number, sorted(part.document) if kind == "members" else None))
+        original(self, kind, session, number, part, **content)
+
+    monkeypatch.setattr(child_process.ChildProcess, "_send_part", watch)
+
+    def frames():
+        observer = Observer()
+        with observing(observer):
+            bpy.ops.render.render(animation=True)
+        return observer.frames
+
+    with monkeypatch.context() as patched:
+        patched.setattr(renderer_process, "is_used", lambda: False)
+        expected = frames()
+    lit.render.use_persistent_data = persistent
+    found = frames()
+    assert [frame.combined.tobytes() for frame in found] == [frame.combined.tobytes() for frame in expected]
+    assert len({session for session, _, _ in sent}) == 1
+    members = [names for _, _, names in sent if names is not None]
+    assert "meshes" in members[0] and members[1:] == [["camera"], ["camera"]]
+    # With persistent data Blender's user wants it kept.
+    assert len(windowed.sessions) == persistent
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert not windowed.sessions
 
 
 def test_errors_reach_the_user(lit, windowed):

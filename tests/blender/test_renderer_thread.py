@@ -20,8 +20,9 @@ class FakeRenderer:
         self.released = False
         FakeRenderer.made.append(self)
 
-    def render(self, scene, on_progress, should_stop, snapshots, on_snapshot):
+    def render(self, scene, on_progress, should_stop, snapshots, on_snapshot, continuation):
         self.threads.append(threading.current_thread())
+        self.continuation = continuation
         for iteration in range(1000):
             on_progress(Progress(iteration, 1000, 0.0, 0), lambda count=iteration: f"frame {count}")
             if should_stop():
@@ -52,6 +53,7 @@ class Job(RenderJob):
 
     def __init__(self, last=3):
         self.last, self.threads, self.told = last, set(), []
+        self.continuation = object()
 
     def should_stop(self):
         self.threads.add(threading.current_thread())
@@ -80,6 +82,7 @@ def test_callers_of_all_threads_share_one_renderer(renderers):
         assert job.told == [0, 1, "frame 1", 2, 3, (1.0, "snapshot"), (2.0, "snapshot")]
     assert results == [3, 3]
     (renderer,) = FakeRenderer.made
+    assert renderer.continuation is jobs[1].continuation
     renderers.release()
     assert renderer.released and len(set(renderer.threads)) == 1
     assert renderer.threads[0] is not threading.main_thread() and not renderer.threads[0].is_alive()

@@ -57,6 +57,10 @@ for made in (lamp, camera):
 lamp.keyframe_insert("location", frame=1)
 lamp.location.x = -90
 lamp.keyframe_insert("location", frame=2)
+for frame, length in (4, 0), (5, 1), (6, 0):
+    scene.rppm.radius_minimum, scene.rppm.radius_maximum = 2 * length, length
+    scene.rppm.keyframe_insert("radius_minimum", frame=frame)
+    scene.rppm.keyframe_insert("radius_maximum", frame=frame)
 scene.frame_set(1)
 scene.camera = camera
 scene.render.engine = "RPPM"
@@ -71,7 +75,8 @@ rppm_addon.unregister()
 
 @pytest.fixture(scope="session")
 def blend_files(tmp_path_factory):
-    """The same floor as a .blend whose lamp is gone in frame 2, and that file without a camera."""
+    """The same floor as a .blend whose lamp is gone in frame 2, and whose settings cannot be used in frame 5; and that
+    file without a camera."""
     pytest.importorskip("bpy", reason="the bpy module is not installed")
     folder = tmp_path_factory.mktemp("blend")
     paths = folder / "floor.blend", folder / "no_camera.blend"

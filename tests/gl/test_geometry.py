@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Gathering on the GPU against NumPy."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import scenes
@@ -108,22 +110,78 @@ def test_an_empty_scene_has_no_triangles(geometry):
     assert geometry.triangle_count == 0 and geometry.radius > 0
 
 
-def test_moving_instances_uploads_no_mesh(geometry, monkeypatch):
+@pytest.fixture
+def written(monkeypatch):
+    """Names of the buffers that are written to."""
+    names = []
+    plain = GrowingBuffer.write
+
+    def write(self, array, offset=0):
+        names.append(self.name.removeprefix("geometry "))
+        plain(self, array, offset)
+
+    monkeypatch.setattr(GrowingBuffer, "write", write)
+    return names
+
+
+def test_moving_instances_uploads_no_mesh(geometry, written):
     mesh = scenes.sphere("ball", 9, 5)
     scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), [mesh], [Instance(0, np.eye(4), [0])], [])
-    uploaded = []
-    plain = GrowingBuffer.upload
-    monkeypatch.setattr(GrowingBuffer, "upload", lambda self, array: (uploaded.append(self.name), plain(self, array)))
     geometry.build(scene, 0)
     before, _ = read(geometry)
-    assert "geometry Positions" in uploaded
-    uploaded.clear()
+    assert "Positions" in written
+    written.clear()
     scene.instances = [Instance(0, scenes.placed(1, 2, 3), [0])]
     geometry.build(scene, 0)
     after, _ = read(geometry)
-    assert uploaded == ["geometry Instances", "geometry SlotMaterials"]
+    assert written == ["Instances", "SlotMaterials"]
     np.testing.assert_allclose(after, before + np.float32([1, 2, 3]), atol=1e-6)
     np.testing.assert_allclose([geometry.bounds_low, geometry.bounds_high], [[0, 1, 2], [2, 3, 4]], atol=0.2)
     scene.meshes = [scenes.sphere("ball", 9, 7)]
     geometry.build(scene, 0)
-    assert "geometry Positions" in uploaded and geometry.triangle_count == scene.triangle_count
+    assert "Positions" in written and geometry.triangle_count == scene.triangle_count
+
+
+def test_bending_a_mesh_uploads_its_positions_and_normals(geometry, context, library, written):
+    meshes = [scenes.sphere("small", 9, 5), scenes.sphere("bent", 12, 7), scenes.sphere("last", 5, 4)]
+    instances = [Instance(index, scenes.placed(3.0 * index, 0, 0), [0]) for index in (0, 1, 2, 1)]
+    scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), meshes, instances, [])
+    geometry.build(scene, 0)
+    for changes in (
+        {1: ("positions", "corner_normals")},
+        {1: ("positions",), 2: ("positions",)},
+        {0: ("positions",), 2: ("positions",)},
+        {0: ("triangle_slots",)},
+    ):
+        for index, members in changes.items():
+            arrays = {member: getattr(scene.meshes[index], member)[::-1].copy() for member in members}
+            scene.meshes[index] = dataclasses.replace(scene.meshes[index], **arrays)
+        written.clear()
+        geometry.build(scene, 0)
+        members = {member.title().replace("_", "") for members in changes.values() for member in members}
+        assert set(written) == {"Instances", "SlotMaterials", *members}
+        fresh = Geometry(context, library)
+        fresh.build(scene, 0)
+        for ours, anew in zip(read(geometry), read(fresh), strict=True):
+            assert ours.tobytes() == anew.tobytes()
+        fresh.release()
+
+
+def test_meshes_that_come_and_go_find_their_places(geometry, context, library):
+    chance = np.random.default_rng(7)
+    meshes = [scenes.sphere(str(index), 5 + index, 4) for index in range(6)]
+    meshes[3].corner_uv = chance.random((len(meshes[3].corner_vertices), 2)).astype(np.float32)
+    for _ in range(12):
+        chosen = [meshes[index] for index in chance.permutation(6)[: chance.integers(0, 7)]]
+        instances = [
+            Instance(int(chance.integers(len(chosen))), scenes.placed(*chance.random(3)), [0])
+            for _ in range(chance.integers(0, 9) if chosen else 0)
+        ]
+        scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), chosen, instances, [])
+        geometry.build(scene, 0)
+        fresh = Geometry(context, library)
+        fresh.build(scene, 0)
+        for ours, anew in zip(read(geometry), read(fresh), strict=True):
+            assert ours.tobytes() == anew.tobytes()
+        assert geometry.bounds_low.tobytes() == fresh.bounds_low.tobytes()
+        fresh.release()

@@ -56,10 +56,10 @@ def test_any_guide_emits_the_same_light(mapper, name, aimed):
     """Cells chosen at random a hundred times more or less often: the light field's moments stay."""
     mapper.build(lit_floor(name, aimed))
     plain = emitted_moments(mapper, 8)
-    count = int(np.prod(mapper._emission._guide._cells[0]))
-    assert len(mapper._emission._guide._cells) == 1 and count >= 1024
+    count = int(np.prod(mapper._emission.guide._cells[0]))
+    assert len(mapper._emission.guide._cells) == 1 and count >= 1024
     estimate = 10.0 ** np.random.default_rng(3).uniform(-4, 0, count)
-    mapper._emission._guide._starts.upload(guide.starts(guide.probabilities(estimate)))
+    mapper._emission.guide._starts.upload(guide.starts(guide.probabilities(estimate)))
     guided = emitted_moments(mapper, 8)
     error = np.sqrt((plain.var(axis=0, ddof=1) + guided.var(axis=0, ddof=1)) / 8)
     difference = guided.mean(axis=0) - plain.mean(axis=0)

@@ -39,8 +39,15 @@ LIGHTS = {
     "point_soft": _lamp("POINT", UP_TWO, shadow_soft_size=0.5),
     "point_sphere": _lamp("POINT", UP_TWO, shadow_soft_size=0.5, use_soft_falloff=False),
     "point_factors": _lamp(
-        "POINT", UP_TWO, energy=3.0, shadow_soft_size=0.4, normalize=False, exposure=1.5, color=(1.0, 0.7, 0.5),
-        use_temperature=True, temperature=4000.0,
+        "POINT",
+        UP_TWO,
+        energy=3.0,
+        shadow_soft_size=0.4,
+        normalize=False,
+        exposure=1.5,
+        color=(1.0, 0.7, 0.5),
+        use_temperature=True,
+        temperature=4000.0,
     ),
     "spot": _lamp("SPOT", TILTED, shadow_soft_size=0.0, spot_size=math.radians(70.0), spot_blend=0.5),
     "spot_scaled": _lamp(

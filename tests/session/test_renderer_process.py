@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rppm_addon.scene import Movement, Shutter
 from rppm_addon.scene.errors import RendererError, SettingsError
 from rppm_addon.session.client import ProcessState
 from rppm_addon.session.remote_rendering import render
@@ -66,6 +67,19 @@ def test_a_viewport_settles_on_the_picture_of_a_render(start):
     session.show(wider, 3, False)
     wait_until(lambda: session.status.generation == 3 and session.status.settled)
     assert np.array_equal(session.newest().combined, expected(wider).combined)
+
+
+def test_a_render_blurs_what_moves(start):
+    """And the one after it does not, though it has the same members."""
+    process = start()
+    way = np.stack([np.eye(4)] * 2)
+    way[1, 0, 3] = 3.0
+    scene = scene_of(3, shutter=Shutter(np.ones(2), [Movement(0, np.array([0.0, 1.0]), way)]))
+    still = dataclasses.replace(scene, shutter=None)
+    pictures = [render(process, shown, RenderJob(), SessionKind.FINAL).frame.combined for shown in (scene, still)]
+    for picture, shown in zip(pictures, (scene, still), strict=True):
+        assert np.array_equal(picture, expected(shown).combined)
+    assert not np.array_equal(*pictures)
 
 
 def test_of_many_scenes_the_last_is_shown(start):
@@ -232,6 +246,12 @@ def test_a_render_in_the_process_is_the_same_picture(start, deep_cubemap_pass):
     assert result.statistics.flux_watts["emitted"] > 0.0
     assert job.told[0] == "start" and [told[1] for told in job.told if told[0] == "progress"] == [0, 1, 2, 3, 4]
     assert [told for told in job.told if told[0] == "snapshot"] == [("snapshot", 0.0), ("snapshot", 0.001)]
+
+
+def test_pictures_that_are_asked_for_come_meanwhile(start):
+    job = Job()
+    job.should_stop = lambda: job.told[-1:] and job.told[-1][0] == "frame"
+    assert render(start(), scene_of(size=48), job, SessionKind.FINAL).stopped
     assert ("frame", (48, 48, 4)) in job.told
 
 

@@ -11,7 +11,7 @@ import pytest
 from floor import floor_scene
 from full_scene import assert_same, full_scene
 
-from rppm_addon.scene import Image, Instance
+from rppm_addon.scene import Image, Instance, Mesh, Particle, RayVisibility
 from rppm_addon.session.arrays import pack, unpack
 from rppm_addon.session.protocol import ProtocolError
 from rppm_addon.session.shared_memory import SharedBlock
@@ -109,8 +109,9 @@ def test_ids_that_python_gives_again():
 def test_a_scene_that_cannot_be_sent_leaves_nothing_half_known():
     wire, scene = Wire(), full_scene()
     with pytest.raises(TypeError, match="object"):
-        wire.sender.send(1, dataclasses.replace(scene, images=[object()]))
-    assert not wire.sender._members
+        large = Image("Large", np.zeros((512, 512, 4), np.float32))
+        wire.sender.send(1, dataclasses.replace(scene, images=[large, object()]))
+    assert not wire.sender._members and not wire.sender._arrays
     assert_same(scene, wire.send(scene))
 
 
@@ -134,11 +135,60 @@ def test_instances_that_stay_cost_little():
 
 def test_many_new_members_come_in_several_messages():
     scene = floor_scene()
-    scene.instances = [Instance(0, np.full((4, 4), index), [0], f"Stone {index}") for index in range(1000)]
+    scene.instances = [Instance(0, np.full((4, 4), index), [0], f"Stone {index}") for index in range(10000)]
+    scene.lights = [dataclasses.replace(scene.lights[0], name=f"Lamp {index}") for index in range(1000)]
     parts, _ = SceneSender().send(1, scene)
-    assert len(parts) > 3
+    assert len(parts) > 6
     assert max(len(json.dumps(part.document)) for part in parts) < 200_000
     assert_same(scene, Wire().send(scene))
+
+
+def test_instances_of_every_kind():
+    """Those that go together need not be alike."""
+    particle = Particle(3.0, 0.5, -1.5, 10.0, 0.1, (1.0, -0.0, 2.0), (0.0, 0.0, 1e-300), (np.inf, 0.0, 0.0))
+    scene = floor_scene()
+    scene.instances = [
+        Instance(0, np.eye(4)),
+        Instance(0, np.full((4, 4), np.nan), [0, 0, 1], "Twin", 7, (0.0, 1.0, 0.5, 0.25), 0.75, particle),
+        Instance(0, np.eye(4), [0], "Twin", 1 << 20, (-0.0, 1.0, 0.5, 0.25), 1.0, None, RayVisibility(6), True, True),
+        Instance(0, -np.eye(4), [], "", -1, attributes={"OBJECT:a": (1.0,), "INSTANCER:b": (0.5, -0.0, 3.0)}),
+        Instance(0, np.eye(4), attributes={"OBJECT:a": (1.0,)}, particle=Particle()),
+    ]
+    received = Wire().send(scene).instances
+    assert repr(received) == repr(scene.instances)
+    for before, after in zip(scene.instances, received, strict=True):
+        assert before.matrix.tobytes() == after.matrix.tobytes() and type(after.visibility) is RayVisibility
+    with pytest.raises(TypeError, match="Light is no Instance"):
+        SceneSender().send(1, dataclasses.replace(scene, instances=[*scene.instances, scene.lights[0]]))
+
+
+def test_a_mesh_that_bends_sends_its_positions_only():
+    wire, scene = Wire(), floor_scene()
+    count = 1 << 18
+    mesh = Mesh(
+        "Sheet",
+        np.zeros((count, 3), np.float32),
+        np.arange(3 * count, dtype=np.int32) // 3,
+        np.ones((3 * count, 3), np.float32),
+        np.arange(3 * count, dtype=np.int32).reshape(-1, 3),
+        np.zeros(count, np.int32),
+    )
+    scene.meshes = [mesh, dataclasses.replace(mesh, name="Other")]
+    first = wire.send(scene)
+    assert_same(scene, first)
+    assert first.meshes[0].positions is first.meshes[1].positions
+    for height in range(1, 4):
+        moved = mesh.positions + np.float32([0.0, 0.0, height])
+        scene = dataclasses.replace(scene, meshes=[dataclasses.replace(mesh, positions=moved), scene.meshes[1]])
+        received = wire.send(scene)
+        assert moved.nbytes < wire.bytes < 1.1 * moved.nbytes
+        assert_same(scene, received)
+        assert received.meshes[0].corner_normals is first.meshes[0].corner_normals
+        assert received.meshes[1] is first.meshes[1]
+    wire.send(dataclasses.replace(scene, meshes=[], instances=[]))
+    assert len(wire.receiver._members) == len(wire.sender._members) and not wire.sender._arrays
+    wire.close(1)
+    assert not wire.receiver._members and not wire.sender._members
 
 
 def test_arrays_of_every_kind():

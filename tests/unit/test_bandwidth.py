@@ -9,6 +9,7 @@ import pytest
 from rppm_addon.integrator.bandwidth import (
     EXPECTED_PHOTONS,
     fitted_wide_radius,
+    photons_found,
     radius_in_pixels,
     radius_limits,
     shrinkage,
@@ -60,12 +61,12 @@ def test_fitted_radius_would_find_the_expected_photons():
     generator = np.random.default_rng(5)
     density = 900.0  # photons per m^2
     counts = generator.poisson(density * math.pi * 0.2**2, 4000)
-    fitted = fitted_wide_radius(0.2, EXPECTED_PHOTONS, counts)
+    fitted = fitted_wide_radius(0.2, EXPECTED_PHOTONS, photons_found(counts))
     assert density * math.pi * fitted**2 == pytest.approx(EXPECTED_PHOTONS, rel=0.02)
     sparse = generator.poisson(0.2, 4000)
-    fitted = fitted_wide_radius(0.2, EXPECTED_PHOTONS, sparse)
+    fitted = fitted_wide_radius(0.2, EXPECTED_PHOTONS, photons_found(sparse))
     assert fitted == pytest.approx(0.2 * math.sqrt(2 * EXPECTED_PHOTONS / 0.2), rel=0.05)
-    assert fitted_wide_radius(0.2, EXPECTED_PHOTONS, np.zeros(9)) == math.inf
+    assert fitted_wide_radius(0.2, EXPECTED_PHOTONS, photons_found(np.zeros(9))) == math.inf
 
 
 def test_widest_radius_follows_scene_and_view():

@@ -7,8 +7,6 @@ import pytest
 from rppm_addon.integrator.bands import MAXIMUM_BAND_PIXELS, bands_of
 from rppm_addon.integrator.camera_view import camera_view
 from rppm_addon.integrator.gbuffer import filter_offsets
-from rppm_addon.integrator.photons import flux_balance
-from rppm_addon.integrator.records import PHOTON, PHOTON_ACTIVE, PHOTON_ESCAPED
 from rppm_addon.scene import Camera
 from rppm_addon.scene.errors import SceneError
 
@@ -47,14 +45,3 @@ def test_unusable_cameras_are_refused():
         camera_view(Camera(matrix, (-1, 1, -1, 1), 4, 4), 0, 4, (0, 0))
     with pytest.raises(SceneError, match="camera"):
         camera_view(Camera(np.eye(4), (1, 1, -1, 1), 4, 4), 0, 4, (0, 0))
-
-
-def test_flux_balance_finds_lost_flux():
-    photons = PHOTON.zeros(6).reshape(2, 3)
-    emitted = np.full((3, 3), 1.0)
-    photons["flags"] = [[PHOTON_ACTIVE, PHOTON_ACTIVE | PHOTON_ESCAPED, PHOTON_ACTIVE], [PHOTON_ACTIVE, 0, 0]]
-    photons["scattered_flux"][0, 0] = 0.25
-    balance = flux_balance(emitted, photons)
-    assert balance == {"emitted": 9.0, "absorbed": 5.25, "deposited": 0.75, "escaped": 3.0, "lost": 0.0}
-    photons["flags"][1, 0] = 0  # a segment that no record tells of
-    assert flux_balance(emitted, photons)["lost"] == 0.75

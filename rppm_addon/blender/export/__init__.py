@@ -9,6 +9,8 @@ from ...scene import Scene
 from ...scene.errors import SceneError
 from .camera import export_camera
 from .context import ExportContext
+from .frames import FrameExporter
+from .motion import MotionExporter, is_blurred
 from .objects import ObjectExporter
 from .report import ExportStopped, Report
 from .settings import export_cubemap_centre, export_exposure, export_settings, preview_settings
@@ -18,12 +20,14 @@ from .world import export_world
 
 __all__ = [
     "ExportStopped",
+    "FrameExporter",
     "SceneError",
     "SceneSync",
     "export_exposure",
     "export_scene",
     "export_settings",
     "export_view",
+    "is_blurred",
 ]
 
 
@@ -58,13 +62,16 @@ def export_scene(
     scene.cubemap_centre = export_cubemap_centre(depsgraph)
     scene.exposure = export_exposure(source)
     objects = ObjectExporter(context)
-    placed = objects.export(depsgraph)
+    blurred = is_blurred(depsgraph, engine)
+    placed = objects.export(depsgraph, identify=blurred)
+    scene.world, suns = export_world(source.world, context)
+    if blurred:
+        placed = MotionExporter(depsgraph, engine, context).run(scene, objects, placed)
     scene.meshes, scene.instances, scene.materials = (
         objects.meshes.meshes,
         placed.instances,
         objects.materials.materials,
     )
-    scene.world, suns = export_world(source.world, context)
     scene.lights = placed.lights + suns
     scene.images = context.images.images
     scene.warnings = report.warnings

@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 
 from ...scene import AttributeDomain, Mesh, MeshAttribute
+from ...scene.sharing import equal
+from .meshes import read_uv
 from .tangents import corner_tangents, sphere_uv
 
 GENERATED = ".generated"
@@ -54,12 +56,16 @@ def attribute_of(owner: bpy.types.bpy_struct | None, name: str) -> tuple[float, 
     return numbers[:4] or None
 
 
-def add_attributes(exported: Mesh, mesh: bpy.types.Mesh, names: set[str]) -> None:
-    """Read the named attributes of the mesh that was exported, as far as it has them and they are not read yet."""
+def add_attributes(exported: Mesh, mesh: bpy.types.Mesh, names: set[str], before: Mesh | None = None) -> None:
+    """Read the named attributes of the mesh that was exported, as far as it has them and they are not read yet.
+
+    before: those that are the same as this mesh's are its very attributes.
+    """
     for name in sorted(names - exported.attributes.keys()):
         attribute = export_attribute(exported, mesh, name)
         if attribute is not None:
-            exported.attributes[name] = attribute
+            known = None if before is None else before.attributes.get(name)
+            exported.attributes[name] = known if known is not None and equal(known, attribute) else attribute
 
 
 def export_attribute(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
@@ -83,7 +89,9 @@ def export_attribute(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAtt
         kind = np.float32
     values = np.empty(count * width, kind)
     attribute.data.foreach_get(field, values)
-    values = np.nan_to_num(values.reshape(count, width).astype(np.float32), posinf=0.0, neginf=0.0)
+    values = values.reshape(count, width).astype(np.float32, copy=False)
+    if not (np.isfinite(values.min(initial=0.0)) and np.isfinite(values.max(initial=0.0))):
+        values = np.nan_to_num(values, copy=False, posinf=0.0, neginf=0.0)
     if attribute.domain == "POINT":
         return MeshAttribute(AttributeDomain.POINT, values)
     if attribute.domain == "CORNER":
@@ -130,12 +138,9 @@ def _mean_of_edges(mesh: bpy.types.Mesh, values: np.ndarray) -> np.ndarray:
 def _tangents(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
     """Tangents of a UV map, by default of that in use; of a mesh without one, of longitude and latitude."""
     if name:
-        layer = mesh.uv_layers.get(name)
-        if layer is None:
+        if name not in mesh.uv_layers:
             return None
-        uv = np.empty(2 * len(mesh.loops), np.float32)
-        layer.uv.foreach_get("vector", uv)
-        uv = np.nan_to_num(uv.reshape(-1, 2), copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+        uv = read_uv(mesh, name)
     elif exported.corner_uv is not None:
         uv = exported.corner_uv
     else:

@@ -56,6 +56,17 @@ def export_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, report
     )
 
 
+def camera_pose(
+    camera_object: bpy.types.Object, render: bpy.types.RenderSettings
+) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
+    """Matrix and window of an evaluated camera object that export_camera takes; None where its matrix is singular."""
+    try:
+        matrix, _ = rigid(np.array(camera_object.matrix_world, np.float64))
+    except ValueError:
+        return None
+    return matrix, window(camera_object.data, *frame_shape(render, *frame_size(render)))
+
+
 def frame_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
     """Pixels of the whole frame: the resolution, scaled by its percentage."""
     return tuple(

@@ -25,8 +25,6 @@ class ImageTable:
         self.images: list[Image] = []
         self.frame = 1
         """Of the scene, whose sequences and movies are shown."""
-        self.frames = 0
-        """How often an image was asked for that depends on the frame."""
         self._indices: dict[tuple, int] = {}
 
     def of_node(self, node: bpy.types.Node, exporter: "GraphExporter") -> int:
@@ -37,7 +35,7 @@ class ImageTable:
             return MISSING
         if image.source not in {"SEQUENCE", "MOVIE"}:
             return self._index((image.as_pointer(),), lambda: image, image, node, exporter)
-        self.frames += 1
+        exporter.context.untold += 1
         number = frame_of(node.image_user, self.frame)
         load = _of_movie if image.source == "MOVIE" else _of_sequence
         return self._index((image.as_pointer(), number), lambda: load(image, number), image, node, exporter)

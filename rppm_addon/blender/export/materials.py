@@ -20,7 +20,7 @@ class MaterialTable:
         """Of each material, the attributes that its nodes read, with the name of such a node."""
         self._context = context
         self._places: dict[int, int] = {}
-        self._of_frame: set[int] = set()
+        self._untold: set[int] = set()
 
     def index(self, material: bpy.types.Material | None) -> int:
         """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
@@ -42,18 +42,18 @@ class MaterialTable:
         self._export(key, material)
         return self.attributes[self._places[key]] != before
 
-    def shows_frames(self, material: bpy.types.Material) -> bool:
-        """Whether a material has images that depend on the frame."""
-        return material.original.session_uid in self._of_frame
+    def may_have_changed(self, material: bpy.types.Material) -> bool:
+        """Whether a material rests on what changes without the depsgraph telling."""
+        return material.original.session_uid in self._untold
 
     def _export(self, key: int, material: bpy.types.Material | None) -> None:
-        frames = self._context.images.frames
+        untold = self._context.untold
         with self._context.report.about(("material", key)):
             if material is None:
                 exported = Material("Default", default_surface())
             else:
                 exported = export_material(material, self._context)
-        (self._of_frame.add if self._context.images.frames > frames else self._of_frame.discard)(key)
+        (self._untold.add if self._context.untold > untold else self._untold.discard)(key)
         place = self._places[key]
         self.materials[place] = exported
         self.attributes[place] = {

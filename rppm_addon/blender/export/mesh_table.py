@@ -6,11 +6,10 @@ import dataclasses
 from collections.abc import Iterator
 
 import bpy
-import numpy as np
 
 from ...scene import Mesh
 from .attributes import add_attributes
-from .meshes import export_mesh
+from .meshes import NO_MESH, export_mesh
 from .report import Report
 
 
@@ -31,6 +30,8 @@ class MeshTable:
         self._seen: set[int] = set()
         self._tried: dict[int, set[str]] = {}
         self._keys: dict[int, int] = {}
+        self._before: dict[int, Mesh] = {}
+        """By owner, what was forgotten and may come again with other positions."""
 
     def begin_pass(self) -> None:
         """All uses of meshes follow."""
@@ -40,6 +41,7 @@ class MeshTable:
         """Meshes that were not used since begin_pass are forgotten."""
         for key in self._places.keys() - self._seen:
             self._drop(key)
+        self._before = {}
 
     def keep(self, place: int) -> None:
         """A mesh is used as before."""
@@ -47,7 +49,11 @@ class MeshTable:
 
     def forget(self, owners: set[int]) -> None:
         """What these objects showed has changed."""
-        for key in [key for key, known in self._owners.items() if known & owners]:
+        self._before = {}
+        for key in [key for key, known in self._owners.items() if known & owners] if owners else ():
+            place = self._places[key]
+            if place is not None:
+                self._before.update(dict.fromkeys(self._owners[key], self.meshes[place]))
             self._drop(key)
 
     def _drop(self, key: int) -> None:
@@ -55,7 +61,7 @@ class MeshTable:
         self._owners.pop(key)
         self._seen.discard(key)
         if place is not None:
-            self.meshes[place] = _NOTHING
+            self.meshes[place] = NO_MESH
             self._tried.pop(place)
             self._keys.pop(place)
 
@@ -72,7 +78,7 @@ class MeshTable:
         if key not in self._places:
             self._report.progress(f"Exporting {source.name}")
             with self._report.about(("mesh", owner, source.name)):
-                self._places[key] = self._add(source, mesh, attributes)
+                self._places[key] = self._add(source, mesh, attributes, self._before.pop(owner, None))
             self._owners[key] = set()
         self._seen.add(key)
         self._owners[key].add(owner)
@@ -84,22 +90,24 @@ class MeshTable:
                 self._complete(place, evaluated, attributes)
         return place
 
-    def _add(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str]) -> int | None:
+    def _add(
+        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str], before: Mesh | None
+    ) -> int | None:
         with _mesh_of(source, mesh) as evaluated:
-            exported = None if evaluated is None else export_mesh(evaluated, source.name, self._report)
+            exported = None if evaluated is None else export_mesh(evaluated, source.name, self._report, before)
             if exported is None:
                 return None
-            place = next((i for i, known in enumerate(self.meshes) if known is _NOTHING), len(self.meshes))
+            place = next((i for i, known in enumerate(self.meshes) if known is NO_MESH), len(self.meshes))
             self.meshes[place : place + 1] = [exported]
             self._tried[place] = set()
-            self._complete(place, evaluated, attributes)
+            self._complete(place, evaluated, attributes, before)
         return place
 
-    def _complete(self, place: int, mesh: bpy.types.Mesh, attributes: set[str]) -> None:
+    def _complete(self, place: int, mesh: bpy.types.Mesh, attributes: set[str], before: Mesh | None = None) -> None:
         """Read attributes that were not asked for before; meshes that were handed out stay as they are."""
         known = self.meshes[place]
         self.meshes[place] = dataclasses.replace(known, attributes=dict(known.attributes))
-        add_attributes(self.meshes[place], mesh, attributes)
+        add_attributes(self.meshes[place], mesh, attributes, before)
         self._tried[place] |= attributes
 
 
@@ -118,10 +126,3 @@ def _mesh_of(source: bpy.types.Object, mesh: bpy.types.Mesh | None) -> Iterator[
     finally:
         if made is not None:
             source.to_mesh_clear()
-
-
-_NOTHING = Mesh(
-    "", np.zeros((0, 3), np.float32), np.zeros(0, np.int32), np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32),
-    np.zeros(0, np.int32),
-)  # fmt: skip
-"""In place of a mesh that is not used."""

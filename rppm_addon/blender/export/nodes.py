@@ -78,6 +78,7 @@ def _attribute(exporter: GraphExporter, node, output, path: Path):
 
 def _view_layer_attribute(exporter: GraphExporter, node, output):
     """A property of the view layer, the scene or the world, which is one value for all surfaces."""
+    exporter.context.untold += 1
     for owner in exporter.context.owners:
         value = attribute_of(owner, node.attribute_name)
         if value is not None:

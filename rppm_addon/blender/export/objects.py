@@ -38,16 +38,18 @@ class ObjectExporter:
         depsgraph: bpy.types.Depsgraph,
         shown: Callable[[bpy.types.Object], bool] | None = None,
         unchanged: dict[int, Instance] | None = None,
+        identify: bool = False,
     ) -> "Placed":
         """All instances and lights.
 
         shown: which of the original objects are to be seen, all if None. unchanged: by session_uid, the instances of
-        objects that stand for themselves and are as they were. Raises ExportStopped when the user wants no more.
+        objects that stand for themselves and are as they were. identify: tell by what they are known at other times.
+        Raises ExportStopped when the user wants no more.
         """
         self._frame = depsgraph.scene_eval.frame_current_final
         self.meshes.begin_pass()
         with self._report.about("objects"):
-            placed = _Pass(self, depsgraph, shown, unchanged or {}).run()
+            placed = _Pass(self, depsgraph, shown, unchanged or {}, identify).run()
         self.meshes.end_pass()
         return placed
 
@@ -118,6 +120,20 @@ class ObjectExporter:
         return [self.materials.index(material) for material in slots or [None]]
 
 
+Identity = tuple[int, ...]
+"""By what an instance or a light is known at other times: the session_uid of its object, or those of what multiplies
+the object and of the object, and Blender's persistent_id."""
+
+
+def identity_of(
+    instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, owner: bpy.types.Object
+) -> Identity:
+    """source: the original object; owner: what multiplies it, or itself."""
+    if not instance.is_instance:
+        return (owner.session_uid,)
+    return (owner.session_uid, source.session_uid, *instance.persistent_id)
+
+
 @dataclass
 class Placed:
     """What a pass over a depsgraph found."""
@@ -128,6 +144,8 @@ class Placed:
     """By session_uid, the index of the only instance of each mesh object that multiplies nothing."""
     lights_alone: dict[int, int] = field(default_factory=dict)
     """By session_uid, the index of the only light of each light object."""
+    identities: dict[int, Identity] = field(default_factory=dict)
+    """Of instances and lights by their id(), if asked for."""
 
 
 class _Pass:
@@ -139,14 +157,18 @@ class _Pass:
         depsgraph: bpy.types.Depsgraph,
         shown: Callable[[bpy.types.Object], bool] | None,
         unchanged: dict[int, Instance],
+        identify: bool,
     ) -> None:
+        self._identify = identify
+        self._identity: Identity = ()
+        """Of what is being placed."""
         self._exporter = exporter
         self._report = exporter._report
         self._depsgraph = depsgraph
         self._shown = shown
         self._unchanged = unchanged
         self._placed: list[tuple[Instance, np.ndarray, int]] = []
-        self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object]]] = []
+        self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object], Identity]] = []
         self._converted: set[tuple[int, bytes]] = set()
         self._missing: dict[tuple[str, str, str], dict[str, None]] = {}
         """By names of material, node and attribute, the objects that do not have it."""
@@ -165,10 +187,13 @@ class _Pass:
                 self._multiple |= {source.original.session_uid, stands_for.session_uid}
             if not instance.show_self or not (self._shown is None or self._shown(stands_for)):
                 continue
+            if self._identify:
+                self._identity = identity_of(instance, source.original, stands_for)
             kept = None if instance.is_instance else self._unchanged.get(stands_for.session_uid)
             if kept is not None:
                 self._exporter.meshes.keep(kept.mesh)
                 self._note_missing(kept)
+                self._result.identities[id(kept)] = self._identity
                 self._placed.append((kept, kept.matrix, stands_for.session_uid))
             else:
                 matrix = np.array(instance.matrix_world, np.float64)
@@ -190,6 +215,7 @@ class _Pass:
             if light is not None:
                 self._result.lights_alone[source.original.session_uid] = len(self._result.lights)
                 self._result.lights.append(light)
+                self._result.identities[id(light)] = self._identity
             return
         if source.type in UNSUPPORTED_TYPES:
             what = UNSUPPORTED_TYPES[source.type]
@@ -204,7 +230,7 @@ class _Pass:
             return  # and its materials are not needed
         shading = self._exporter._shading(source, visibility, instance)
         if source.type != "MESH":
-            self._unconverted.append((source.original, matrix, shading))
+            self._unconverted.append((source.original, matrix, shading, self._identity))
             return
         original = source.original
         if original.type in CONVERTED_TYPES:
@@ -223,6 +249,7 @@ class _Pass:
         if index is not None:
             instance = _instance(index, source, matrix, shading)
             self._note_missing(instance)
+            self._result.identities[id(instance)] = self._identity
             uid = source.original.session_uid
             self._placed.append((instance, matrix, uid if mesh is not None else 0))
 
@@ -233,7 +260,7 @@ class _Pass:
         asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
         if all(attributes.keys() <= known for _, attributes in asked):
             return
-        slots = np.unique(np.minimum(mesh.triangle_slots, len(asked) - 1))
+        slots = np.flatnonzero(np.bincount(np.minimum(mesh.triangle_slots, len(asked) - 1)))
         for slot, attributes in asked:
             for attribute in attributes.keys() - known if slot in slots else ():
                 material = materials.materials[instance.materials[slot]].name
@@ -254,7 +281,8 @@ class _Pass:
         Blender shows the mesh of such an object as an instance beside it, but not where particles
         or faces multiply the object.
         """
-        for original, matrix, shading in self._unconverted:
+        for original, matrix, shading, identity in self._unconverted:
+            self._identity = identity
             if (original.as_pointer(), matrix.tobytes()) in self._converted:
                 continue
             source = original.evaluated_get(self._depsgraph)

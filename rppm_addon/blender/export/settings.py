@@ -21,11 +21,28 @@ def export_settings(scene: bpy.types.Scene, viewport: bool = False) -> RenderSet
             if hasattr(stored, field.name):
                 setattr(settings, field.name, getattr(stored, field.name))
         settings.direct_light = DirectLight[stored.direct_light]
+        if stored.animate_seed:
+            settings.seed = seed_of_frame(stored.seed, scene.frame_current)
         if viewport:
             settings.iterations, settings.photons = stored.viewport_iterations, stored.viewport_photons
     if viewport:
         settings.time_limit, settings.deep_cubemap_pass = 0.0, False
     return settings
+
+
+def seed_of_frame(seed: int, frame: int) -> int:
+    """A seed of each frame's own, 0 to 2^31 - 1: seeds and frames that are neighbours have nothing in common.
+
+    The last rounds of MurmurHash3 (Appleby), a permutation of 32 bits, of the frame, then of what that gives and the
+    seed.
+    """
+
+    def mixed(bits: int) -> int:
+        bits = ((bits ^ (bits >> 16)) * 0x85EBCA6B) & 0xFFFFFFFF
+        bits = ((bits ^ (bits >> 13)) * 0xC2B2AE35) & 0xFFFFFFFF
+        return bits ^ (bits >> 16)
+
+    return mixed((mixed(frame & 0xFFFFFFFF) + seed) & 0xFFFFFFFF) & 0x7FFFFFFF
 
 
 PREVIEW_ITERATIONS, PREVIEW_PHOTONS, PREVIEW_SECONDS = 64, 8192, 1.0

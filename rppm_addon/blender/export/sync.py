@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Scene that follows a viewport's depsgraph: only what has changed is exported again."""
+"""A Scene that follows a depsgraph which lives on: only what has changed is exported again."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -67,21 +67,25 @@ _TOLD_BY_THEIR_USERS = (
 
 
 class SceneSync:
-    """The scene of one viewport."""
+    """The scene of one depsgraph, of a viewport or of renders."""
 
-    def __init__(self) -> None:
+    def __init__(self, viewport: bool = True, make_report: Callable[[], Report] = Report) -> None:
+        """viewport: whose settings count. make_report: for what an export has to say and whether it goes on; one that
+        it stops leaves nothing that can be updated."""
+        self._viewport = viewport
+        self._make_report = make_report
         self.scene: Scene | None = None
         """The newest, None before the first update. Scenes that were handed out are not changed."""
         self._begin()
 
     def _begin(self) -> None:
-        self._report = Report()
+        self._report = self._make_report()
         self._context = ExportContext(self._report)
         self._images = self._context.images
         self._objects = ObjectExporter(self._context)
         self._placed: Placed | None = None
         self._world: tuple[World, list[Light]] | None = None
-        self._world_shows_frames = False
+        self._world_may_change = False
         self._most_images = 0
         self._frame: float | None = None
 
@@ -101,15 +105,15 @@ class SceneSync:
         # Not any(): each is to be exported.
         asked = [self._objects.materials.renew(material) for material in edits.materials]
         if edits.world or self._world is None:
-            frames = self._images.frames
+            untold = self._context.untold
             with self._report.about("world"):
                 self._world = export_world(source.world, self._context)
-            self._world_shows_frames = self._images.frames > frames
+            self._world_may_change = self._context.untold > untold
         self._objects.meshes.forget(edits.shapes)
         if self._placed is None or edits.others or any(asked) or not self._patch(edits):
             self._placed = self._objects.export(depsgraph, shown, {} if any(asked) else self._unchanged(edits))
         world, suns = self._world
-        settings = export_settings(source, viewport=True)
+        settings = export_settings(source, self._viewport)
         settings.validate()
         new = Scene(
             camera=camera,
@@ -130,17 +134,18 @@ class SceneSync:
         return self.scene
 
     def _advance(self, source: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, edits: Edits) -> None:
-        """Of another frame image sequences show other images, of which the depsgraph says nothing."""
+        """Add what the depsgraph does not tell: of another frame image sequences show other images, and materials may
+        read properties of the scene."""
         frame = source.frame_current_final
-        if self._frame not in {None, frame}:
-            edits.others = True
+        edits.others |= self._frame not in {None, frame}
+        if edits.others:
             known = {material.original.session_uid for material in edits.materials}
             edits.materials += [
                 material.evaluated_get(depsgraph)
                 for material in bpy.data.materials
-                if material.session_uid not in known and self._objects.materials.shows_frames(material)
+                if material.session_uid not in known and self._objects.materials.may_have_changed(material)
             ]
-            edits.world |= self._world_shows_frames
+            edits.world |= self._world_may_change
         self._frame = frame
 
     def _unchanged(self, edits: Edits) -> dict[int, Instance]:

@@ -72,7 +72,9 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
         column = self.column()
-        column.prop(settings, "seed")
+        row = column.row(align=True)
+        row.prop(settings, "seed")
+        row.prop(settings, "animate_seed", text="", icon="TIME")
         column.prop(settings, "splat_roulette")
 
 

@@ -23,3 +23,16 @@ scene.rppm.viewport_photons = scene.rppm.photons
 save("small")
 scene.rppm.iterations = scene.rppm.viewport_iterations = 1000000
 save("endless")
+scene.rppm.iterations, scene.rppm.photons = 2, 1024
+scene.rppm.animate_seed = False
+camera, shown = scene.camera, next(thing for thing in scene.objects if thing.type == "MESH")
+for frame in range(1, 8):
+    for thing, step in (camera, 0.05), (shown, 0.1):
+        thing.location.z += step
+        thing.keyframe_insert("location", frame=frame)
+save("moving")
+for frame, length in (2, 0.0), (3, 1.0), (4, 0.0):
+    scene.rppm.radius_minimum, scene.rppm.radius_maximum = 2.0 * length, length
+    scene.rppm.keyframe_insert("radius_minimum", frame=frame)
+    scene.rppm.keyframe_insert("radius_maximum", frame=frame)
+save("broken")

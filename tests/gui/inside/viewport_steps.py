@@ -51,6 +51,55 @@ def free_view() -> None:
     view.view_location = camera @ Vector((0.0, 0.0, -view.view_distance))
 
 
+def viewports() -> list[bpy.types.Area]:
+    """From left to right."""
+    return sorted((area for area in window().screen.areas if area.type == "VIEW_3D"), key=lambda area: area.x)
+
+
+def halve_viewport() -> None:
+    """Two viewports side by side that look alike, both rendered."""
+    with override():
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
+    for half in viewports():
+        half.spaces.active.shading.type = "RENDERED"
+
+
+def viewport_rectangles() -> list[list[int]]:
+    """x, y, width, height of each viewport on the screen, y from the top."""
+    regions = [next(r for r in area.regions if r.type == "WINDOW") for area in viewports()]
+    return [[r.x, window().height - r.y - r.height, r.width, r.height] for r in regions]
+
+
+def copy_view(source: int, target: int) -> None:
+    """Let a viewport look as another one does."""
+    one, other = (viewports()[index].spaces.active.region_3d for index in (source, target))
+    other.view_perspective = one.view_perspective
+    other.view_rotation, other.view_location = one.view_rotation, one.view_location
+    other.view_distance = one.view_distance
+
+
+def turn_viewport(index: int, degrees: float) -> None:
+    """Orbit one of the viewports about the vertical axis."""
+    view = viewports()[index].spaces.active.region_3d
+    view.view_rotation = Quaternion((0.0, 0.0, 1.0), np.radians(degrees)) @ view.view_rotation
+
+
+def local_view(index: int, names: list[str]) -> None:
+    """Select these objects, and enter or leave local view in one of the viewports."""
+    for thing in window().view_layer.objects:
+        thing.select_set(thing.name in names)
+    found = viewports()[index]
+    main = next(r for r in found.regions if r.type == "WINDOW")
+    with bpy.context.temp_override(window=window(), area=found, region=main):
+        bpy.ops.view3d.localview(frame_selected=False)
+
+
+def show_only(names: list[str]) -> None:
+    """Hide all other objects in viewports."""
+    for thing in bpy.data.objects:
+        thing.hide_viewport = thing.name not in names
+
+
 def shading(kind: str) -> None:
     space().shading.type = kind
 

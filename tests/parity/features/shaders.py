@@ -196,7 +196,12 @@ lit(
         {"Base Color": (node := net.node("TexImage", image=image("png"))).outputs[0], "Alpha": node.outputs[1]},
     ),
 )
-lit("Driven", "Emission Strength by noise", principled(Emission_Color=(1.0, 0.5, 0.2), Emission_Strength=_noise))
+lit(
+    "Driven",
+    "Emission Strength by noise",
+    principled(Emission_Color=(1.0, 0.5, 0.2), Emission_Strength=_noise),
+    effort=3,
+)
 lit(
     "Driven",
     "Normal by a bump",

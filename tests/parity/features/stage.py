@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sets that features are shown on."""
 
+import itertools
+import math
+
 import bmesh
 import bpy
 
@@ -24,10 +27,31 @@ def mesh_object(mesh: bmesh.types.BMesh, name: str, surface: bpy.types.Material 
 
 
 def ball(surface: bpy.types.Material | None, where: dict = BALL, segments: int = 32) -> bpy.types.Object:
-    """A smooth sphere of radius 0.9 with a UV map."""
+    """A smooth sphere of radius 0.9 with a UV map.
+
+    Its own mesh, since bmesh's sphere orders its parts differently in each run, and so gives other random numbers.
+    """
+    rings = segments // 2
     mesh = bmesh.new()
-    mesh.loops.layers.uv.new("UVMap")
-    bmesh.ops.create_uvsphere(mesh, u_segments=segments, v_segments=segments // 2, radius=0.9, calc_uvs=True)
+    uv = mesh.loops.layers.uv.new("UVMap")
+    poles = mesh.verts.new((0.0, 0.0, -0.9)), mesh.verts.new((0.0, 0.0, 0.9))
+    rows = [[poles[0]] * segments]
+    for ring in range(1, rings):
+        z, radius = -0.9 * math.cos(math.pi * ring / rings), 0.9 * math.sin(math.pi * ring / rings)
+        turns = [2.0 * math.pi * segment / segments for segment in range(segments)]
+        rows.append([mesh.verts.new((radius * math.cos(turn), radius * math.sin(turn), z)) for turn in turns])
+    rows.append([poles[1]] * segments)
+    for ring, segment in itertools.product(range(rings), range(segments)):
+        # Cycles stretches hair along an edge of each triangle: corners 0 and 2, about as bmesh's sphere has it.
+        corners = [(ring + 1, segment), (ring, segment), (ring, segment + 1), (ring + 1, segment + 1)]
+        if ring == 0:
+            del corners[2]
+        if ring == rings - 1:
+            del corners[3]
+        face = mesh.faces.new([rows[row][column % segments] for row, column in corners])
+        for loop, (row, column) in zip(face.loops, corners, strict=True):
+            at_pole = 0.5 if row in (0, rings) else 0.0
+            loop[uv].uv = ((column + at_pole) / segments, row / rings)
     made = mesh_object(mesh, "Ball", surface, where)
     made.data.shade_smooth()
     return made

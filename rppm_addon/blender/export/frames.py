@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scenes of renders whose depsgraph lives on from one to the next (Blender's persistent data)."""
+
+import dataclasses
+from collections.abc import Callable
+
+import bpy
+
+from ...scene import Scene
+from .camera import export_camera
+from .report import Report
+from .sync import SceneSync
+
+
+class FrameExporter:
+    """Belongs to one render engine, which Blender keeps as long as the depsgraph."""
+
+    def __init__(self) -> None:
+        self._sync: SceneSync | None = None
+        self._layer: tuple[int, str] | None = None
+        self._render: tuple[Callable[[], bool], Callable[[str], None]] | None = None
+        """should_stop and show of the render that is exported."""
+
+    def export(
+        self, depsgraph: bpy.types.Depsgraph, should_stop: Callable[[], bool], show: Callable[[str], None]
+    ) -> Scene:
+        """What a render of the depsgraph needs, as export_scene gives it; only what has changed since the render
+        before is read. Raises the errors of export_scene.
+
+        show: takes what is being exported.
+        """
+        # Blender makes a new depsgraph for another layer, but may tell as little of it as of one that has changed.
+        layer = depsgraph.scene.session_uid, depsgraph.view_layer_eval.name
+        sync = self._sync if layer == self._layer else None
+        # Changes that an export which failed has not taken in are told once only.
+        self._sync, self._layer = None, layer
+        self._render = should_stop, show
+        try:
+            scene = self._exported(depsgraph, sync or SceneSync(viewport=False, make_report=self._new_report))
+        finally:
+            self._render = None  # it may hold the engine, which holds this
+        return scene
+
+    def _exported(self, depsgraph: bpy.types.Depsgraph, sync: SceneSync) -> Scene:
+        report = self._new_report()
+        report.progress("Exporting the scene")
+        camera = export_camera(depsgraph.scene_eval, depsgraph, report)
+        scene = sync.update(depsgraph, camera)
+        self._sync = sync
+        if report.warnings:
+            scene = dataclasses.replace(scene, warnings=[*report.warnings, *scene.warnings])
+        return scene
+
+    def _new_report(self) -> Report:
+        return Report(lambda: self._render[0](), lambda text: self._render[1](text))

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders frames of a .blend file one after the other: Blender, the renderer and its programs are started once."""
+
+import dataclasses
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..pictures import PictureError
+from ..scene.errors import RppmError
+from .blend_file import BlendFile, BlendRequest, opened_blend_file
+from .frame_numbers import path_of_frame
+from .interruption import Interruption
+from .progress_bar import ProgressBar
+from .recorder import RenderRecorder, RenderRequest
+
+
+@dataclass
+class AnimationRequest:
+    """What the command line asks of an animation."""
+
+    blend: BlendRequest
+    render: RenderRequest
+    """Of each frame; its outputs have a place for the number."""
+    frames: Sequence[int]
+    resume: bool = False
+    """Leave out frames whose files are all there."""
+
+    def outputs(self, frame: int) -> list[Path]:
+        """The files of a frame."""
+        return [path_of_frame(path, frame) for path in self.render.outputs]
+
+
+class _FrameBar:
+    """Shows one frame's progress as a part of all."""
+
+    def __init__(self, bar: ProgressBar, place: int, count: int, frame: int) -> None:
+        self._bar, self._place, self._count = bar, place, count
+        self._words = f"frame {frame} ({place + 1} of {count}), "
+
+    def show(self, fraction: float, words: str) -> None:
+        part = min(max(fraction, 0.0), 0.999)  # whole only with the last
+        self._bar.show((self._place + part) / self._count, self._words + words)
+
+
+class Animation:
+    """Renders the frames of a request and keeps what is worth reporting.
+
+    A frame that cannot be rendered is told and left out; files that cannot be written end it all. On an interruption
+    the frame under way is dropped, so that every file holds a whole frame.
+    """
+
+    def __init__(
+        self,
+        request: AnimationRequest,
+        bar: ProgressBar,
+        interruption: Interruption,
+        write_report: Callable[[dict[str, object]], None],
+    ) -> None:
+        """write_report is given the report after each frame."""
+        self._request = request
+        self._bar = bar
+        self._interruption = interruption
+        self._write_report = write_report
+        self._report: dict[str, object] = {"scene": str(request.blend.path), "frames": []}
+        self.failed: list[int] = []
+        self.rendered: list[int] = []
+
+    def run(self, show_output: bool) -> None:
+        """Render. Raises PictureError, or any RppmError before the first frame."""
+        request = self._request
+        there = set()
+        if request.resume:
+            there = {frame for frame in request.frames if all(path.is_file() for path in request.outputs(frame))}
+            for frame in sorted(there):
+                self._tell(frame, {"skipped": True, "files": [str(path) for path in request.outputs(frame)]})
+            if there:
+                print(f"{len(there)} of {len(request.frames)} frames are there already")
+        frames = [frame for frame in request.frames if frame not in there]
+        if not frames:
+            return
+        blend = dataclasses.replace(request.blend, frame=frames[0])
+        with opened_blend_file(blend, show_output) as file:
+            opened = file.report
+            self._report["blender"] = {
+                "version": opened.version,
+                "start_seconds": opened.start_seconds,
+                "load_seconds": opened.load_seconds,
+            }
+            for place, frame in enumerate(frames):
+                if self._interruption.asked:
+                    return
+                self._render(file, frame, _FrameBar(self._bar, place, len(frames), frame))
+
+    def _render(self, file: BlendFile, frame: int, bar: _FrameBar) -> None:
+        request = dataclasses.replace(self._request.render, outputs=self._request.outputs(frame))
+        recorder = RenderRecorder(request, bar, lambda: self._interruption.asked, write_png_file=False)
+        try:
+            file.set_frame(frame)
+            file.render(recorder)
+            if recorder.result.stopped:
+                return
+            file.write(recorder)
+        except PictureError:
+            raise
+        except RppmError as error:
+            if self._interruption.asked:  # there was no picture yet
+                return
+            self._bar.clear()
+            sys.stderr.write(f"rppm: frame {frame}: {' '.join(str(error).split())}\n")
+            self.failed.append(frame)
+            self._tell(frame, {"error": str(error)})
+            return
+        self.rendered.append(frame)
+        self._tell(frame, {"export_seconds": file.report.export_seconds, **recorder.report()})
+        self._bar.clear()
+        file.output.write(f"Frame {frame}: {recorder.summary()}\n")
+        file.output.flush()
+
+    def _tell(self, frame: int, what: dict[str, object]) -> None:
+        self._report["frames"].append({"frame": frame, **what})
+        self._write_report(self._report)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Workers of dask.distributed: of this machine, or those of a scheduler that runs somewhere."""
+
+import contextlib
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import dask
+import distributed
+from distributed.security import Security
+
+from .by_value import identity_function
+from .errors import FarmError
+from .identity import identity
+
+CONNECT_SECONDS = 20.0
+_WITHOUT_WEB_PAGES = {
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+}
+
+
+@dataclass
+class Cluster:
+    """Workers that run the same RPPM as this process."""
+
+    client: distributed.Client
+    local: bool
+
+    def __post_init__(self) -> None:
+        self._identity = identity()
+        self._known: dict[str, str] = {}
+        """What each worker has by address: an identity, or why it cannot tell."""
+
+    def workers(self) -> set[str]:
+        """Addresses of the workers that are there now and may be given work."""
+        there = set(self.client.scheduler_info()["workers"])
+        new = sorted(there - self._known.keys())
+        if new:
+            answers = self.client.run(identity_function(self.local), workers=new, on_error="return")
+            self._known.update({worker: str(answer) for worker, answer in answers.items()})
+        return {worker for worker in there if self._known.get(worker) == self._identity}
+
+    def refused(self) -> str:
+        """Why workers were left out, in one line; empty when none was."""
+        others = {worker: has for worker, has in self._known.items() if has != self._identity}
+        if not others:
+            return ""
+        listed = ", ".join(f"{worker}: {has}" for worker, has in sorted(others.items()))
+        return f"workers must run the same RPPM as the farm, {self._identity}; left out: {listed}"
+
+
+@contextlib.contextmanager
+def remote_cluster(address: str, debug: bool) -> Iterator[Cluster]:
+    """The workers of a scheduler that runs already. Raises FarmError."""
+    _log_level(debug)
+    try:
+        client = distributed.Client(address, timeout=CONNECT_SECONDS)
+    except (OSError, ValueError, TypeError, ImportError) as error:
+        raise FarmError(
+            f"no dask scheduler answers at {address} ({error}); start one with `dask scheduler` and give its address"
+        ) from error
+    with client:
+        yield Cluster(client, local=False)
+
+
+@contextlib.contextmanager
+def local_cluster(devices: Sequence[str | None], allowed_failures: int, debug: bool) -> Iterator[Cluster]:
+    """A worker for each of ``devices``: EGL device numbers, or None for what RPPM chooses.
+
+    Args:
+        devices: one a worker.
+        allowed_failures: how many workers a task may lose before it is given up.
+        debug: show what the workers log.
+    """
+    level = _log_level(debug)
+    security = Security.temporary()  # whoever can talk to a scheduler can run code: no other user of this machine may
+    common = {"nthreads": 1, "memory_limit": 0, "host": "127.0.0.1", "security": security, "silence_logs": level}
+    workers = {
+        index: {
+            "cls": distributed.Nanny,
+            "options": common | {"env": {} if device is None else {"RPPM_DEVICE": device}},
+        }
+        for index, device in enumerate(devices)
+    }
+    scheduler = {
+        "cls": distributed.Scheduler,
+        "options": {
+            "host": "127.0.0.1",
+            "port": 0,
+            "protocol": "tls://",
+            "security": security,
+            "dashboard": False,
+            "dashboard_address": "127.0.0.1:0",
+        },
+    }
+    with (
+        dask.config.set(_WITHOUT_WEB_PAGES | {"distributed.scheduler.allowed-failures": allowed_failures}),
+        distributed.SpecCluster(workers, scheduler, security=security, silence_logs=level) as cluster,
+        distributed.Client(cluster, security=security) as client,
+    ):
+        yield Cluster(client, local=True)
+
+
+def _log_level(debug: bool) -> int:
+    """Have dask log what ``debug`` wants, and return that level: what it has to say to users, the farm tells."""
+    level = logging.DEBUG if debug else logging.CRITICAL
+    logging.getLogger("distributed").setLevel(level)
+    logging.getLogger("distributed.client").setLevel(level)
+    return level

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a farm hands out: one call of the rppm program, and the pictures that it makes."""
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+
+from ...pictures import is_whole
+from ...scene.errors import SettingsError
+from ..frame_numbers import path_of_frame
+
+PART = "iterations_"
+"""Begins the names of the parts of a still and of their checkpoints."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """One call of the program: frames, one after the other, a part of a still, or the merging of parts."""
+
+    arguments: tuple[str, ...]
+    """Of rppm, but for frames and outputs."""
+    outputs: tuple[Path, ...]
+    """The pictures; of frames, with #### for the number."""
+    frames: tuple[int, ...] = ()
+    words: str = ""
+    """What it is called if it has no frames."""
+
+    @property
+    def name(self) -> str:
+        """As the user is told: ``frame 7``."""
+        if len(self.frames) < 2:
+            return f"frame {self.frames[0]}" if self.frames else self.words
+        return f"frames {', '.join(map(str, self.frames))}"
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All pictures. The task is done when they are there and whole."""
+        if not self.frames:
+            return self.outputs
+        return tuple(path_of_frame(path, frame) for frame in self.frames for path in self.outputs)
+
+    @property
+    def done(self) -> bool:
+        """Whether all pictures can be read to their end."""
+        return all(is_whole(path) for path in self.files)
+
+    @property
+    def singles(self) -> list["Task"]:
+        """A task for each frame."""
+        return [replace(self, frames=(frame,)) for frame in self.frames] or [self]
+
+    @property
+    def rest(self) -> "Task":
+        """The task without the frames that are done."""
+        frames = tuple(frame for single in self.singles if not single.done for frame in single.frames)
+        return replace(self, frames=frames) if frames else self
+
+    def command(self, outputs: Sequence[Path]) -> list[str]:
+        """The arguments of rppm with the pictures under other names."""
+        frames = ["--frames", ",".join(map(str, self.frames))] if self.frames else []
+        return [*self.arguments, *frames, *(word for path in outputs for word in ("-o", str(path)))]
+
+    @property
+    def command_line(self) -> str:
+        """What a user would type to do the same."""
+        return shlex.join(["rppm", *self.command(self.outputs)])
+
+
+def frame_tasks(file: Path, frames: Sequence[int], outputs: Sequence[Path], options: Sequence[str]) -> list[Task]:
+    """A task for each frame; ``options`` are those of rppm render."""
+    return Task(("render", str(file), *options), tuple(outputs), tuple(frames)).singles
+
+
+def chunks(tasks: Sequence[Task], length: int) -> list[Task]:
+    """Tasks of one frame each, put together: as many frames at most with one start of Blender."""
+    return [
+        replace(tasks[first], frames=tuple(frame for task in tasks[first : first + length] for frame in task.frames))
+        for first in range(0, len(tasks), length)
+    ]
+
+
+def still_tasks(
+    file: Path, iterations: int, parts: int, outputs: Sequence[Path], folder: Path, options: Sequence[str]
+) -> tuple[list[Task], Task]:
+    """A still in parts, each with its share of the iterations, and the task that merges them.
+
+    Args:
+        file: the scene.
+        iterations: of the whole picture.
+        parts: how many; each has at least one iteration.
+        outputs: the pictures.
+        folder: where the parts go, and checkpoints with which another worker goes on with a lost one's part.
+        options: of rppm render.
+    """
+    if parts > iterations:
+        raise SettingsError(f"{iterations} iterations cannot be shared out in {parts} parts; ask for fewer --parts")
+    marks = [iterations * part // parts for part in range(parts + 1)]
+    tasks = []
+    for first, end in pairwise(marks):
+        part = folder / f"{PART}{first}_{end}.exr"
+        words = ["--iterations-range", f"{first}:{end}", "--checkpoint", str(part.with_suffix(".checkpoint.exr"))]
+        arguments = ("render", str(file), *words, "--resume", *options)
+        tasks.append(Task(arguments, (part,), words=f"iterations {first} to {end - 1}"))
+    merge = Task(("merge", *(str(task.outputs[0]) for task in tasks)), tuple(outputs), words="merge")
+    return tasks, merge

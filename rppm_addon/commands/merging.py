@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""rppm merge: the parts of a still, rendered by iterations on as many machines, become one picture."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from ..pictures import standard_view, write_png
+from ..scene.errors import CheckpointError
+from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
+from ..session.continuation import Pause
+from ..session.renderer import exposed
+from ..session.results import NOTHING_HIT, Frame
+from .checkpoints import refuse_differences
+from .recorder import write_frame
+
+
+@dataclass
+class MergedStill:
+    """The picture of all parts, and what is told of it."""
+
+    frame: Frame
+    render: StillRender
+    iterations: int
+    photons: int
+    seconds: float
+    """Spent on all parts."""
+    devices: list[str]
+    radius_metres: float
+    parts: list[tuple[int, int, str]]
+    """First iteration, the one after the last, and file of each part, in their order."""
+
+    def report(self) -> dict[str, object]:
+        """What happened, for --json: plain values only."""
+        return {
+            "iterations": self.iterations,
+            "photons": self.photons,
+            "seconds": self.seconds,
+            "devices": self.devices,
+            "settings": self.render.settings,
+            "parts": [{"first": first, "end": end, "file": file} for first, end, file in self.parts],
+        }
+
+    def write(self, paths: Sequence[Path]) -> None:
+        """Write pictures as rppm render does. Raises PictureError or BlenderError."""
+        metadata = {
+            "iterations": self.iterations,
+            "photons": self.photons,
+            "seconds": f"{self.seconds:.3f}",
+            "device": ", ".join(self.devices),
+            "radius_metres": f"{self.radius_metres:.6g}",
+        }
+        for path in paths:
+            if path.suffix == ".exr":
+                write_frame(path, self.frame, self.render.placement, metadata)
+            elif self.render.source.get("blend"):
+                from .blend_file import BlendRequest, save_view
+
+                request = BlendRequest.from_plain(self.render.source["blend"])
+                if not request.path.is_file():
+                    raise CheckpointError(
+                        f"{path} would be shown as {request.path} says, which is not there; put it back, or write .exr"
+                    )
+                save_view(request, self.frame.combined, path)
+            else:
+                write_png(path, standard_view(self.frame.combined))
+
+
+def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
+    """The mean of all iterations of the parts, each part one file.
+
+    incomplete: iterations may be missing. Raises CheckpointError when a file is no part, when parts are of different
+    stills or share iterations, and when iterations are missing.
+    """
+    found = sorted(
+        ((read_summary(path), path) for path in paths), key=lambda part: (part[0].left_out, part[0].iteration)
+    )
+    _check(found, incomplete)
+    radiance, normal, counts, depth, deep_cubemap = 0.0, 0.0, 0, None, None
+    for summary, pause in _read_parts(found):
+        state = pause.state
+        radiance = radiance + state.radiance.astype(np.float64) * (summary.iteration - summary.left_out)
+        normal = normal + state.normal.astype(np.float64) * state.surface_counts[..., None]
+        counts = counts + state.surface_counts.astype(np.int64)
+        # The first iteration that finds a surface tells its depth.
+        depth = state.depth if depth is None else np.where(depth < NOTHING_HIT, depth, state.depth)
+        deep_cubemap = pause.deep_cubemap if deep_cubemap is None else deep_cubemap
+    summaries = [summary for summary, _ in found]
+    iterations = sum(summary.iteration - summary.left_out for summary in summaries)
+    render = summaries[0].render
+    frame = Frame(
+        exposed((radiance / iterations).astype(np.float32), render.exposure),
+        depth,
+        (normal / np.maximum(counts, 1)[..., None]).astype(np.float32),
+        deep_cubemap,
+    )
+    return MergedStill(
+        frame,
+        render,
+        iterations,
+        sum(summary.photons for summary in summaries),
+        sum(summary.seconds for summary in summaries),
+        sorted({summary.device for summary in summaries}),
+        summaries[-1].radius_metres,
+        [(summary.left_out, summary.iteration, str(path)) for summary, path in found],
+    )
+
+
+def _read_parts(found: Sequence[tuple[CheckpointSummary, Path]]) -> Iterator[tuple[CheckpointSummary, Pause]]:
+    """One after the other, so that no more than one is in memory."""
+    for summary, path in found:
+        again, pause = read_checkpoint(path)
+        if again != summary:
+            raise CheckpointError(f"{path} was written anew while it was merged; merge again")
+        yield summary, pause
+
+
+def _check(found: Sequence[tuple[CheckpointSummary, Path]], incomplete: bool) -> None:
+    (first, first_path), *others = found
+    for summary, path in others:
+        refuse_differences(path, summary.render, first.render, str(first_path), "leave it out")
+    for (before, before_path), (after, after_path) in pairwise(found):
+        if after.left_out < before.iteration:
+            end = min(before.iteration, after.iteration)
+            raise CheckpointError(
+                f"{before_path} and {after_path} both have the iterations {after.left_out}:{end}; leave one of them out"
+            )
+    ends = [0, *(summary.iteration for summary, _ in found)]
+    gaps = [f"{end}:{summary.left_out}" for end, (summary, _) in zip(ends, found) if summary.left_out > end]
+    if gaps and not incomplete:
+        ranges = " and ".join(gaps)
+        raise CheckpointError(
+            f"the iterations {ranges} are in no part; render them with rppm render --iterations-range {gaps[0]}, "
+            "or merge what there is with --incomplete"
+        )

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What tells whether two renders, perhaps on two machines, are of the same scene with the same settings."""
+
+import dataclasses
+import hashlib
+import json
+
+import numpy as np
+
+from .documents import encode
+from .scene import Scene
+from .settings import RenderSettings
+
+LIMITS = frozenset({"iterations", "time_limit", "iterations_per_frame"})
+"""Settings that say when a render ends or is shown, and nothing of what an iteration finds."""
+_NOT_RENDERED = frozenset({"settings", "warnings"})
+
+
+def scene_digests(scene: Scene) -> dict[str, str]:
+    """A digest, hexadecimal, of each member of a scene: equal where the members are, arrays bit for bit."""
+    known: dict[int, str] = {}
+
+    def keep(array: np.ndarray) -> str:
+        # Arrays outlive the call as parts of the scene, so an address stands for one array.
+        if id(array) not in known:
+            data = np.ascontiguousarray(array)
+            digest = hashlib.sha256(f"{data.dtype.str} {data.shape}".encode())
+            digest.update(data.reshape(-1).view(np.uint8))
+            known[id(array)] = digest.hexdigest()
+        return known[id(array)]
+
+    digests = {}
+    for field in dataclasses.fields(scene):
+        if field.name not in _NOT_RENDERED:
+            document = json.dumps(encode(getattr(scene, field.name), keep), sort_keys=True)
+            digests[field.name] = hashlib.sha256(document.encode()).hexdigest()
+    return digests
+
+
+def plain_settings(settings: RenderSettings) -> dict[str, object]:
+    """The settings that a picture depends on by name, as JSON has them."""
+    values = encode(settings, lambda array: array.tolist())
+    return {name: value for name, value in values.items() if name not in LIMITS}

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checkpoints of stills in OpenEXR files: the picture so far, and beside it all that it takes to go on bit for bit.
+
+The first part of a file is the film as any viewer shows it (before exposure), with the number of iterations that each
+pixel's normal is of; the second has what the guide of the photons learnt. Numbers are JSON in the attribute
+``rppm.checkpoint``. After the EXR's own end come a mark and the SHA-256 of all before it, so that a file that was cut
+short or damaged is known before it is parsed: OpenEXR reads pixels that are damaged without an error.
+"""
+
+import contextlib
+import dataclasses
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+import numpy as np
+
+from ..integrator.state import RenderState
+from ..pictures import Placement, renamed_when_whole
+from ..scene.errors import CheckpointError
+from .continuation import Pause
+
+if TYPE_CHECKING:
+    import OpenEXR
+
+FORMAT = 1
+_ATTRIBUTE = "rppm.checkpoint"
+_MARK = b"RPPM-SHA-256"
+_TRAILER = len(_MARK) + 32
+_FILM, _GUIDE = "film", "guide"
+_BLOCK = 1 << 20
+
+
+@dataclass
+class StillRender:
+    """Which still it is, as far as plain values tell."""
+
+    scene: dict[str, str]
+    """Digests by member of the scene (scene_digests)."""
+    settings: dict[str, object]
+    """Those that the picture depends on (plain_settings)."""
+    exposure: float
+    placement: Placement
+    source: dict[str, object] = field(default_factory=dict)
+    """What the command line knows of the file that the scene came from."""
+
+
+@dataclass
+class CheckpointSummary:
+    """What is known of a checkpoint without its arrays."""
+
+    render: StillRender
+    left_out: int
+    iteration: int
+    wide_radius: float
+    diffused_photons_found: float | None
+    device: str
+    radius_metres: float
+    seconds: float
+    """Spent on it, in all processes that went on with it."""
+
+    @property
+    def photons(self) -> int:
+        """Emitted in the iterations that are in the film."""
+        return (self.iteration - self.left_out) * int(self.render.settings["photons"])
+
+
+def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, seconds: float) -> None:
+    """Write a checkpoint; a reader never sees half of it. Raises PictureError when it cannot be written."""
+    import OpenEXR  # late: the file format is not needed to import the engine
+
+    state = pause.state
+    summary = CheckpointSummary(
+        render,
+        state.left_out,
+        state.iteration,
+        state.wide_radius,
+        state.diffused_photons_found,
+        pause.device,
+        pause.radius_metres,
+        seconds,
+    )
+    place, (height, width) = render.placement, state.depth.shape
+    top = place.height - place.y - height
+    frame = {"displayWindow": ((0, 0), (place.width - 1, place.height - 1)), "type": OpenEXR.scanlineimage}
+    film = {
+        **frame,
+        "compression": OpenEXR.RLE_COMPRESSION,
+        "dataWindow": ((place.x, top), (place.x + width - 1, top + height - 1)),
+        _ATTRIBUTE: json.dumps({"format": FORMAT, **dataclasses.asdict(summary)}),
+    }
+    guide = {
+        **frame,
+        "compression": OpenEXR.ZIPS_COMPRESSION,
+        "dataWindow": ((0, 0), (len(state.tallies) - 1, 0)),
+    }
+    parts = [
+        OpenEXR.Part(film, _film_channels(state, pause.deep_cubemap), _FILM),
+        OpenEXR.Part(guide, _guide_channels(state), _GUIDE),
+    ]
+    with renamed_when_whole(path) as temporary:
+        OpenEXR.File(parts).write(temporary)
+        with open(temporary, "r+b") as file:
+            digest = _digest(file, os.path.getsize(temporary))
+            file.write(_MARK + digest)
+            file.flush()
+            os.fsync(file.fileno())
+
+
+def read_summary(path: str | Path) -> CheckpointSummary:
+    """What a checkpoint tells of itself. Raises CheckpointError when it is none or damaged."""
+    with _opened(path, header_only=True) as (_, summary):
+        return summary
+
+
+def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
+    """A checkpoint as it was written. Raises CheckpointError when it is none or damaged."""
+    with _opened(path, header_only=False) as (file, summary):
+        film, guide = ({name: channel.pixels for name, channel in file.channels(part).items()} for part in range(2))
+
+        def layer(*names: str) -> np.ndarray:
+            planes = [film[name][::-1] for name in names]
+            return np.stack(planes, axis=-1) if len(planes) > 1 else planes[0].copy()
+
+        def pairs(*names: str) -> np.ndarray:
+            return np.stack([guide[name].reshape(-1) for name in names], axis=-1)
+
+        state = RenderState(
+            summary.left_out,
+            summary.iteration,
+            summary.wide_radius,
+            summary.diffused_photons_found,
+            layer(*"RGBA"),
+            layer("Normal.X", "Normal.Y", "Normal.Z"),
+            layer("Depth.Z"),
+            layer("Surfaces.V"),
+            pairs("left", "useful"),
+            pairs("learnt.left", "learnt.useful") if "learnt.left" in guide else None,
+        )
+        costs = [f"Deep Cubemap.{axis}" for axis in "XYZ"]
+        deep_cubemap = layer(*costs) if costs[0] in film else None
+        return summary, Pause(state, summary.device, summary.radius_metres, deep_cubemap)
+
+
+def _film_channels(state: RenderState, deep_cubemap: np.ndarray | None) -> dict[str, np.ndarray]:
+    channels = {name: state.radiance[..., index] for index, name in enumerate("RGBA")}
+    channels |= {f"Normal.{axis}": state.normal[..., index] for index, axis in enumerate("XYZ")}
+    channels |= {"Depth.Z": state.depth, "Surfaces.V": state.surface_counts}
+    if deep_cubemap is not None:
+        channels |= {f"Deep Cubemap.{axis}": deep_cubemap[..., index] for index, axis in enumerate("XYZ")}
+    return {name: np.ascontiguousarray(array[::-1]) for name, array in channels.items()}
+
+
+def _guide_channels(state: RenderState) -> dict[str, np.ndarray]:
+    tallies = {"left": state.tallies[:, 0], "useful": state.tallies[:, 1]}
+    if state.learnt is not None:
+        tallies |= {"learnt.left": state.learnt[:, 0], "learnt.useful": state.learnt[:, 1]}
+    return {name: np.ascontiguousarray(array[None]) for name, array in tallies.items()}
+
+
+def _digest(file: BinaryIO, size: int) -> bytes:
+    """SHA-256 of the next ``size`` bytes."""
+    digest = hashlib.sha256()
+    while size > 0:
+        block = file.read(min(size, _BLOCK))
+        if not block:
+            raise OSError("the file became shorter while it was read")
+        digest.update(block)
+        size -= len(block)
+    return digest.digest()
+
+
+def _check_whole(path: str | Path) -> None:
+    size = os.path.getsize(path)
+    with open(path, "rb") as file:
+        file.seek(max(size - _TRAILER, 0))
+        trailer = file.read()
+        if not trailer.startswith(_MARK):
+            raise CheckpointError(
+                f"{path} is no checkpoint, or was cut short; name one that rppm render wrote, or begin anew without it"
+            )
+        file.seek(0)
+        if _digest(file, size - _TRAILER) != trailer[len(_MARK) :]:
+            raise CheckpointError(
+                f"{path} is damaged: its bytes are not those that were written; begin anew without it"
+            )
+
+
+@contextlib.contextmanager
+def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File", CheckpointSummary]]:
+    """The file, found whole, and what it tells of itself; what goes wrong while it is read becomes CheckpointError."""
+    import OpenEXR
+
+    try:
+        _check_whole(path)
+        with OpenEXR.File(str(path), separate_channels=True, header_only=header_only) as file:
+            document = json.loads(file.header()[_ATTRIBUTE])
+            if document.pop("format") != FORMAT:
+                raise CheckpointError(f"{path} was written by another version of RPPM; begin anew without it")
+            render = document.pop("render")
+            placement = Placement(**render.pop("placement"))
+            yield file, CheckpointSummary(StillRender(placement=placement, **render), **document)
+    except FileNotFoundError as error:
+        raise CheckpointError(f"{path} does not exist; name a checkpoint that rppm render wrote") from error
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+        raise CheckpointError(f"{path} cannot be read as a checkpoint ({error}); begin anew without it") from error

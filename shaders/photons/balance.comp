@@ -1,0 +1,54 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the flux of an iteration's photon paths went, summed over the channels and over the paths of a group.
+
+layout(local_size_x = 64) in;
+
+#include <PhotonPath>
+#include <FluxSums>
+#include <BalanceParameters>
+#include "common/invocation.glsl"
+#include "common/photon.glsl"
+layout(std140, binding = 0) uniform Parameters { BalanceParameters parameters; };
+layout(std430, binding = 0) readonly buffer Emitted { PhotonPath emitted[]; };
+layout(std430, binding = 1) readonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 2) writeonly buffer Sums { FluxSums sums[]; };
+
+shared FluxSums shares[64];
+
+float total(vec3 flux) { return flux.x + flux.y + flux.z; }
+
+FluxSums of_path(uint index) {
+    FluxSums result = FluxSums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    if (index >= parameters.photon_count) return result;
+    float carried = total(emitted[index].flux);
+    result.emitted = carried;
+    for (uint segment = 0u; segment < parameters.segments; ++segment) {
+        uint slot = segment * parameters.photon_count + index;
+        uint flags = photons[slot].flags;
+        float scattered = 0.0;
+        if ((flags & PHOTON_ACTIVE) == 0u) result.lost += carried;
+        else if ((flags & PHOTON_ESCAPED) != 0u) result.escaped += carried;
+        else if (segment + 1u == parameters.segments) result.deposited += carried;
+        else {
+            scattered = total(photons[slot].scattered_flux);
+            result.absorbed += carried - scattered;
+        }
+        carried = scattered;
+    }
+    return result;
+}
+
+void main() {
+    uint own = gl_LocalInvocationIndex;
+    shares[own] = of_path(invocation_index());
+    for (uint half_size = 32u; half_size > 0u; half_size >>= 1u) {
+        barrier();
+        if (own < half_size) {
+            FluxSums a = shares[own], b = shares[own + half_size];
+            shares[own] = FluxSums(a.emitted + b.emitted, a.absorbed + b.absorbed, a.deposited + b.deposited,
+                                   a.escaped + b.escaped, a.lost + b.lost, 0.0, 0.0, 0.0);
+        }
+    }
+    if (own == 0u && invocation_index() < parameters.photon_count) sums[invocation_index() / 64u] = shares[0];
+}

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames that follow each other: each is that of a fresh render, bit for bit, and only what changed is done anew."""
+
+import bpy
+import numpy as np
+import OpenEXR
+import pytest
+from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
+
+from rppm_addon.blender import following, renderer_thread
+from rppm_addon.integrator.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.geometry import Geometry
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.session.observers import RenderObserver, observing
+
+LAST = 6
+
+
+def keyed(owner, path, values):
+    """Give a property a value in each frame from 1 on, without anything between."""
+    target, _, name = path.rpartition(".")
+    holder = owner.path_resolve(target) if target else owner
+    for frame, value in enumerate(values, 1):
+        if name.startswith('["'):
+            holder[name[2:-2]] = value
+        else:
+            setattr(holder, name, value)
+        holder.keyframe_insert(name, frame=frame)
+
+
+def coloured(name, color):
+    material = new_material(name)
+    to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfDiffuse", Color=(*color, 1.0)))
+    return material
+
+
+@pytest.fixture
+def moving(lit):
+    """A floor, things that change in all the ways that Blender tells of, and some of which it tells nothing."""
+    lit.render.resolution_x, lit.render.resolution_y = 16, 12
+    lit.camera.data.type = "PERSP"
+    lit.rppm.photons, lit.rppm.iterations = 512, 3
+    lit.frame_start, lit.frame_end = 1, LAST
+    floor = bpy.data.objects["Quad"]
+    floor.scale = (3.0, 3.0, 1.0)
+    keyed(lit.camera, "location", [(0.1 * frame, 0.0, 5.0) for frame in range(LAST)])
+
+    row = add_mesh(lit, "Row", location=(-1.0, 0.5, 0.5), scale=(0.3, 0.3, 1.0))
+    row.data.materials.append(coloured("Red", (0.8, 0.1, 0.1)))
+    array = row.modifiers.new("Array", "ARRAY")
+    array.relative_offset_displace = (1.3, 0.0, 0.0)
+    keyed(row, "modifiers[0].count", (1, 1, 3, 3, 2, 2))
+
+    gone = add_mesh(lit, "Gone", location=(0.8, -0.8, 1.0), scale=(0.5, 0.5, 1.0))
+    gone.data.materials.append(coloured("Blue", (0.1, 0.1, 0.8)))
+    keyed(gone, "hide_render", (False, False, False, True, True, False))
+
+    changing = coloured("Changing", (0.1, 0.8, 0.1))
+    shown = add_mesh(lit, "Shown", location=(-0.8, -0.8, 0.5), scale=(0.5, 0.5, 1.0))
+    shown.data.materials.append(changing)
+    colors = [(0.1 * frame, 0.8, 0.1, 1.0) for frame in (1, 1, 2, 2, 2, 3)]
+    keyed(changing, 'node_tree.nodes["Diffuse BSDF"].inputs[0].default_value', colors)
+
+    asking = new_material("Asking")
+    glow = add_node(asking.node_tree, "ShaderNodeEmission")
+    attribute = add_node(asking.node_tree, "ShaderNodeAttribute")
+    attribute.attribute_type, attribute.attribute_name = "VIEW_LAYER", "glow"
+    link(asking.node_tree, attribute.outputs["Fac"], glow.inputs["Strength"])
+    to_surface(asking, glow)
+    add_mesh(lit, "Glowing", location=(0.9, 0.9, 0.2), scale=(0.3, 0.3, 1.0)).data.materials.append(asking)
+    keyed(lit, '["glow"]', (0.5, 0.5, 0.5, 0.5, 2.0, 2.0))
+
+    lamp = add_light(lit, "POINT", "Lamp", energy=50.0)
+    keyed(lamp.data, "energy", (50.0, 50.0, 50.0, 20.0, 20.0, 20.0))
+    keyed(lit.world, 'node_tree.nodes["Background"].inputs[1].default_value', (1.0, 1.0, 1.0, 1.0, 1.0, 3.0))
+    lit.world.node_tree.nodes["Background"].inputs[0].default_value = (0.05, 0.05, 0.1, 1.0)
+    return lit
+
+
+def pixels(path):
+    with OpenEXR.File(str(path)) as file:
+        return np.concatenate([channel.pixels.reshape(-1) for channel in file.channels().values()])
+
+
+def write_exr_files(scene, folder):
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "IMAGE"
+    settings.file_format, settings.color_depth = "OPEN_EXR", "32"
+    scene.render.filepath = str(folder / "####.exr")
+
+
+def animation(scene, folder, persistent):
+    """Pictures by frame."""
+    write_exr_files(scene, folder)
+    scene.render.use_persistent_data = persistent
+    bpy.ops.render.render(animation=True)
+    scene.render.use_persistent_data = False
+    return [pixels(folder / f"{frame:04d}.exr") for frame in range(scene.frame_start, scene.frame_end + 1)]
+
+
+def still(scene, folder, frame):
+    """The picture of one frame, of which nothing was known before."""
+    following.forget()
+    write_exr_files(scene, folder)
+    scene.frame_set(frame)
+    scene.render.filepath = str(folder / "still.exr")
+    bpy.ops.render.render(write_still=True)
+    return pixels(folder / "still.exr")
+
+
+@pytest.mark.parametrize("animate_seed", [False, True])
+def test_each_frame_is_that_of_a_fresh_render(moving, tmp_path, animate_seed):
+    moving.rppm.animate_seed = animate_seed
+    fresh = [still(moving, tmp_path, frame) for frame in range(1, LAST + 1)]
+    assert len({picture.tobytes() for picture in fresh}) == LAST
+    for persistent in (False, True):
+        pictures = animation(moving, tmp_path, persistent)
+        for frame, (shown, expected) in enumerate(zip(pictures, fresh), 1):
+            assert shown.tobytes() == expected.tobytes(), (persistent, frame, np.abs(shown - expected).max())
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+def test_only_what_changed_is_uploaded_and_built(moving, tmp_path, monkeypatch, persistent):
+    """The camera moves in all frames, geometry changes in those where rows grow or objects come and go."""
+    done = []
+
+    def watch(kind, method, word):
+        original = getattr(kind, method)
+        monkeypatch.setattr(kind, method, lambda *a, **k: (done.append(word), original(*a, **k))[1])
+
+    watch(Geometry, "build", "geometry")
+    watch(DeepCubemap, "build", "structure")
+    watch(ProgressivePhotonMapper, "update", "frame")
+    following.forget()
+    animation(moving, tmp_path, persistent)
+    frames = " ".join(done).split("frame")[1:]
+    words = [sorted(set(frame.split())) for frame in frames]
+    assert words == [["geometry", "structure"], [], *[["geometry", "structure"]] * 4]
+
+
+def test_layers_take_turns(moving, tmp_path):
+    """With persistent data Blender tells of a layer's depsgraph as if it had been there in the frame before."""
+    scene = moving
+    second = scene.view_layers.new("Second")
+    hidden = bpy.data.collections.new("Hidden")
+    scene.collection.children.link(hidden)
+    scene.collection.objects.unlink(bpy.data.objects["Row"])
+    hidden.objects.link(bpy.data.objects["Row"])
+    second.layer_collection.children["Hidden"].exclude = True
+    scene.frame_end = 3
+    scenes = []
+
+    class Keeper(RenderObserver):
+        def on_scene(self, scene):
+            scenes.append({instance.object_name for instance in scene.instances})
+            return True
+
+    for persistent in (False, True):
+        scene.render.use_persistent_data = persistent
+        scenes.clear()
+        write_exr_files(scene, tmp_path)
+        with observing(Keeper()):
+            bpy.ops.render.render(animation=True)
+        assert len(scenes) == 6
+        assert all(("Row" in names) is (number % 2 == 0) for number, names in enumerate(scenes))
+    scene.render.use_persistent_data = False
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+def test_a_broken_frame_ends_nothing_but_itself(moving, tmp_path, persistent):
+    expected = [still(moving, tmp_path, frame) for frame in (1, 3)]
+    moving.frame_end = 3
+    keyed(moving, "rppm.radius_minimum", (0.0, 2.0, 0.0))
+    keyed(moving, "rppm.radius_maximum", (0.0, 1.0, 0.0))
+    errors = []
+
+    class Keeper(RenderObserver):
+        def on_error(self, text):
+            errors.append(text)
+
+    write_exr_files(moving, tmp_path)
+    moving.render.use_persistent_data = persistent
+    (tmp_path / "0002.exr").write_text("of a render before")
+    with observing(Keeper()):
+        bpy.ops.render.render(animation=True)
+    assert len(errors) == 1 and "radius_maximum" in errors[0]
+    for frame, picture in zip((1, 3), expected):
+        assert pixels(tmp_path / f"{frame:04d}.exr").tobytes() == picture.tobytes()
+    assert not (tmp_path / "0002.exr").exists()
+
+
+def test_broken_layers_do_not_end_blender(moving, tmp_path):
+    """Blender crashes when it is to save several layers of which it was given none."""
+    moving.view_layers.new("Second")
+    moving.frame_end = 2
+    keyed(moving, "rppm.radius_minimum", (2.0, 0.0))
+    keyed(moving, "rppm.radius_maximum", (1.0, 0.0))
+    write_exr_files(moving, tmp_path)
+    bpy.ops.render.render(animation=True)
+    assert not (tmp_path / "0001.exr").exists()
+    assert pixels(tmp_path / "0002.exr").any()
+    moving.frame_set(1)
+    with pytest.raises(RuntimeError, match="radius_maximum"):  # a still ends there
+        bpy.ops.render.render()
+
+
+def test_what_is_kept_is_dropped_with_the_file(moving, tmp_path):
+    moving.frame_end = 1
+    animation(moving, tmp_path, False)
+    assert following._last is not None
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert following._last is None
+    assert renderer_thread._shared._thread.is_alive()  # the programs stay
+
+
+def test_a_scene_that_is_rendered_again_is_the_scene_before(lit):
+    seen = []
+
+    class Keeper(RenderObserver):
+        def on_scene(self, scene):
+            seen.append(scene)
+            return True
+
+    set_world(lit, (0.1, 0.1, 0.1))
+    with observing(Keeper()):
+        for _ in range(2):
+            bpy.ops.render.render()
+    assert seen[0] is seen[1]

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rppm program and the small scenes of the tests of the command line; finding a farm's processes."""
+
+import contextlib
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from cli.conftest import blend_files, rppm, saved_scene, start_rppm  # noqa: F401 (fixtures)
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE_SECONDS = 60.0
+
+
+def wait_for(what, condition):
+    """What ``condition()`` gives once it is true; fails after a minute."""
+    give_up = time.monotonic() + PATIENCE_SECONDS
+    while time.monotonic() < give_up:
+        found = condition()
+        if found:
+            return found
+        time.sleep(0.05)
+    pytest.fail(f"{what}: not after {PATIENCE_SECONDS:.0f} s")
+
+
+def renders_below(process):
+    """The renders that a farm's workers have started; their parents are the workers."""
+    found = []
+    for child in psutil.Process(process.pid).children(recursive=True):
+        try:
+            if "rppm_addon.commands.farm.leash" in child.cmdline():
+                found.append(child)
+        except psutil.Error:
+            continue
+    return found
+
+
+@contextlib.contextmanager
+def dask(folder, *arguments):
+    """The dask program, which finds the RPPM of a folder; ends with the context."""
+    command = [sys.executable, "-m", "dask", *arguments]
+    environment = os.environ | {"PYTHONPATH": str(folder)}
+    with subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.DEVNULL) as process:
+        try:
+            yield
+        finally:
+            process.terminate()
+            try:
+                process.wait(30)
+            except subprocess.TimeoutExpired:
+                process.kill()

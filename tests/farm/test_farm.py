@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""rppm farm as users run it: local workers, real renders, and what is left when something dies."""
+
+import contextlib
+import json
+import re
+import signal
+
+import distributed
+import numpy as np
+import pytest
+
+from rppm_addon.pictures import is_whole, read_exr
+from rppm_addon.session.checkpoint_file import read_summary
+
+from .conftest import ROOT, dask, renders_below, start_rppm, wait_for
+
+
+def farm(blend, folder, *options):
+    """Arguments of a farm of four frames on two workers."""
+    frames = ("--frames", "1..4", "-o", folder / "####.exr", "--iterations", 6)
+    return "farm", blend, *frames, *(() if "--workers" in options else ("--workers", 2)), *options
+
+
+def pictures(folder):
+    return sorted(folder.glob("*.exr"))
+
+
+def left_over(folder):
+    """Names in the ledger's folder besides the ledger."""
+    return [path.name for path in (folder / "####.farm").iterdir() if path.name != "job.json"]
+
+
+def test_a_killed_worker_costs_no_frame(tmp_path, rppm, blend_files):
+    farmed, single = tmp_path / "farmed", tmp_path / "single.exr"
+    with start_rppm(*farm(blend_files[0], farmed, "-o", farmed / "####.png")) as process:
+        render = wait_for("a render", lambda: renders_below(process))[0]
+        worker = render.parent()
+        worker.kill()
+        output, errors = process.communicate(timeout=120)
+    assert process.returncode == 0, errors
+    assert "4 of 4 frames: " in output
+    assert len(re.findall(r"^frame \d: \d+\.\d s on \S+:[01]$", output, re.MULTILINE)) == 4
+    assert [path.name for path in pictures(farmed)] == [f"000{frame}.exr" for frame in (1, 2, 3, 4)]
+    assert all(map(is_whole, [*pictures(farmed), *(path.with_suffix(".png") for path in pictures(farmed))]))
+    assert left_over(farmed) == []
+    wait_for("the lost worker's render to end", lambda: not render.is_running())
+
+    status, _, errors = rppm("render", blend_files[0], "--frame", 1, "--iterations", 6, "-o", single)
+    assert status == 0, errors
+    assert np.array_equal(read_exr(farmed / "0001.exr").combined, read_exr(single).combined)
+
+
+def test_a_killed_farm_goes_on_where_it_was(tmp_path, rppm, blend_files):
+    with start_rppm(*farm(blend_files[0], tmp_path)) as process:
+        wait_for("two frames", lambda: len(pictures(tmp_path)) >= 2)
+        renders = renders_below(process)
+        process.kill()
+        process.communicate(timeout=30)
+    wait_for("all renders to end", lambda: not any(render.is_running() for render in renders))
+    finished = {path: path.stat().st_mtime_ns for path in pictures(tmp_path)}
+    damaged = pictures(tmp_path)[0]
+    damaged.write_bytes(damaged.read_bytes()[:-50])
+    del finished[damaged]
+
+    status, output, errors = rppm(*farm(blend_files[0], tmp_path))
+    assert status == 0, errors
+    assert f"{len(finished)} of 4 frames are there and whole" in output
+    assert output.count(" s on ") == 4 - len(finished)
+    assert len(pictures(tmp_path)) == 4
+    assert all(map(is_whole, pictures(tmp_path)))
+    assert {path: path.stat().st_mtime_ns for path in finished} == finished
+    assert left_over(tmp_path) == []
+
+    status, output, _ = rppm(*farm(blend_files[0], tmp_path))
+    assert (status, " s on " in output) == (0, False)
+
+
+def test_interrupting_a_farm_leaves_finished_work_only(tmp_path, blend_files):
+    with start_rppm(*farm(blend_files[0], tmp_path, "--workers", 1)) as process:
+        wait_for("a frame", lambda: pictures(tmp_path))
+        render = wait_for("the next frame", lambda: renders_below(process))[0]
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in errors
+    assert "Traceback" not in errors
+    assert not render.is_running()
+    assert 1 <= len(pictures(tmp_path)) < 4
+    assert all(map(is_whole, pictures(tmp_path)))
+    assert left_over(tmp_path) == []
+
+
+def test_a_failing_frame_of_a_chunk_is_told_and_the_others_are_made(tmp_path, rppm, blend_files):
+    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 1, "--chunk", 3)
+    status, output, errors = rppm("farm", blend_files[0], "--frames", "4..6", *options)
+    assert status == 1
+    assert "Traceback" not in errors
+    assert re.search(r"rppm: frame 5 failed on \S+: frame 5: .*radius_maximum", errors)
+    assert f"rppm render {blend_files[0]} --iterations 2 --frames 5 -o '{tmp_path}/####.exr'" in errors
+    assert "1 of 3 frames failed: frame 5" in errors
+    assert [path.name for path in pictures(tmp_path)] == ["0004.exr", "0006.exr"]
+    assert all(map(is_whole, pictures(tmp_path)))
+
+
+def test_a_picture_that_cannot_be_put_in_place_is_told(tmp_path, rppm, blend_files):
+    (tmp_path / "0006.exr").mkdir()
+    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 0)
+    status, _, errors = rppm("farm", blend_files[0], "--frames", "6", *options)
+    assert status == 1
+    assert re.search(r"rppm: frame 6 failed on \S+: .*0006.exr", errors)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("a.npz", "--frames", "1..2"), "needs a .blend"),
+        (("a.blend", "--frames", "1..2", "--frame", "3"), "--frames alone"),
+        (("a.blend", "--parts", "2"), "--iterations"),
+        (("a.blend", "--frames", "1..2", "--set", "rppm.iterations=0"), "iterations"),
+        (("a.blend", "--frames", "1..2", "--scheduler", "tcp://h:1", "--device", "1"), "RPPM_DEVICE"),
+        (("a.blend", "--frames", "1..2"), "does not exist"),
+        (("a.blend", "--frames", "1..2", "-o", "all.exr"), "####"),
+    ],
+)
+def test_wrong_calls_are_one_line(tmp_path, rppm, arguments, words):
+    status, _, errors = rppm("farm", *arguments, "-o", tmp_path / "####.exr")
+    assert status == 1
+    assert words in errors
+    assert errors.count("rppm: ") == 1
+    assert "Traceback" not in errors
+
+
+def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
+    whole, merged = tmp_path / "whole.exr", tmp_path / "merged.exr"
+    status, _, errors = rppm("render", saved_scene, "-o", whole, "--iterations", 40)
+    assert status == 0, errors
+    still = ("farm", saved_scene, "--iterations", 40, "--parts", 3, "-o", merged, "-o", tmp_path / "merged.png")
+    status, output, errors = rppm(*still, "--workers", 2)
+    assert status == 0, errors
+    assert output.count(" s on ") == 4  # three parts and the merge
+    single, farmed = read_exr(whole), read_exr(merged)
+    assert farmed.metadata["iterations"] == "40"
+    assert farmed.metadata["photons"] == single.metadata["photons"]
+    np.testing.assert_allclose(farmed.combined, single.combined, rtol=1e-6, atol=1e-7)
+    assert is_whole(tmp_path / "merged.png")
+    assert [path.name for path in (tmp_path / "merged.farm").iterdir()] == ["job.json"]
+
+    status, output, _ = rppm(*still)
+    assert (status, " s on " in output) == (0, False)
+    status, _, errors = rppm(*still[:4], "--parts", 4, "-o", merged)
+    assert status == 1
+    assert "other parts" in errors
+
+
+@pytest.mark.long
+def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_scene):
+    whole, merged, folder = tmp_path / "whole.exr", tmp_path / "merged.exr", tmp_path / "merged.farm"
+    still = ("farm", saved_scene, "--iterations", 1200, "--parts", 1, "-o", merged)
+    with start_rppm(*still) as process:
+        told = iter(process.stderr.readline, "")
+        assert any(re.search(r"iterations 0 to 1199 on \S+ [1-9]\d?%", line) for line in told)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert [path.name for path in folder.glob("iterations_*")] == ["iterations_0_1200.checkpoint.exr"]
+    begun = read_summary(folder / "iterations_0_1200.checkpoint.exr").iteration
+    assert 0 < begun < 1200
+
+    status, output, errors = rppm(*still)
+    assert status == 0, errors
+    assert output.count(" s on ") == 2
+    status, _, errors = rppm("render", saved_scene, "-o", whole, "--iterations", 1200)
+    assert status == 0, errors
+    np.testing.assert_allclose(read_exr(merged).combined, read_exr(whole).combined, rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.long
+def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
+    frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
+    with start_rppm("farm", blend_files[0], *frames, "--retries", 1) as process:
+        for _ in range(2):
+            render = wait_for("a render", lambda: [render for render in renders_below(process) if render.is_running()])
+            render[0].parent().kill()
+            wait_for("its end", lambda lost=render[0]: not lost.is_running())
+        output, errors = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "rppm: frame 1 failed: 2 workers were lost while they were at it" in errors
+    assert "1 of 2 frames failed: frame 1" in errors
+    assert output.count(" s on ") == 1
+    assert [path.name for path in pictures(tmp_path)] == ["0002.exr"]
+
+
+@pytest.mark.long
+def test_workers_of_a_scheduler_need_the_same_rppm(tmp_path, blend_files):
+    """By the commands of docs/farm.md; the scheduler has no RPPM, one worker has another."""
+    (tmp_path / "other" / "rppm_addon").mkdir(parents=True)
+    (tmp_path / "other" / "rppm_addon" / "__init__.py").write_text("")
+    (tmp_path / "nothing").mkdir()
+    (tmp_path / "nothing" / "rppm_addon.py").write_text("raise ImportError('no RPPM here')")
+    scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
+    scheduler += ["--scheduler-file", str(tmp_path / "scheduler.json")]
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(dask(tmp_path / "nothing", *scheduler))
+        wait_for("the scheduler", (tmp_path / "scheduler.json").exists)
+        address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
+        worker = ("worker", address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard", "--name")
+        stack.enter_context(dask(ROOT, *worker, "same"))
+        stack.enter_context(dask(tmp_path / "other", *worker, "other"))
+        with distributed.Client(address) as client:
+            wait_for("both workers", lambda: len(client.scheduler_info()["workers"]) == 2)
+        farm = ("farm", blend_files[0], "--frames", "1..2", "--scheduler", address)
+        with start_rppm(*farm, "--iterations", 2, "-o", tmp_path / "####.exr") as process:
+            output, errors = process.communicate(timeout=120)
+        assert process.returncode == 0, errors
+        assert re.search(r"workers must run the same RPPM .* left out: tcp\S+: No module named", errors)
+        assert len(re.findall(r"^frame \d: \d+\.\d s on \S+:same$", output, re.MULTILINE)) == 2
+        assert all(map(is_whole, pictures(tmp_path)))
+
+        with start_rppm(*farm, "--overwrite", "--seconds", 600, "-o", tmp_path / "####.exr") as process:
+            attempt = wait_for("a render", lambda: list((tmp_path / "####.farm").glob("attempt_*")))[0]
+            process.kill()
+        wait_for("the render to end", lambda: not attempt.exists())
+    with start_rppm(*farm, "--overwrite", "-o", tmp_path / "####.exr") as process:
+        _, errors = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "dask scheduler" in errors

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mapper that is given the state of another goes on as that one would have."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import scenes
+from lobes import Lobe, LobeKind, material
+
+from rppm_addon.integrator import bands
+from rppm_addon.integrator.guide import LEARNING_ITERATIONS
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.integrator.state import RenderState
+from rppm_addon.scene import DirectLight, Light, LightKind, Scene
+from rppm_addon.scene.errors import CheckpointError
+
+LAST = LEARNING_ITERATIONS + 3
+STOPS = (1, 2, 7, 16, 17)
+
+
+def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
+    """Caustics, light scattered between walls, glossy paths, a pane that some camera paths end on, and a second lamp
+    whose photons are of less use."""
+    scene = scenes.room(
+        16, direct_light=direct_light, photons=512, camera_path_length=4, photon_path_length=4, radius_scale=100.0,
+        splat_roulette=True,
+    )  # fmt: skip
+    rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)
+    scene.materials[1] = material("rough", rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1)))
+    lamp = np.eye(4)
+    lamp[:3, 3] = (0.9, 0.9, 0.9)
+    scene.lights.append(Light("in the corner", LightKind.POINT, lamp, np.full(3, 0.5)))
+    pane = material("pane", Lobe(LobeKind.PRINCIPLED, alpha=0.4, roughness=0.0))
+    scene.materials.append(pane)
+    scene.meshes.append(
+        scenes.rectangle("pane", (-0.5, -0.8, -0.5), (0.5, -0.8, -0.5), (0.5, -0.8, 0.5), (-0.5, -0.8, 0.5))
+    )
+    scene.instances.append(
+        dataclasses.replace(
+            scene.instances[0], mesh=len(scene.meshes) - 1, matrix=np.eye(4), materials=[len(scene.materials) - 1]
+        )
+    )
+    return scene
+
+
+@pytest.fixture
+def other_mapper(context, library):
+    mapper = ProgressivePhotonMapper(context, library)
+    yield mapper
+    mapper.release()
+
+
+@pytest.fixture(autouse=True)
+def several_bands(monkeypatch):
+    monkeypatch.setattr(bands, "MAXIMUM_BAND_PIXELS", 16 * 6)
+
+
+def run_until(mapper: ProgressivePhotonMapper, iteration: int) -> RenderState:
+    while mapper.iteration < iteration:
+        mapper.iterate()
+    return mapper.state()
+
+
+def assert_same(a: RenderState, b: RenderState, *names: str) -> None:
+    """Bit for bit, in all fields or in those of the names."""
+    for field in dataclasses.fields(RenderState):
+        if names and field.name not in names:
+            continue
+        mine, other = getattr(a, field.name), getattr(b, field.name)
+        if isinstance(mine, np.ndarray):
+            assert mine.dtype == other.dtype and mine.shape == other.shape
+            np.testing.assert_array_equal(mine.view(np.uint32), other.view(np.uint32), field.name)
+        else:
+            assert mine == other, field.name
+
+
+@pytest.mark.parametrize(("direct_light", "stops"), [(DirectLight.RAYS, STOPS), (DirectLight.PHOTONS, (2, 16))])
+def test_a_state_goes_on_bit_for_bit(mapper, other_mapper, direct_light, stops):
+    scene = busy_room(direct_light)
+    mapper.build(scene)
+    whole = run_until(mapper, LAST)
+    mapper.build(scene)
+    states = [run_until(mapper, stop) for stop in stops]
+    assert_same(run_until(mapper, LAST), whole)  # asking for the state changes nothing
+    assert len({state.wide_radius for state in states}) > 1, "nothing was learnt: the test shows nothing"
+    assert not np.array_equal(states[0].tallies, states[-1].tallies)
+    for state in states:
+        other_mapper.build(scene)
+        other_mapper.resume(state)
+        assert_same(run_until(other_mapper, LAST), whole)
+
+
+@pytest.mark.parametrize("left_out", [1, 16, 18])
+def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mapper, left_out):
+    scene = busy_room()
+    mapper.build(scene)
+    before = run_until(mapper, left_out)
+    whole = run_until(mapper, LAST)
+    other_mapper.build(scene)
+    for _ in other_mapper.leave_out(left_out):
+        pass
+    assert other_mapper.iterations_in_film == 0
+    part = run_until(other_mapper, LAST)
+    assert_same(part, whole, "iteration", "wide_radius", "tallies", "learnt")
+    assert part.iterations_in_film == LAST - left_out
+    radiance = (left_out * before.radiance.astype(np.float64) + (LAST - left_out) * part.radiance) / LAST
+    np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
+    counts = before.surface_counts + part.surface_counts
+    np.testing.assert_array_equal(counts, whole.surface_counts)
+    sums = [state.normal * state.surface_counts[..., None].astype(np.float64) for state in (before, part)]
+    np.testing.assert_allclose(sum(sums) / np.maximum(counts, 1)[..., None], whole.normal, atol=1e-6)
+    np.testing.assert_array_equal(np.where(before.depth < 1e10, before.depth, part.depth), whole.depth)
+
+
+def test_the_pane_ends_paths(mapper):
+    """Else the counts of the normals are those of the iterations, and the tests above show less."""
+    mapper.build(busy_room())
+    counts = run_until(mapper, LAST).surface_counts
+    assert counts.max() == LAST
+    assert 0 < counts.min() < LAST
+
+
+def test_a_state_of_another_scene_is_refused(mapper):
+    scene = busy_room()
+    mapper.build(scene)
+    mapper.iterate()
+    state = mapper.state()
+    smaller = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, width=7))
+    mapper.build(smaller)
+    with pytest.raises(CheckpointError, match="16x16 pixels, not 7x16"):
+        mapper.resume(state)
+    fewer = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, photons=100))
+    mapper.build(fewer)
+    with pytest.raises(CheckpointError, match="cells"):
+        mapper.resume(state)

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checkpoints of stills that nobody rendered."""
+
+import numpy as np
+
+from rppm_addon.integrator.state import RenderState
+from rppm_addon.pictures import Placement
+from rppm_addon.session.checkpoint_file import StillRender, write_checkpoint
+from rppm_addon.session.continuation import Pause
+
+HEIGHT, WIDTH, CELLS = 6, 9, 500
+
+
+def still_render(**values: object) -> StillRender:
+    """Pixels 3 to 12 and 2 to 8 of a frame of 16x10."""
+    scene = {"camera": "aa", "meshes": "bb", "lights": "cc"}
+    settings = {"photons": 100, "alpha": 0.7, "seed": 0, "direct_light": "RAYS"}
+    return StillRender(
+        **{"scene": scene, "settings": settings, "exposure": 2.0, "placement": Placement(16, 10, 3, 2)} | values
+    )
+
+
+def pause(left_out: int = 0, iteration: int = 5, learnt: bool = True) -> Pause:
+    """Numbers of no meaning, other ones for other iterations; some pixels have found no surface."""
+    random = np.random.default_rng([left_out, iteration])
+    radiance, normal, depth = (random.random((HEIGHT, WIDTH, *more), np.float32) for more in ((4,), (3,), ()))
+    depth[random.random(depth.shape) < 0.4] = 1e10
+    counts = random.integers(0, iteration - left_out + 1, depth.shape, np.uint32)
+    normal[counts == 0] = 0.0
+    tallies, learnt_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
+    state = RenderState(
+        left_out, iteration, 0.1 + random.random(), 3.0 + random.random(), radiance, normal, depth, counts, tallies,
+        learnt_tallies if learnt else None,
+    )  # fmt: skip
+    return Pause(state, "a device", 0.25)
+
+
+def write_part(path, left_out: int, iteration: int, **values: object):
+    """A part of the still; returns its path."""
+    write_checkpoint(path, still_render(**values), pause(left_out, iteration), 10.0)
+    return path
