@@ -291,8 +291,16 @@ class Emission:
             self._share_photons(self._weights * weights)
             self._lights.upload(self._table)
 
-    def run(self, rays: moderngl.Buffer, photon_paths: moderngl.Buffer, count: int, seed: int, iteration: int) -> None:
-        """Emit ``count`` photons: their first rays and the flux they carry."""
+    def run(
+        self,
+        rays: moderngl.Buffer,
+        photon_paths: moderngl.Buffer,
+        world_radiances: moderngl.Buffer,
+        count: int,
+        seed: int,
+        iteration: int,
+    ) -> None:
+        """Emit ``count`` photons: their first rays, the flux they carry, and how bright the world is there."""
         self.use_maps()
         self._program.run(
             count,
@@ -301,6 +309,7 @@ class Emission:
                 **self.guide.buffers,
                 "Rays": rays,
                 "PhotonPaths": photon_paths,
+                "WorldRadiances": world_radiances,
                 "Targets": self._targets.buffer,
             },
             {**self.parameters(seed, iteration, count), "target_count": self._target_count},

@@ -69,7 +69,11 @@ class FinalGather:
         """Add what was found to the pixels' ``radiances``; ``radius_in_pixels`` is the iteration's of Eq. 3."""
         self._found_program.run(
             count,
-            {"Gathered": splatting.gathered.buffer, "FoundRadiances": self.radiances.buffer},
+            {
+                "Gathered": splatting.gathered.buffer,
+                "FoundRadiances": self.radiances.buffer,
+                "GatheringVertices": self.vertices.buffer,
+            },
             {"count": count, "quantum": splatting.quantum},
         )
         radius = SHARED_RADIUS * radius_in_pixels

@@ -28,6 +28,7 @@ Record(
     radius_minimum="float",
     radius_maximum="float",
     radius_by_ray="float",
+    world_photon_flux="float",
 )
 
 
@@ -125,6 +126,7 @@ class Importons:
                 "radius_minimum": limits[0],
                 "radius_maximum": limits[1],
                 "radius_by_ray": radius_by_ray,
+                "world_photon_flux": stages.emission.photon_flux,
             },
         )
 

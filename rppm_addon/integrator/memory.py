@@ -95,6 +95,7 @@ def expected_memory(width: int, height: int, photons: int, segments: int) -> Mem
             "photon hits": HIT.size * photons,
             "photon closures": CLOSURE.size * photons,
             "photon departures": DEPARTURE.size * photons,
+            "world radiances": 4 * photons,
             "emitted photons": PHOTON_PATH.size * photons,
             "flux sums": FLUX_SUMS.size * -(-photons // FLUX_GROUP),
         },

@@ -37,7 +37,8 @@ Record("BalanceParameters", photon_count="uint", segments="uint")
 
 
 class Photons:
-    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path."""
+    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``world_radiances`` tells
+    of each path the world's radiance where it began, the largest channel, 0 from other lights."""
 
     def __init__(self, context: Context, library: ProgramLibrary, photon_count: int, segments: int) -> None:
         self._context = context
@@ -52,6 +53,8 @@ class Photons:
         self._hits = GrowingBuffer(context, "photon hits", remedy)
         self._closures = GrowingBuffer(context, "photon closures", remedy)
         self._departures = GrowingBuffer(context, "photon departures", remedy)
+        self.world_radiances = GrowingBuffer(context, "world radiances", remedy)
+        self.world_radiances.require(4 * photon_count)
         self._emitted = GrowingBuffer(context, "emitted photons", remedy)
         self._sums = GrowingBuffer(context, "flux sums", remedy)
         self.photons.require(PHOTON.size * photon_count * segments)
@@ -69,7 +72,7 @@ class Photons:
     @property
     def _buffers(self) -> tuple[GrowingBuffer, ...]:
         paths = self._paths, self._rays, self._hits, self._closures, self._departures
-        return self.photons, *paths, self._emitted, self._sums
+        return self.photons, *paths, self._emitted, self._sums, self.world_radiances
 
     @property
     def _blocks(self) -> dict[str, moderngl.Buffer]:
@@ -141,7 +144,9 @@ class Photons:
         """DirectPhotonHits: photons leave the lights and find their first hits."""
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with stages.timers.stage("emission"):
-            stages.emission.run(rays, paths, self.photon_count, stages.settings.seed, iteration)
+            stages.emission.run(
+                rays, paths, self.world_radiances.buffer, self.photon_count, stages.settings.seed, iteration
+            )
             stages.emission.emitters.tint_photons(
                 stages.resolve, rays, hits, self._closures.buffer, paths, self.photon_count, iteration
             )
@@ -174,4 +179,3 @@ class Photons:
     def release(self) -> None:
         for buffer in self._buffers:
             buffer.release()
-

@@ -50,7 +50,7 @@ from .primary_rays import PrimaryRays
 from .resolve import Resolve
 from .shadow_catcher import ShadowCatcher
 from .shutter import moment, swept_bounds
-from .splatting import Splatting, radiance_quantum
+from .splatting import Splatting, StoredPhotons, radiance_quantum
 from .stages import Stages
 from .state import RenderState
 
@@ -564,10 +564,21 @@ class ProgressivePhotonMapper:
                     self._stages, self._importons, self._count, self._first_pixel, self.iteration, segment
                 )
 
+    def _stored_photons(self, segment: int) -> StoredPhotons:
+        """To be splatted onto the importons of a segment, from which the gathering ray is the next."""
+        settings = self.scene.settings
+        return StoredPhotons(
+            self._photons.photons.buffer,
+            self._photons.world_radiances.buffer,
+            settings.photons,
+            self._emission.photon_flux,
+            max(settings.camera_path_length - segment - 2, 0),
+        )
+
     def _direct_splatting(self) -> None:
         with self.timers.stage("direct splatting"):
             self._splatting.direct(
-                self._photons.photons.buffer,
+                self._stored_photons(0),
                 self._importons.importons.buffer,
                 self._gbuffer.camera,
                 self.film.width,
@@ -582,7 +593,7 @@ class ProgressivePhotonMapper:
             narrow = radius_by_ray(narrow, wide)
         with self.timers.stage("indirect splatting"):
             self._splatting.indirect(
-                self._photons.photons.buffer,
+                self._stored_photons(segment),
                 self._importons.importons.buffer,
                 self._count,
                 self.centre,

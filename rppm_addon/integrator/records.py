@@ -168,10 +168,19 @@ the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points
 GATHERS_ALL, GATHERS_BY_RAY, GATHERED_BY_RAY = range(3)
 """What importons gather, as in shaders/common/gathering.glsl."""
 
-GATHERING_VERTEX = Record("GatheringVertex", position="vec3", radius="float", weight="vec3", normal="uint")
+GATHERING_VERTEX = Record(
+    "GatheringVertex",
+    position="vec3",
+    shared_radius="float",
+    weight="vec3",
+    normal="uint",
+    found="vec3",
+    radius="float",
+)
 """Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
-the importon's, metres; 0 where what the ray finds is not shared, less than 0 marks none. ``normal`` is on the
-side that the ray went to."""
+the importon's, metres, and so is ``shared_radius``, but for 0 where what the ray finds is not shared; less than 0
+marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
+sharp surfaces, but for the photons' share."""
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 """Kinds of lights, as in shaders/emission/lights.glsl."""

@@ -2,6 +2,7 @@
 """Photon splatting: onto the camera view (direct) and onto cubemap views (indirect), section 4.2."""
 
 import math
+from dataclasses import dataclass
 
 import moderngl
 import numpy as np
@@ -18,10 +19,20 @@ _JOB_HEADER, _JOB = 16, 16
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
+_CAUSTIC_PARAMETERS = {"photon_count": "uint", "world_photon_flux": "float", "most_scattered": "uint"}
+"""Parameters of programs that include shaders/common/importon.glsl."""
+
 Record("StoredParameters", count="uint", indirect_only="uint")
 Record("SplatParameters", count="uint", radius="float", wide_radius="float", gathers="uint")
 Record(
-    "QuadParameters", width="uint", height="uint", wide_radius="float", quanta="float", roulette="uint", counting="uint"
+    "QuadParameters",
+    width="uint",
+    height="uint",
+    wide_radius="float",
+    quanta="float",
+    roulette="uint",
+    counting="uint",
+    **_CAUSTIC_PARAMETERS,
 )
 Record(
     "CubeParameters",
@@ -33,6 +44,7 @@ Record(
     quanta="float",
     gathers="uint",
     counting="uint",
+    **_CAUSTIC_PARAMETERS,
 )
 
 _STORED_HEADER = 8
@@ -48,6 +60,32 @@ def radiance_quantum(photon_flux: float, radius: float) -> float:
     """
     radiance = photon_flux / (math.pi**2 * max(radius, 1e-12) ** 2) / _PHOTON_QUANTA
     return 2.0 ** math.floor(math.log2(min(max(radiance, 1e-30), 1e20)))
+
+
+@dataclass(frozen=True)
+class StoredPhotons:
+    """The photons of an iteration and what else their splats depend on (integrator/photons.py)."""
+
+    photons: moderngl.Buffer
+    world_radiances: moderngl.Buffer
+    photon_count: int
+    world_photon_flux: float
+    """Mean flux of the world's photons, W."""
+    most_scattered: int
+    """Caustics of the world by up to so many surfaces are found by gathering rays as well, if there are any."""
+
+    @property
+    def blocks(self) -> dict[str, moderngl.Buffer]:
+        return {"Photons": self.photons, "WorldRadiances": self.world_radiances}
+
+    @property
+    def parameters(self) -> dict[str, object]:
+        """Values of _CAUSTIC_PARAMETERS."""
+        return {
+            "photon_count": self.photon_count,
+            "world_photon_flux": self.world_photon_flux,
+            "most_scattered": self.most_scattered,
+        }
 
 
 class Splatting:
@@ -117,7 +155,7 @@ class Splatting:
 
     def direct(
         self,
-        photons: moderngl.Buffer,
+        photons: StoredPhotons,
         importons: moderngl.Buffer,
         camera: moderngl.Buffer,
         width: int,
@@ -134,7 +172,12 @@ class Splatting:
         self._reset_jobs()
         self._direct_jobs.run(
             self.stored_count,
-            {"Photons": photons, "StoredPhotons": self._stored.buffer, "Camera": camera, "Jobs": self._jobs.buffer},
+            {
+                "Photons": photons.photons,
+                "StoredPhotons": self._stored.buffer,
+                "Camera": camera,
+                "Jobs": self._jobs.buffer,
+            },
             {"count": self.stored_count, "radius": radii[0], "wide_radius": radii[1], "gathers": gathers},
         )
         self._direct.draw(
@@ -142,12 +185,12 @@ class Splatting:
             self._jobs.buffer,
             {
                 "Jobs": self._jobs.buffer,
-                "Photons": photons,
+                **photons.blocks,
                 "Importons": importons,
                 "Gathered": self.gathered.buffer,
                 "DiffusedPhotons": self._diffused_photons.buffer,
             },
-            {"width": width, "height": rows, "wide_radius": radii[1], **self._counting},
+            {"width": width, "height": rows, "wide_radius": radii[1], **self._counting, **photons.parameters},
             viewport=(0, 0, width, rows),
         )
 
@@ -160,7 +203,7 @@ class Splatting:
 
     def indirect(
         self,
-        photons: moderngl.Buffer,
+        photons: StoredPhotons,
         importons: moderngl.Buffer,
         count: int,
         centre: np.ndarray,
@@ -185,8 +228,9 @@ class Splatting:
             "gathers": gathers,
             # Nothing plays roulette here, which what is counted is doubled for.
             "counting": self.counting and not self._counting["roulette"],
+            **photons.parameters,
         }
-        stored = {"Photons": photons, "StoredPhotons": self._stored.buffer}
+        stored = {"Photons": photons.photons, "StoredPhotons": self._stored.buffer}
         self._insert.run(
             count,
             {"Importons": importons, "Heads": self._heads.buffer, "Core": self._core.buffer},
@@ -203,17 +247,29 @@ class Splatting:
             self._jobs.buffer,
             {
                 "Jobs": self._jobs.buffer,
-                "Photons": photons,
+                **photons.blocks,
                 "Heads": self._heads.buffer,
                 "DiffusedPhotons": self._diffused_photons.buffer,
                 **gathered,
             },
-            {"width": self._cube_size[0], "height": self._cube_size[1], "wide_radius": radii[1], **self._counting},
+            {
+                "width": self._cube_size[0],
+                "height": self._cube_size[1],
+                "wide_radius": radii[1],
+                **self._counting,
+                **photons.parameters,
+            },
             viewport=(0, 0, *self._cube_size),
         )
         self._core_program.run(
             self.stored_count,
-            {**stored, "Core": self._core.buffer, "DiffusedPhotons": self._diffused_photons.buffer, **gathered},
+            {
+                **stored,
+                **photons.blocks,
+                "Core": self._core.buffer,
+                "DiffusedPhotons": self._diffused_photons.buffer,
+                **gathered,
+            },
             {**cube, "count": self.stored_count},
         )
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer declares the storage blocks of photons[] and importons[] before.
+// The includer declares the storage blocks of photons[] and importons[] before, and the members photon_count,
+// world_photon_flux and most_scattered of its parameters.
 #include "common/bsdf/microfacet.glsl"
+#include "common/sampling.glsl"
 #include "common/gathering.glsl"
+#include "common/world_caustics.glsl"
+layout(std430, binding = 6) readonly buffer WorldRadiances { float world_radiances[]; };
 
 // Flux arrived by the geometric cosine; a part of the BSDF asks for that of its own normal.
 float shading_correction(float cosine, float geometric_cosine) { return min(abs(cosine) / max(geometric_cosine, 1e-5), 4.0); }
@@ -35,12 +39,20 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
 const float NORMAL_TOLERANCE = 0.7;
 const float PLANE_TOLERANCE = 0.35;
 
+// The gathering ray finds the rest, unless its path ends before.
+float caustic_share(uint photon_number, float radius) {
+    float radiance = world_radiances[photon_number % parameters.photon_count];
+    bool found = radiance > 0.0 && photon_number / parameters.photon_count <= parameters.most_scattered;
+    return found ? world_photon_share(radiance, parameters.world_photon_flux, radius) : 1.0;
+}
+
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
 // integral over the unit disk is 1. False when it adds nothing. Most pairs are too far apart: only
 // what decides that is read first.
 bool density_estimate(uint importon_number, uint photon_number, float wide_radius, out vec3 radiance) {
     radiance = vec3(0.0);
-    if (importons[importon_number].gathers == GATHERS_BY_RAY && (photons[photon_number].flags & PHOTON_INDIRECT) != 0u) return false;
+    bool by_ray = importons[importon_number].gathers == GATHERS_BY_RAY;
+    if (by_ray && (photons[photon_number].flags & PHOTON_INDIRECT) != 0u) return false;
     float narrow = importons[importon_number].radius;
     vec3 offset = photons[photon_number].position - importons[importon_number].position;
     float radius = photon_radius(photons[photon_number].flags, narrow, wide_radius), radius2 = radius * radius;
@@ -59,5 +71,6 @@ bool density_estimate(uint importon_number, uint photon_number, float wide_radiu
     float kernel = 2.0 * (1.0 - distance2 / radius2) / (PI * radius2);
     float geometric_cosine = abs(dot(photon_normal, direction));
     radiance = evaluate_importon(importon, direction, alignment > 0.0, geometric_cosine) * photons[photon_number].flux * kernel;
+    if (by_ray && (photons[photon_number].flags & PHOTON_DIRECT) == 0u) radiance *= caustic_share(photon_number, narrow);
     return largest(radiance) > 0.0;
 }

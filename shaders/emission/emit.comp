@@ -16,6 +16,8 @@ layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) writeonly buffer PhotonPaths { PhotonPath photon_paths[]; };
 layout(std430, binding = 8) writeonly buffer PhotonCells { uint photon_cells[]; };
 
+layout(std430, binding = 9) writeonly buffer WorldRadiances { float world_radiances[]; };
+
 const uint NO_CELL = 0xffffffffu;
 
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
@@ -64,6 +66,7 @@ void main() {
         | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
         | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
         | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
+    world_radiances[index] = light.kind == LIGHT_WORLD ? largest(world_radiance(-emission.direction)) : 0.0;
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags);
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);

@@ -1,17 +1,20 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each gathering ray found: by next-event rays, and of photons.
+// What each gathering ray found: by next-event rays, of photons, and of the world.
 
 layout(local_size_x = 64) in;
 
 #include <FoundParameters>
 #include "common/invocation.glsl"
+#include "common/gathering.glsl"
 layout(std140, binding = 0) uniform Parameters { FoundParameters parameters; };
 #include "splatting/read_sums.glsl"
 layout(std430, binding = 0) buffer FoundRadiances { vec4 found_radiances[]; };
+layout(std430, binding = 2) readonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    found_radiances[index].rgb += read_sum(index, true) * parameters.quantum;
+    if (gathering_vertices[index].shared_radius < 0.0) return;
+    found_radiances[index].rgb += read_sum(index, true) * parameters.quantum + gathering_vertices[index].found;
 }

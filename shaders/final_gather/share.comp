@@ -22,8 +22,8 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     GatheringVertex vertex = gathering_vertices[index];
-    if (vertex.radius < 0.0) return;
-    float radius = parameters.shared_radius * vertex.radius;
+    if (vertex.shared_radius < 0.0) return;
+    float radius = parameters.shared_radius * vertex.shared_radius;
     vec3 sum = found_radiances[index].rgb, normal = unpack_unit_vector(vertex.normal);
     float total = 1.0;
     uint taps = radius > 0.0 ? parameters.taps : 0u;
@@ -37,7 +37,7 @@ void main() {
         if (other_pixel == pixel || any(lessThan(other_pixel, ivec2(0))) || any(greaterThanEqual(other_pixel, size))) continue;
         uint other_index = uint(other_pixel.y) * parameters.width + uint(other_pixel.x);
         GatheringVertex other = gathering_vertices[other_index];
-        if (!(other.radius > 0.0)) continue;
+        if (!(other.shared_radius > 0.0)) continue;
         vec3 apart = other.position - vertex.position;
         float distance2 = dot(apart, apart) / (radius * radius);
         if (distance2 >= 1.0 || abs(dot(apart, normal)) > PLANE_TOLERANCE * radius) continue;

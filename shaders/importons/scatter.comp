@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/gathering.glsl"
+#include "common/world_caustics.glsl"
 #include "gbuffer/projections.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
@@ -22,7 +23,7 @@ layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer CameraPaths { CameraPath camera_paths[]; };
 layout(std430, binding = 3) writeonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 12) readonly buffer LitCatchers { uint lit_catchers[]; };
-layout(std430, binding = 11) writeonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
+layout(std430, binding = 11) buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
 layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
 
@@ -64,13 +65,20 @@ void main() {
     Ray ray = rays[index];
     importons[index].radius = 0.0;
     rays[index].maximum_distance = 0.0;
-    if (parameters.segment == 0u) gathering_vertices[index].radius = -1.0;
+    if (parameters.segment == 0u) gathering_vertices[index].shared_radius = -1.0;
     if (!(ray.maximum_distance > 0.0)) return;
     Closure closure = closures[index];
     bool hit = closure_hit(closure);
     bool straight = (path.flags & PATH_STRAIGHT) != 0u, gathered = (path.flags & PATH_GATHERED) != 0u;
-    // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there.
-    if (gathered && !hit) return;
+    // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left
+    // to photons but for the world's.
+    if (gathered && !hit) {
+        if ((path.flags & PATH_CAUSTIC) == 0u) return;
+        vec3 world = world_radiance(ray.direction);
+        float photons = world_photon_share(largest(world), parameters.world_photon_flux, gathering_vertices[index].radius);
+        gathering_vertices[index].found = path.throughput * world * (1.0 - photons);
+        return;
+    }
     vec4 seen = vec4(0.0);
 
     vec3 lights_passed = gathered ? vec3(0.0) : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, camera_ray_kind(path.flags), path.scatter_density);
@@ -154,6 +162,7 @@ void main() {
     } else if (u < shares.x) {
         direction = ray.direction;
         weight = closure.transparent;
+        if ((closure.flags & CLOSURE_SHADOWLESS) == 0u) path.flags |= PATH_CAUSTIC;
         transmitted = true;
         probability = shares.x;
     } else {
@@ -169,15 +178,17 @@ void main() {
         direction = sampled.direction;
         weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
         transmitted = sampled.transmitted;
-        path.flags &= ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR);
+        path.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_CAUSTIC;
         if (transmitted) path.flags |= PATH_TRANSMITTED;
         if (lobe.alpha <= SMOOTHEST_LIT) path.flags |= PATH_SINGULAR;
     }
     if (diffuse) path.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_DIFFUSE;
     path.throughput *= weight * (total / (probability * survival));
     if (sets_out) {
+        path.flags &= ~PATH_CAUSTIC;
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
-        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, pack_unit_vector(normal));
+        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, pack_unit_vector(normal),
+                                                    vec3(0.0), radius);
         path.throughput = found_weight;
     }
     float side = dot(direction, geometric);

@@ -111,7 +111,8 @@ void main() {
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
-    builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (shadowless ? CLOSURE_SHADOWLESS : 0u);
+    bool leaves_direct_light = shadowless || (camera && (unseen || (instance.visibility & VISIBLE_TO_SHADOW_RAYS) == 0u));
+    builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
     builder.closure.material = material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);

@@ -47,6 +47,6 @@ def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
     mapper.build(scene)
     mapper.iterate()
     vertices = mapper._final_gather.vertices.read(GATHERING_VERTEX.dtype, SIZE * SIZE)
-    assert (vertices["radius"] == 0).sum() > 50
-    assert (vertices["radius"] > 0).sum() > 500
-    assert (vertices["weight"][vertices["radius"] >= 0] >= 0).all()
+    assert (vertices["shared_radius"] == 0).sum() > 50
+    assert (vertices["shared_radius"] > 0).sum() > 500
+    assert (vertices["weight"][vertices["shared_radius"] >= 0] >= 0).all()
