@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""rppm farm, up to the point where Dask is needed."""
+
+import argparse
+import sys
+
+from ...pictures import make_folder
+from ...scene import RenderSettings
+from ...scene.errors import SettingsError
+from ..frame_numbers import check_places
+from ..interruption import Interruption
+from ..options import is_blend, outputs_of_still, refuse_blend_options, split_values, values_of_frames
+from ..progress_bar import ProgressBar
+from ..recorder import apply_settings
+
+
+def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
+    """Do it; returns the exit status."""
+    try:
+        from .job import FarmRequest, run_farm
+    except ImportError as error:
+        raise SettingsError(
+            f"rppm farm needs dask.distributed ({error}); install it with pip install -e '.[farm]'"
+        ) from error
+
+    settings, data_values = split_values(options.values)
+    settings |= {
+        name: getattr(options, name) for name in ("iterations", "photons") if getattr(options, name) is not None
+    }
+    from_blend = is_blend(options.file)
+    if from_blend:
+        values_of_frames(settings)
+    apply_settings(RenderSettings(), settings)
+    if not from_blend:
+        if options.frames:
+            raise SettingsError("--frames needs a .blend file; a saved scene holds one frame")
+        refuse_blend_options(options, data_values)
+    if options.frames and options.frame is not None:
+        raise SettingsError("--frame is for a still; name the frames of an animation with --frames alone")
+    if options.parts and options.iterations is None:
+        raise SettingsError("a still in --parts needs --iterations, those of all parts together")
+    if options.scheduler and options.device:
+        raise SettingsError("--device is for workers here; set RPPM_DEVICE where the workers of a scheduler start")
+    if options.parts:
+        options.output = outputs_of_still(options)
+    else:
+        check_places(options.output, options.frames)
+    for path in options.output:
+        make_folder(path)
+    names = ["frame", "photons", *(["iterations", "seconds"] if options.frames else [])]
+    request = FarmRequest(
+        file=options.file.absolute(),
+        outputs=[path.absolute() for path in options.output],
+        options=_task_options(options, names),
+        frames=options.frames or (),
+        iterations=options.iterations or 0,
+        parts=options.parts or 0,
+        chunk=options.chunk,
+        scheduler=options.scheduler,
+        devices=options.devices.split(",") if options.devices else [None] * options.workers,
+        retries=options.retries,
+        overwrite=options.overwrite,
+    )
+    with Interruption() as interruption:
+        report = run_farm(request, bar, lambda: interruption.asked, options.debug)
+    bar.clear()
+    if report.failed:
+        names = ", ".join(report.failed)
+        sys.stderr.write(f"rppm: {len(report.failed)} of {report.total} {report.kind} failed: {names}\n")
+    if not report.finished and interruption.asked:
+        sys.stderr.write("rppm: interrupted; what is finished lies there, run the same again to go on\n")
+        return interruption.status
+    if report.failed:
+        return 1
+    print(f"{report.total} of {report.total} {report.kind}: {', '.join(str(path) for path in options.output)}")
+    return 0
+
+
+def _task_options(options: argparse.Namespace, names: list[str]) -> list[str]:
+    """The options of rppm render that ``names`` and the size and values asked for make, as words."""
+    words = []
+    for name in names:
+        if getattr(options, name) is not None:
+            words += [f"--{name}", f"{getattr(options, name):.15g}"]
+    if options.resolution is not None:
+        words += ["--resolution", "{}x{}".format(*options.resolution)]
+    for value in options.values:
+        words += ["--set", value]
+    return words

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the commands of the rppm program do alike with their options."""
+
+import argparse
+import json
+from pathlib import Path
+
+from ..pictures import PictureError, make_folder, renamed_when_whole
+from ..scene import Scene
+from ..scene.errors import SettingsError
+from .data_paths import split_assignment
+from .frame_numbers import has_place, path_of_frame
+from .recorder import apply_settings
+
+
+def is_blend(path: Path) -> bool:
+    """Whether to hand the file to Blender; raises SettingsError when it is neither kind."""
+    suffix = path.suffix.lower()
+    if suffix not in (".blend", ".npz"):
+        raise SettingsError(f"{path} is neither a .blend file nor a saved scene (.npz)")
+    return suffix == ".blend"
+
+
+def split_values(values: list[str]) -> tuple[dict[str, object], list[tuple[str, str]]]:
+    """Split --set into render settings by name, and data paths of a .blend file."""
+    settings: dict[str, object] = {}
+    data_values = []
+    for text in values:
+        path, value = split_assignment(text)
+        if path.startswith("rppm."):
+            settings[path.removeprefix("rppm.")] = value
+        else:
+            data_values.append((path, value))
+    return settings, data_values
+
+
+def values_of_frames(settings: dict[str, object]) -> list[tuple[str, str]]:
+    """Take what makes the seed of a frame out of the settings, to be set in the .blend file."""
+    return [(f"rppm.{name}", str(settings.pop(name))) for name in ("seed", "animate_seed") if name in settings]
+
+
+def refuse_blend_options(options: argparse.Namespace, data_values: list[tuple[str, str]]) -> None:
+    """Raise SettingsError where options ask of a saved scene what only a .blend file can give."""
+    if options.frame is not None:
+        raise SettingsError("--frame needs a .blend file; a saved scene holds one frame")
+    if data_values:
+        raise SettingsError(f"--set {data_values[0][0]} needs a .blend file; a saved scene takes rppm.NAME only")
+
+
+def outputs_of_still(options: argparse.Namespace) -> list[Path]:
+    """The files of a still, with its frame's number where they have a place for one."""
+    if options.frame is not None:
+        return [path_of_frame(path, options.frame) for path in options.output]
+    for path in options.output:
+        if has_place(path):
+            raise SettingsError(f"{path} has a place for a frame number; say which frame, or name it without #")
+    return options.output
+
+
+def load_blend_or_saved(
+    file: Path, options: argparse.Namespace, settings: dict[str, object], data_values: list[tuple[str, str]]
+) -> Scene:
+    """A .blend's or a saved scene at --frame and --resolution, with settings and data values of --set."""
+    if is_blend(file):
+        from . import blend_file
+
+        request = blend_file.BlendRequest(file, options.frame, options.resolution, data_values)
+        scene = blend_file.export_blend_file(request, show_output=options.debug)
+    else:
+        from ..scene import load_scene
+        from .saved_scene import camera_at_resolution
+
+        refuse_blend_options(options, data_values)
+        scene = load_scene(file)
+        if options.resolution is not None:
+            scene.camera = camera_at_resolution(scene.camera, *options.resolution)
+    scene.settings = apply_settings(scene.settings, settings)
+    return scene
+
+
+def write_json(path: Path, report: dict[str, object]) -> None:
+    """Write a whole file, or raise PictureError."""
+    make_folder(path)
+    text = json.dumps(report, indent=2) + "\n"
+    try:
+        if path.exists() and not path.is_file():  # such as /dev/stdout
+            path.write_text(text, encoding="utf-8")
+            return
+        with renamed_when_whole(path) as temporary:
+            Path(temporary).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise PictureError(f"{path} cannot be written ({error}); choose another place with --json") from error
+    except PictureError as error:
+        raise PictureError(str(error).replace("with -o", "with --json")) from error

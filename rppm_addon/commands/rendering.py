@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""rppm render: a still, or the frames of an animation."""
+
+import argparse
+import dataclasses
+import sys
+from typing import TYPE_CHECKING
+
+from ..pictures import make_folder
+from ..scene import RenderSettings
+from ..scene.errors import SettingsError
+from .checkpoints import CheckpointRequest, StillKeeper
+from .frame_numbers import check_places
+from .interruption import Interruption
+from .options import is_blend, outputs_of_still, refuse_blend_options, split_values, values_of_frames, write_json
+from .progress_bar import ProgressBar
+from .recorder import RenderRecorder, RenderRequest, apply_settings
+
+if TYPE_CHECKING:
+    from .blend_file import BlendRequest
+
+
+def render(options: argparse.Namespace, bar: ProgressBar) -> int:
+    """Do it; returns the exit status."""
+    settings, data_values = split_values(options.values)
+    if options.iterations is not None:
+        settings["iterations"] = options.iterations
+    if options.photons is not None:
+        settings["photons"] = options.photons
+    from_blend = is_blend(options.file)
+    blend_request = None
+    if from_blend:
+        from . import blend_file
+
+        data_values += values_of_frames(settings)
+        blend_request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
+    apply_settings(RenderSettings(), settings)  # a wrong value is better told now than after Blender's start
+    if options.frames is not None:
+        return _render_frames(options, bar, blend_request, settings)
+    options.output = outputs_of_still(options)
+    keeper = _still_keeper(options, settings, {"blend": blend_request.as_plain()} if blend_request else {})
+    for path in [*options.output, *([options.checkpoint] if options.checkpoint else [])]:
+        make_folder(path)
+    seconds = options.seconds
+    if seconds is None and options.iterations is None and options.snapshots:
+        seconds = options.snapshots[-1]
+    outputs = [] if options.iterations_range else options.output
+    request = RenderRequest(outputs, settings, seconds, options.snapshots)
+    with Interruption() as interruption:
+        recorder = RenderRecorder(request, bar, lambda: interruption.asked, not from_blend, keeper)
+        report: dict[str, object] = {"scene": str(options.file)}
+        if blend_request:
+            blender_report = blend_file.render_blend_file(blend_request, recorder, show_output=options.debug)
+            report["blender"] = dataclasses.asdict(blender_report)
+        else:
+            from .saved_scene import render_saved_scene
+
+            refuse_blend_options(options, data_values)
+            render_saved_scene(options.file, recorder, options.resolution)
+    bar.clear()
+    if options.json is not None:
+        write_json(options.json, report | recorder.report())
+    missed = request.snapshots[len(recorder.snapshots_written) :]
+    if missed:
+        marks = ", ".join(f"{mark:g}" for mark in missed)
+        sys.stderr.write(f"rppm: the render ended before the snapshots at {marks} s\n")
+    print(recorder.summary())
+    if interruption.asked:
+        resume = "; go on with --resume" if options.checkpoint else ""
+        done = "the files hold what was done until then" if recorder.files else "nothing was done yet"
+        sys.stderr.write(f"rppm: interrupted; {done}{resume}\n")
+        return interruption.status
+    return 0
+
+
+def _render_frames(
+    options: argparse.Namespace, bar: ProgressBar, blend_request: "BlendRequest | None", settings: dict[str, object]
+) -> int:
+    from .animation import Animation, AnimationRequest
+
+    if blend_request is None:
+        raise SettingsError("--frames needs a .blend file; a saved scene holds one frame")
+    if options.frame is not None:
+        raise SettingsError("--frame and --frames do not go together; leave one out")
+    if options.checkpoint is not None or options.iterations_range is not None:
+        raise SettingsError("--checkpoint and --iterations-range are for stills; name one frame with --frame")
+    check_places(options.output, options.frames)
+    for path in options.output:
+        make_folder(path)
+    seconds = options.seconds
+    if seconds is None and options.iterations is None and options.snapshots:
+        seconds = options.snapshots[-1]
+    render = RenderRequest(options.output, settings, seconds, options.snapshots)
+    request = AnimationRequest(blend_request, render, options.frames, options.resume)
+
+    def write_report(report: dict[str, object]) -> None:
+        if options.json is not None:
+            write_json(options.json, report)
+
+    with Interruption() as interruption:
+        animation = Animation(request, bar, interruption, write_report)
+        animation.run(show_output=options.debug)
+    bar.clear()
+    if interruption.asked:
+        sys.stderr.write(
+            f"rppm: interrupted; {len(animation.rendered)} frames were rendered, the files are whole; go on with "
+            "--resume\n"
+        )
+        return interruption.status
+    if animation.failed:
+        frames = ", ".join(map(str, animation.failed))
+        sys.stderr.write(f"rppm: frames that could not be rendered: {frames}\n")
+        return 1
+    return 0
+
+
+def _still_keeper(
+    options: argparse.Namespace, settings: dict[str, object], source: dict[str, object]
+) -> StillKeeper | None:
+    """Who keeps the still, if it is to be kept or rendered in part; the range's length and no time limit enter the
+    settings."""
+    if options.iterations_range is None and options.checkpoint is None and not options.resume:
+        return None
+    first, part = 0, None
+    if options.iterations_range is not None:
+        first, end = options.iterations_range
+        if len(options.output) > 1 or options.output[0].suffix != ".exr" or options.snapshots:
+            raise SettingsError(
+                "--iterations-range writes one part for rppm merge; give one -o PART.exr and no --snapshots"
+            )
+        part = options.output[0]
+        settings |= {"iterations": end - first, "time_limit": 0.0}
+    elif options.checkpoint in options.output:
+        raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
+    request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)
+    keeper = StillKeeper(request)
+    if keeper.starts_over:
+        sys.stderr.write(f"rppm: {options.checkpoint} is not there yet: the render starts from the beginning\n")
+    return keeper
