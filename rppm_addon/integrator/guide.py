@@ -83,16 +83,6 @@ def starts(probability: np.ndarray) -> np.ndarray:
     return np.minimum(np.floor(cumulated * 2.0**32), 2.0**32 - 1).astype(np.uint32)
 
 
-_STEPS = 4
-"""Steps of the lights' weights within a factor of two."""
-
-
-def in_steps(weights: np.ndarray) -> np.ndarray:
-    """Positive weights rounded to steps of a fifth: frames that learn almost the same share photons alike, so that
-    their paths keep their random numbers."""
-    return 2.0 ** (np.round(_STEPS * np.log2(weights)) / _STEPS)
-
-
 class Guide:
     """Cells of all lights: what is known of them, and what an iteration adds."""
 
@@ -146,8 +136,8 @@ class Guide:
     def learn(self) -> tuple[np.ndarray, np.ndarray]:
         """Choose cells by the tallies from now on.
 
-        Returns each light's mean root of the usefulness (in_steps), (n,), and the shares of its photons that should
-        have been of use before and will be from now on, (n, 2).
+        Returns each light's mean root of the usefulness, (n,), and the shares of its photons that should have been
+        of use before and will be from now on, (n, 2).
         """
         before = self._probabilities
         weights, estimates = self._choose_by_tallies(self.read_tallies())
@@ -166,7 +156,7 @@ class Guide:
         return None if learnt is None else self._choose_by_tallies(learnt)[0]
 
     def _choose_by_tallies(self, tallies: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Each light's mean root of the usefulness (in_steps), and the usefulness of its cells."""
+        """Each light's mean root of the usefulness, and the usefulness of its cells."""
         self.learnt = tallies
         estimates, first = [], 0
         for cells in self._cells:
@@ -175,7 +165,7 @@ class Guide:
             estimates.append(usefulness(part[..., 0], part[..., 1]).ravel())
             first += count
         self._choose_by([probabilities(estimate) for estimate in estimates])
-        return in_steps(np.array([np.sqrt(estimate).mean() for estimate in estimates])), estimates
+        return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates
 
     def release(self) -> None:
         for buffer in (self._starts, self._tallies, self._photon_cells):

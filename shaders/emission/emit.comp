@@ -53,8 +53,11 @@ void main() {
                                            u_parts.x, u_parts.y, aimed, aimed_share);
     photon_cells[index] = NO_CELL;
     if (!aimed) {
+        // Evenly spaced from a random start: each cell gets its share but for one photon.
+        uint step = 0xffffffffu / max(light.photon_count - aimed_photons, 1u);
+        uint cell = choose_guide_cell(light, seed.x + within * step + pcg4d(seed + within).y % step);
         vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
-        uint cell = follow_guide(light, place, choice.direction);
+        place_in_cell(light, cell, place, choice.direction);
         if (light.kind == LIGHT_MESH) choice.part = place.x;
         else choice.place = place;
         photon_cells[index] = light.first_cell + cell;
