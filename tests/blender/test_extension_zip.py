@@ -91,12 +91,16 @@ def test_wheels_are_the_versions_that_are_tested():
         assert pins.get(name, version) == version
 
 
+COMMAND_LINE = ("rppm_addon/cli.py", "rppm_addon/__main__.py", "rppm_addon/commands/")
+
+
 def test_zip_holds_what_runs_and_nothing_else(archive):
     listing = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT, check=True, capture_output=True, text=True,
     )  # fmt: skip
     wanted = {name for name in listing.stdout.split("\n") if name.startswith(("rppm_addon/", "shaders/"))}
+    wanted -= {name for name in wanted if name.startswith(COMMAND_LINE)}
     wanted |= {"__init__.py", "blender_manifest.toml", "LICENSE"}
     wanted |= {path.removeprefix("./") for path in MANIFEST["wheels"]}
     with zipfile.ZipFile(archive) as file:
