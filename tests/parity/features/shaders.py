@@ -258,7 +258,12 @@ CLEAR, GLOW = shader("BsdfTransparent"), shader("Emission", {"Strength": 0.5})
 lit("Mix Shader", "diffuse and glossy", mixed(DIFFUSE, GLOSSY))
 lit("Mix Shader", "by Fresnel", mixed(DIFFUSE, GLOSSY, lambda net: net.out("Fresnel")))
 lit("Mix Shader", "by noise", mixed(DIFFUSE, GLOSSY, _noise))
-lit("Mix Shader", "cut out by an image", mixed(CLEAR, DIFFUSE, texture("Alpha", interpolation="Closest")))
+lit(
+    "Mix Shader",
+    "cut out by an image",
+    mixed(CLEAR, DIFFUSE, texture("Alpha", interpolation="Closest")),
+    effort=3,
+)
 lit(
     "Mix Shader",
     "cut out by a checker",
