@@ -79,7 +79,7 @@ def _seen(footprints: np.ndarray) -> np.ndarray:
 def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius: float) -> tuple[float, float]:
     """r_min and r_max of the first iteration, metres.
 
-    ``footprints`` (n,) are the Eq. 3 radii of the camera's first hits. Unset limits follow them:
+    ``footprints`` (rows, columns) are the Eq. 3 radii of the camera's first hits. Unset limits follow them:
     r_max, at which all photons are splatted, covers 95 % of the view, and r_min keeps a
     twentieth of the median where a hit lies at the camera's nose.
     """

@@ -44,6 +44,7 @@ from .guide import LEARNING_ITERATIONS, learns_after
 from .importons import Importons
 from .inspection import inspect_deep_cubemap
 from .memory import Memory, reckon_memory
+from .overview import FEWEST_HITS, at_pixels, overview_sizes, overviews
 from .photons import Photons
 from .placement import cubemap_centres, radius_about
 from .primary_rays import PrimaryRays
@@ -448,15 +449,18 @@ class ProgressivePhotonMapper:
         return shrinkage(max(self.iteration, 1), self.scene.settings.alpha)
 
     def _first_footprints(self) -> np.ndarray:
-        """(pixels,) Eq. 3 radii of the camera's first hits, metres; 0 where there is no importon."""
-        footprints = []
-        for first_row, rows in self._bands:
-            view = camera_view(self.scene.camera, first_row, rows, (0.0, 0.0))
-            self._begin_band(view, first_row, 0)
-            self._importons.resolve(self._stages, self._count, 0, 0)
-            self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
-            footprints.append(self._importons.footprints(self._count))
-        return np.concatenate(footprints)
+        """(rows, columns) Eq. 3 radii of the camera's first hits, metres; 0 where there is no importon."""
+        for columns, rows in overview_sizes(self.film.width, self.film.height):
+            footprints = []
+            for view in overviews(self.scene.camera, columns, rows, self._bands[0][1]):
+                self._begin_band(view, 0, 0)
+                self._importons.resolve(self._stages, self._count, 0, 0)
+                self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
+                footprints.append(self._importons.footprints(self._count))
+            look = np.concatenate(footprints).reshape(rows, columns)
+            if np.count_nonzero(look) >= FEWEST_HITS:
+                break
+        return look
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
@@ -483,7 +487,9 @@ class ProgressivePhotonMapper:
         self._emission.tally(self._photons.photons.buffer, self._photons.segments)
         self._diffused_photons_found = None
         if diffused_photons:
-            self._diffused_photons_found = photons_found(np.concatenate(diffused_photons)[self._leaves_importon])
+            self._diffused_photons_found = photons_found(
+                np.concatenate(diffused_photons)[at_pixels(self._leaves_importon, self.film.width, self.film.height)]
+            )
 
     def _learn(self) -> None:
         """From the iterations before: where photons are of use, and how many diffused ones pixels find."""
