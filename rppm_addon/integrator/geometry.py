@@ -78,24 +78,29 @@ def _by_column(reduce: Callable[..., np.ndarray], positions: np.ndarray) -> np.n
     return reduce(np.concatenate(parts), axis=0)
 
 
-def box_corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """(3, 8) corners of a box."""
-    return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1)
+def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Boxes around placed boxes.
 
-
-def fits(corners: np.ndarray) -> np.ndarray:
-    """Whether boxes (..., 3, 8) are finite and not too far away for their triangles to be rendered."""
-    return (np.abs(corners) < 1e15).all(axis=(-2, -1))  # false for NaN as well
+    matrices: (n, 4, 4); boxes: (n, 2, 3), low and high. Returns low and high, each (n, 3), and whether these are finite
+    and not too far away for triangles to be rendered, (n,).
+    """
+    middle, reach = matrices[:, :3, 3], np.zeros((len(matrices), 3))
+    centres, halves = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0])
+    with np.errstate(invalid="ignore", over="ignore"):
+        for axis in range(3):  # written out: thousands of products of small matrices take NumPy long
+            column = matrices[:, :3, axis]
+            middle = middle + column * centres[:, axis, None]
+            reach += np.abs(column) * halves[:, axis, None]
+        low, high = middle - reach, middle + reach
+    return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
 
 
 @dataclass(slots=True)
 class Placement:
-    """An instance, its first world triangle, and its world bounds in metres (maybe not finite)."""
+    """An instance and its first world triangle."""
 
     instance: Instance
     first_triangle: int
-    low: np.ndarray
-    high: np.ndarray
 
 
 class Geometry:
@@ -103,8 +108,8 @@ class Geometry:
 
     ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/geometry/gather.comp),
     ``attributes`` a TriangleAttributes each;
-    ``placements`` lists the instances that have triangles; ``bounds_low`` and
-    ``bounds_high`` (3,) enclose them, metres.
+    ``placements`` lists the instances that have triangles; ``matrices`` (n, 4, 4) are theirs, and ``boxes`` (n, 2, 3)
+    what they lie in, low and high in metres, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
     """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
@@ -127,6 +132,7 @@ class Geometry:
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
         self.triangle_count = 0
         self.placements: list[Placement] = []
+        self.matrices, self.boxes = np.zeros((0, 4, 4)), np.zeros((0, 2, 3))
         self.bounds_low = self.bounds_high = np.zeros(3)
 
     @property
@@ -165,6 +171,7 @@ class Geometry:
         lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which]
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
+        self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
         entries = INSTANCE_ENTRY.zeros(len(instances))
         entries["first_triangle"] = ends - lengths
         slots: list[int] = []
@@ -172,9 +179,12 @@ class Geometry:
             for field, member in _STARTS.items():
                 entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
             entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
+            for row in range(3):
+                entries[f"row{row}"] = self.matrices[:, row]
             slots = _fill(entries, instances, len(scene.materials), default_material)
-        corners = np.array([box_corners(*(box or np.zeros((2, 3)))) for box in bounds]).reshape(-1, 3, 8)
-        self._enclose(instances, entries["first_triangle"].tolist(), corners[which], swept)
+        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
+        self.placements = list(map(Placement, instances, entries["first_triangle"].tolist()))
+        self._enclose(boxes[which], swept)
         self._upload_meshes(meshes)
         self._inputs["Instances"].upload(entries)
         self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
@@ -196,28 +206,16 @@ class Geometry:
                 self._bounds[id(positions)] = known.get(id(positions)) or (positions, finite_bounds(positions))
         return [self._bounds[id(mesh.positions)][1] for mesh in meshes]
 
-    def _enclose(
-        self,
-        instances: list[Instance],
-        first_triangles: list[int],
-        corners: np.ndarray,
-        swept: tuple[np.ndarray, np.ndarray] | None,
-    ) -> None:
-        """List the placements of instances, whose meshes lie in boxes with the corners (n, 3, 8), and enclose them."""
+    def _enclose(self, boxes: np.ndarray, swept: tuple[np.ndarray, np.ndarray] | None) -> None:
+        """Find the boxes of the placements, whose meshes lie in boxes (n, 2, 3), and the bounds."""
         low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
-        self.placements = []
-        if instances:
-            matrices = np.array([instance.matrix for instance in instances], np.float64)
-            # Written out: thousands of products of small matrices take NumPy long.
-            x, y, z = (matrices[:, :3, axis, None] * corners[:, None, axis] for axis in range(3))
-            world = x + y + z + matrices[:, :3, 3:]
-            lows, highs, good = world.min(axis=2), world.max(axis=2), fits(world)
-            self.placements = list(map(Placement, instances, first_triangles, lows, highs))
-            low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
-            high = np.maximum(high, highs[good].max(axis=0, initial=-np.inf))
-            for index in np.flatnonzero(~good):
-                name = instances[index].object_name
-                log.warning("object %s has a matrix that is not finite; its triangles are left out", name)
+        lows, highs, good = placed_boxes(self.matrices, boxes)
+        self.boxes = np.stack([lows, highs], axis=1)
+        low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
+        high = np.maximum(high, highs[good].max(axis=0, initial=-np.inf))
+        for index in np.flatnonzero(~good):
+            name = self.placements[index].instance.object_name
+            log.warning("object %s has a matrix that is not finite; its triangles are left out", name)
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
@@ -243,10 +241,7 @@ class Geometry:
 
 
 def _fill(entries: np.ndarray, instances: list[Instance], materials: int, default_material: int) -> list[int]:
-    """Matrices, shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
-    matrices = np.array([instance.matrix for instance in instances], np.float64)
-    for row in range(3):
-        entries[f"row{row}"] = matrices[:, row]
+    """Shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
     visibility = np.array([int(instance.visibility) for instance in instances])
     entries["shadowless"] = visibility & int(RayVisibility.SHADOW) == 0
     slots: list[int] = []

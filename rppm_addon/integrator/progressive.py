@@ -15,6 +15,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.errors import CheckpointError
+from ..scene.garbage import collector_paused
 from ..scene.motion import MovingScene
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight as DirectLightMode
@@ -104,6 +105,7 @@ class ProgressivePhotonMapper:
         self._built = None
         self.update(scene)
 
+    @collector_paused()
     def update(self, scene: Scene, stray: float = 0.0) -> None:
         """Take another scene like build, but build only what rests on members that are not the very objects of the
         scene before; so nobody may change those.

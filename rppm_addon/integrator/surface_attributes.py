@@ -42,6 +42,8 @@ SHADING_INSTANCE = Record(
 )
 """An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell."""
 
+_PARTICLE = ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity")
+
 
 class SurfaceAttributes:
     """The buffers ShadingInstances and AttributeValues: the latter starts with the place and the components of each of
@@ -71,7 +73,7 @@ class SurfaceAttributes:
         instances = [placement.instance for placement in geometry.placements]
         records = SHADING_INSTANCE.zeros(max(1, len(instances)))
         if instances:
-            _fill(records, instances, scene.meshes)
+            _fill(records, instances, geometry.matrices, scene.meshes)
             records["first_triangle"] = [placement.first_triangle for placement in geometry.placements]
         self._instances.upload(records)
         self._upload_values(scene.meshes, instances, names)
@@ -112,33 +114,37 @@ class SurfaceAttributes:
         self._values.release()
 
 
-def _fill(records: np.ndarray, instances: list[Instance], meshes: list[Mesh]) -> None:
-    """All but the first triangles."""
+def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, meshes: list[Mesh]) -> None:
+    """All but the first triangles; the matrices (n, 4, 4) are those of the instances."""
     which = np.array([instance.mesh for instance in instances])
     used = np.unique(which)
     place = np.searchsorted(used, which)
     size = np.array([meshes[index].texture_size for index in used], np.float64)
     records["texture_location"] = np.array([meshes[index].texture_location for index in used])[place]
     records["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)[place]
-    matrices = np.array([instance.matrix for instance in instances], np.float64)
     inverses = _inverses(matrices)
     for row in range(3):
         records[f"to_object{row}"] = inverses[:, row]
     records["location"] = matrices[:, :3, 3]
     for name in ("color", "random", "object_index", "holdout", "shadow_catcher"):
-        records[name] = list(map(operator.attrgetter(name), instances))
+        records[name] = _column(instances, name)
     records["visibility"] = [int(instance.visibility) for instance in instances]
-    multiplied = [index for index, instance in enumerate(instances) if instance.particle is not None]
-    if multiplied:
-        for name in ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity"):
-            records[f"particle_{name}"][multiplied] = [getattr(instances[i].particle, name) for i in multiplied]
+    multiplied = np.flatnonzero([instance.particle is not None for instance in instances])
+    particles = [instances[index].particle for index in multiplied]
+    for name in _PARTICLE if particles else ():
+        records[f"particle_{name}"][multiplied] = _column(particles, name)
+
+
+def _column(members: list, name: str) -> np.ndarray:
+    # First an array: records take lists of tuples tuple by tuple.
+    return np.array(list(map(operator.attrgetter(name), members)))
 
 
 def object_record(matrix: np.ndarray) -> np.ndarray:
     """() SHADING_INSTANCE of an object without a mesh, whose generated coordinates are those of the object."""
     record = SHADING_INSTANCE.zeros(1)[0]
     (inverse,) = _inverses(np.asarray(matrix, np.float64)[None])
-    record["to_object0"], record["to_object1"], record["to_object2"] = inverse[:3]
+    record["to_object0"], record["to_object1"], record["to_object2"] = inverse
     record["location"] = matrix[:3, 3]
     record["texture_location"], record["texture_scale"] = 0.5, 1.0
     record["color"] = 1.0
@@ -146,13 +152,13 @@ def object_record(matrix: np.ndarray) -> np.ndarray:
 
 
 def _inverses(matrices: np.ndarray) -> np.ndarray:
-    """(n, 4, 4), all 0 where there is none, as for an instance without extent."""
-    try:
-        return np.linalg.inv(matrices)
-    except np.linalg.LinAlgError:
-        if len(matrices) == 1:
-            return np.zeros_like(matrices)
-        return np.concatenate([_inverses(matrix[None]) for matrix in matrices])
+    """(n, 3, 4) upper rows, of affine (n, 4, 4); all 0 where there is no inverse, as for an instance without extent."""
+    # Written out: thousands of small matrices take NumPy long.
+    x, y, z, origin = (matrices[:, :3, column] for column in range(4))
+    linear = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
+    determinant = (x * linear[:, 0]).sum(axis=1)
+    linear *= np.divide(1.0, determinant, out=np.zeros_like(determinant), where=determinant != 0.0)[:, None, None]
+    return np.concatenate([linear, -np.einsum("nij,nj->ni", linear, origin)[:, :, None]], axis=2)
 
 
 def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:

@@ -66,10 +66,9 @@ def caustic_targets(scene: Scene, geometry: Geometry) -> np.ndarray:
 
     casters = {index for index, material in enumerate(scene.materials) if sharp(material)}
     spheres = []
-    for placement in geometry.placements if casters else ():
+    for placement, (low, high) in zip(geometry.placements, geometry.boxes, strict=True) if casters else ():
         if casters.isdisjoint(placement.instance.materials):
             continue
-        low, high = placement.low, placement.high
         radius = 0.5 * float(np.linalg.norm(high - low))
         if np.isfinite(radius) and 0 < radius < _LARGEST * geometry.radius:
             spheres.append([*(0.5 * (low + high)), radius])

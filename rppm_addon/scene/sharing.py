@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from .documents import field_names
+from .meshes import Instance
 from .scene import Scene
 
 LISTS = ("meshes", "instances", "materials", "lights", "images")
@@ -80,11 +81,17 @@ def _shared_list(before: list, after: list, by_identity: bool) -> list:
         return before
     shared = after
     if not by_identity:
-        shared = [old if equal(old, new) else new for old, new in zip(before, after, strict=False)]
+        same = _equal_instance if before and isinstance(before[0], Instance) else equal
+        shared = [old if same(old, new) else new for old, new in zip(before, after, strict=False)]
         shared += after[len(before) :]
     if same_members(before, shared):
         return before
     return after if same_members(after, shared) else shared
+
+
+def _equal_instance(a: Instance, b: Instance) -> bool:
+    """As equal: of thousands, most differ by their matrices if at all."""
+    return a is b or a.matrix.tobytes() == b.matrix.tobytes() and equal(a, b)
 
 
 def same_members(a: Sequence, b: Sequence) -> bool:

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..scene.columns import decode_columns, encode_columns
 from ..scene.documents import decode, encode
+from ..scene.garbage import collector_paused
 from ..scene.scene import Scene
 from .arrays import LARGE
 
@@ -77,6 +78,7 @@ class SceneSender:
         self._handles = 0
         """The last handle given."""
 
+    @collector_paused()
     def send(self, session: int, scene: Scene) -> tuple[list[Part], Part]:
         """What to tell of members that are new, and then of a session's next scene.
 
@@ -206,6 +208,7 @@ class SceneReceiver:
         self._members: dict[int, object] = {}
         """Large arrays are among them."""
 
+    @collector_paused()
     def learn(self, document: dict, arrays: Sequence[np.ndarray]) -> None:
         """Take a part that tells of new members. Raises KeyError, TypeError or ValueError for what is none."""
         kinds = _SINGLE | _LISTS | {_ARRAYS: np.ndarray}

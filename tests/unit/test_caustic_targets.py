@@ -14,8 +14,8 @@ def targets(thin_wall: bool, **inputs: float) -> np.ndarray:
     """Of one object with a Principled surface in a much larger scene."""
     graph = NodeGraph()
     graph.surface = graph.add("bsdf_principled", "bsdf", options={"thin_wall": thin_wall}, roughness=0.0, **inputs)
-    placement = SimpleNamespace(instance=SimpleNamespace(materials=[0]), low=np.zeros(3), high=np.ones(3))
-    geometry = SimpleNamespace(placements=[placement], radius=10.0)
+    placement = SimpleNamespace(instance=SimpleNamespace(materials=[0]))
+    geometry = SimpleNamespace(placements=[placement], boxes=np.array([[np.zeros(3), np.ones(3)]]), radius=10.0)
     camera = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 64, 64)
     return caustic_targets(Scene(camera, materials=[Material("Surface", graph)]), geometry)
 

@@ -7,6 +7,7 @@ import bpy
 
 from ...scene import Scene
 from ...scene.errors import SceneError
+from ...scene.garbage import collector_paused
 from .camera import export_camera
 from .context import ExportContext
 from .frames import FrameExporter
@@ -31,6 +32,7 @@ __all__ = [
 ]
 
 
+@collector_paused()
 def export_scene(
     depsgraph: bpy.types.Depsgraph,
     engine: bpy.types.RenderEngine | None = None,

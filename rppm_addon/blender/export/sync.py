@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from ...scene import Camera, Instance, Scene, World
+from ...scene.garbage import collector_paused
 from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
@@ -101,6 +102,7 @@ class SceneSync:
         self._most_images = 0
         self._frame: float | None = None
 
+    @collector_paused()
     def update(
         self, depsgraph: bpy.types.Depsgraph, camera: Camera, shown: Callable[[bpy.types.Object], bool] | None = None
     ) -> Scene:
