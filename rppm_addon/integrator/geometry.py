@@ -83,6 +83,13 @@ def box_corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1)
 
 
+def world_corners(matrices: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(n, 3, 8) corners of boxes, (n or 1, 3, 8), as matrices (n, 4, 4) place them."""
+    # Written out: thousands of products of small matrices take NumPy long.
+    x, y, z = (matrices[:, :3, axis, None] * corners[:, None, axis] for axis in range(3))
+    return x + y + z + matrices[:, :3, 3:]
+
+
 def fits(corners: np.ndarray) -> np.ndarray:
     """Whether boxes (..., 3, 8) are finite and not too far away for their triangles to be rendered."""
     return (np.abs(corners) < 1e15).all(axis=(-2, -1))  # false for NaN as well
@@ -208,9 +215,7 @@ class Geometry:
         self.placements = []
         if instances:
             matrices = np.array([instance.matrix for instance in instances], np.float64)
-            # Written out: thousands of products of small matrices take NumPy long.
-            x, y, z = (matrices[:, :3, axis, None] * corners[:, None, axis] for axis in range(3))
-            world = x + y + z + matrices[:, :3, 3:]
+            world = world_corners(matrices, corners)
             lows, highs, good = world.min(axis=2), world.max(axis=2), fits(world)
             self.placements = list(map(Placement, instances, first_triangles, lows, highs))
             low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..scene.motion import MovingScene
 from ..scene.scene import Scene
-from .geometry import box_corners, finite_bounds, fits
+from .geometry import box_corners, finite_bounds, fits, world_corners
 
 _MASK = (1 << 32) - 1
 _SCRAMBLE = (0x6C50B47C, 0xB82F1E52, 0xC7AFE638, 0x8D22F6E6)
@@ -53,7 +53,7 @@ def swept_bounds(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
             if boxes[mesh] is None:
                 continue
             matrices = np.stack([instances[index].matrix for index in indices])
-            world = matrices[:, :3, :3] @ box_corners(*boxes[mesh]) + matrices[:, :3, 3:]
+            world = world_corners(matrices, box_corners(*boxes[mesh])[None])
             world = world[fits(world)]
             low = np.minimum(low, world.min(axis=(0, 2), initial=np.inf))
             high = np.maximum(high, world.max(axis=(0, 2), initial=-np.inf))
