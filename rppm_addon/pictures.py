@@ -34,6 +34,14 @@ class Placement:
     y: int = 0
     """Row of the picture's bottom edge in the frame, row 0 at the bottom."""
 
+    def windows(self, width: int, height: int) -> dict[str, tuple[tuple[int, int], tuple[int, int]]]:
+        """Where a picture of so many pixels lies, as attributes of an EXR."""
+        top = self.height - self.y - height
+        return {
+            "dataWindow": ((self.x, top), (self.x + width - 1, top + height - 1)),
+            "displayWindow": ((0, 0), (self.width - 1, self.height - 1)),
+        }
+
 
 _AXES = {1: "Z", 3: "XYZ"}
 
@@ -66,12 +74,10 @@ def write_exr(
     for name, array in (layers or {}).items():
         planes = _planes(array)
         channels.update({f"{name}.{axis}": plane for axis, plane in zip(_AXES[len(planes)], planes)})
-    top = place.height - place.y - height
     header = {
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
-        "dataWindow": ((place.x, top), (place.x + width - 1, top + height - 1)),
-        "displayWindow": ((0, 0), (place.width - 1, place.height - 1)),
+        **place.windows(width, height),
         "colorInteropID": "lin_rec709_scene",
         **{f"rppm.{name}": str(value) for name, value in (metadata or {}).items()},
     }

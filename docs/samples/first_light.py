@@ -7,15 +7,12 @@ Lengths are metres. Surfaces are closed, so that every dielectric has an inside.
 """
 
 import math
-import sys
-from pathlib import Path
 
 import bpy
+from sample_scene import color_world, material, save, set_up_pictures
 
 import bmesh  # isort: skip
 from mathutils import Matrix, Vector  # isort: skip
-
-import rppm_addon
 
 HALF_WIDTH, FRONT, BACK, HEIGHT = 1.9, -2.7, 1.45, 2.3
 TANK = Vector((0.62, 0.42, 0.0))
@@ -23,22 +20,6 @@ TANK_HALF = Vector((0.44, 0.34, 0.0))
 TANK_BASE, TANK_HEIGHT, WALL = 0.06, 0.42, 0.012
 WATER_LEVEL, WATER_GAP = 0.32, 0.001
 WAVE_CELLS = 96
-
-
-def material(name, node_type, **inputs):
-    """A material of one shader node with constant values."""
-    made = bpy.data.materials.new(name)
-    if bpy.app.version < (5, 0):
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    shader = tree.nodes.new(node_type)
-    for key, value in inputs.items():
-        shader.inputs[key.replace("_", " ")].default_value = value
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    output.location.x = 300
-    tree.links.new(shader.outputs[0], output.inputs["Surface"])
-    return made
 
 
 def add_mesh(name, mesh, surface, smooth=False, location=(0, 0, 0), rotation=(0, 0, 0)):
@@ -197,10 +178,10 @@ def tank_walls():
 
 def build_room():
     x, f, b, z = HALF_WIDTH, FRONT, BACK, HEIGHT
-    plaster = material("Plaster", "ShaderNodeBsdfDiffuse", Color=(0.60, 0.57, 0.52, 1))
-    floor = material("Floor", "ShaderNodeBsdfDiffuse", Color=(0.42, 0.36, 0.30, 1))
-    terracotta = material("Terracotta", "ShaderNodeBsdfDiffuse", Color=(0.62, 0.20, 0.11, 1))
-    teal = material("Teal", "ShaderNodeBsdfDiffuse", Color=(0.07, 0.33, 0.38, 1))
+    plaster, _ = material("Plaster", "ShaderNodeBsdfDiffuse", Color=(0.60, 0.57, 0.52, 1))
+    floor, _ = material("Floor", "ShaderNodeBsdfDiffuse", Color=(0.42, 0.36, 0.30, 1))
+    terracotta, _ = material("Terracotta", "ShaderNodeBsdfDiffuse", Color=(0.62, 0.20, 0.11, 1))
+    teal, _ = material("Teal", "ShaderNodeBsdfDiffuse", Color=(0.07, 0.33, 0.38, 1))
     add_mesh("Floor", quad((-x, f, 0), (x, f, 0), (x, b, 0), (-x, b, 0)), floor)
     add_mesh("Ceiling", quad((-x, f, z), (-x, b, z), (x, b, z), (x, f, z)), plaster)
     add_mesh("Back Wall", quad((-x, b, 0), (x, b, 0), (x, b, z), (-x, b, z)), plaster)
@@ -210,13 +191,13 @@ def build_room():
 
 
 def build_objects():
-    glass = material("Glass", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0.0, IOR=1.5)
-    crystal_glass = material("Crystal", "ShaderNodeBsdfGlass", Color=(0.93, 0.97, 1, 1), Roughness=0.0, IOR=1.7)
-    water_surface = material("Water", "ShaderNodeBsdfGlass", Color=(0.96, 0.99, 1, 1), Roughness=0.0, IOR=1.333)
-    gold = material("Gold", "ShaderNodeBsdfAnisotropic", Color=(0.95, 0.70, 0.32, 1), Roughness=0.0)
-    silver = material("Mirror", "ShaderNodeBsdfAnisotropic", Color=(0.93, 0.94, 0.95, 1), Roughness=0.0)
-    wood = material("Frame", "ShaderNodeBsdfPrincipled", Base_Color=(0.055, 0.03, 0.018, 1), Roughness=0.5)
-    tile = material("Tank Base", "ShaderNodeBsdfDiffuse", Color=(0.72, 0.70, 0.62, 1))
+    glass, _ = material("Glass", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0.0, IOR=1.5)
+    crystal_glass, _ = material("Crystal", "ShaderNodeBsdfGlass", Color=(0.93, 0.97, 1, 1), Roughness=0.0, IOR=1.7)
+    water_surface, _ = material("Water", "ShaderNodeBsdfGlass", Color=(0.96, 0.99, 1, 1), Roughness=0.0, IOR=1.333)
+    gold, _ = material("Gold", "ShaderNodeBsdfAnisotropic", Color=(0.95, 0.70, 0.32, 1), Roughness=0.0)
+    silver, _ = material("Mirror", "ShaderNodeBsdfAnisotropic", Color=(0.93, 0.94, 0.95, 1), Roughness=0.0)
+    wood, _ = material("Frame", "ShaderNodeBsdfPrincipled", Base_Color=(0.055, 0.03, 0.018, 1), Roughness=0.5)
+    tile, _ = material("Tank Base", "ShaderNodeBsdfDiffuse", Color=(0.72, 0.70, 0.62, 1))
 
     sphere = bmesh.new()
     bmesh.ops.create_icosphere(sphere, subdivisions=5, radius=0.30)
@@ -263,38 +244,21 @@ def build_light_and_camera(scene):
 
 
 def set_up_render(scene):
-    render = scene.render
-    render.resolution_x, render.resolution_y, render.resolution_percentage = 480, 360, 100
-    scene.view_settings.view_transform = "AgX"
+    set_up_pictures(scene)
     scene.view_settings.look = "AgX - Medium High Contrast"
-    world = bpy.data.worlds.new("World")
-    scene.world = world
-    if bpy.app.version < (5, 0):
-        world.use_nodes = True
-    tree = world.node_tree
-    tree.nodes.clear()
-    background, output = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeOutputWorld")
-    background.inputs["Color"].default_value = (0, 0, 0, 1)
-    tree.links.new(background.outputs[0], output.inputs["Surface"])
-    render.engine = "RPPM"
+    color_world(scene, (0, 0, 0), 1.0)
     scene.rppm.iterations = 72
     scene.rppm.time_limit = 150.0  # two slow cores still get a picture within three minutes
     scene.rppm.photons = 65536
     scene.rppm.radius_scale = 16.0
 
 
-def main():
-    rppm_addon.register()
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
+def build(scene):
     build_room()
     build_objects()
     build_light_and_camera(scene)
     set_up_render(scene)
-    bpy.context.preferences.filepaths.save_version = 0  # no .blend1 beside it
-    bpy.ops.wm.save_as_mainfile(filepath=str(Path(sys.argv[-1]).resolve()), compress=True)
-    rppm_addon.unregister()
 
 
 if __name__ == "__main__":
-    main()
+    save(build)

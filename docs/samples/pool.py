@@ -7,14 +7,11 @@ small as the real one, so a path tracer does not find it from the bottom. Length
 """
 
 import math
-import sys
-from pathlib import Path
 
 import bpy
+from sample_scene import add_faces, color_world, material, save, set_up_frames
 
 from mathutils import Vector  # isort: skip
-
-import rppm_addon
 
 HALF_LENGTH, HALF_WIDTH, DEPTH, DECK = 2.0, 1.4, 1.1, 1.6
 LEVEL = -0.12
@@ -31,21 +28,6 @@ WAVES = (
 """Length, direction in degrees, phase in turns, height above the level."""
 
 
-def material(name, shader, **inputs):
-    """A material of one shader node with constant values; returns it and the node."""
-    made = bpy.data.materials.new(name)
-    if bpy.app.version < (5, 0):
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    node = tree.nodes.new(shader)
-    for key, value in inputs.items():
-        node.inputs[key.replace("_", " ")].default_value = value
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(node.outputs[0], output.inputs["Surface"])
-    return made, node
-
-
 def tiles(name, first, second, size):
     """Square tiles of two colours, by the object's coordinates."""
     made, shader = material(name, "ShaderNodeBsdfDiffuse")
@@ -58,15 +40,6 @@ def tiles(name, first, second, size):
     tree.links.new(place.outputs["Object"], shift.inputs[0])
     tree.links.new(shift.outputs[0], checker.inputs["Vector"])
     tree.links.new(checker.outputs["Color"], shader.inputs["Color"])
-    return made
-
-
-def add_faces(name, points, faces, surface):
-    data = bpy.data.meshes.new(name)
-    data.from_pydata(points, [], faces)
-    data.materials.append(surface)
-    made = bpy.data.objects.new(name, data)
-    bpy.context.collection.objects.link(made)
     return made
 
 
@@ -173,35 +146,20 @@ def build_light_and_camera(scene):
 
 
 def set_up_render(scene):
-    render = scene.render
-    render.resolution_x, render.resolution_y, render.resolution_percentage = 480, 360, 100
-    render.fps, scene.frame_start, scene.frame_end = 24, 1, 48
-    scene.view_settings.view_transform = "AgX"
-    world = bpy.data.worlds.new("World")
-    scene.world = world
-    if bpy.app.version < (5, 0):
-        world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.30, 0.48, 0.75, 1)
-    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.6
-    render.engine = "RPPM"
+    set_up_frames(scene, 48)
+    color_world(scene, (0.30, 0.48, 0.75), 0.6)
     settings = scene.rppm
     settings.iterations, settings.photons, settings.radius_scale = 32, 65536, 12.0
     settings.camera_path_length = settings.photon_path_length = 5
 
 
-def main():
-    rppm_addon.register()
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
+def build(scene):
     build_pool()
     build_ball()
     build_water()
     build_light_and_camera(scene)
     set_up_render(scene)
-    bpy.context.preferences.filepaths.save_version = 0  # no .blend1 beside it
-    bpy.ops.wm.save_as_mainfile(filepath=str(Path(sys.argv[-1]).resolve()), compress=True)
-    rppm_addon.unregister()
 
 
 if __name__ == "__main__":
-    main()
+    save(build)

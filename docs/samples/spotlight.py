@@ -7,14 +7,11 @@ round on the floor, and the camera passes by. Lengths are metres.
 """
 
 import math
-import sys
-from pathlib import Path
 
 import bpy
+from sample_scene import add_faces, color_world, material, save, set_up_frames
 
 from mathutils import Vector  # isort: skip
-
-import rppm_addon
 
 BALLS = (
     # centre, radius, half-axes
@@ -30,30 +27,6 @@ BALLS = (
 EARS = ((0.12, 0.22), (-0.12, -0.14))
 """Where an ear begins across the head, and how far it leans out."""
 FRAMES = 48
-
-
-def material(name, shader, **inputs):
-    """A material of one shader node with constant values."""
-    made = bpy.data.materials.new(name)
-    if bpy.app.version < (5, 0):
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    node = tree.nodes.new(shader)
-    for key, value in inputs.items():
-        node.inputs[key.replace("_", " ")].default_value = value
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(node.outputs[0], output.inputs["Surface"])
-    return made
-
-
-def add_faces(name, points, faces, surface):
-    data = bpy.data.meshes.new(name)
-    data.from_pydata(points, [], faces)
-    data.materials.append(surface)
-    made = bpy.data.objects.new(name, data)
-    bpy.context.collection.objects.link(made)
-    return made
 
 
 def hare_mesh():
@@ -87,7 +60,8 @@ def build_hare():
     mesh.name = "Hare"
     mesh.shade_smooth()
     mesh.materials.clear()
-    mesh.materials.append(material("Glass", "ShaderNodeBsdfGlass", Color=(0.96, 0.99, 0.97, 1), Roughness=0.0, IOR=1.5))
+    glass, _ = material("Glass", "ShaderNodeBsdfGlass", Color=(0.96, 0.99, 0.97, 1), Roughness=0.0, IOR=1.5)
+    mesh.materials.append(glass)
     hare = bpy.data.objects.new("Hare", mesh)
     bpy.context.collection.objects.link(hare)
     hare.location.z = 0.002 - min(vertex.co.z for vertex in mesh.vertices)
@@ -99,8 +73,8 @@ def build_hare():
 
 
 def build_room():
-    floor = material("Floor", "ShaderNodeBsdfDiffuse", Color=(0.72, 0.70, 0.66, 1))
-    wall = material("Wall", "ShaderNodeBsdfDiffuse", Color=(0.33, 0.42, 0.50, 1))
+    floor, _ = material("Floor", "ShaderNodeBsdfDiffuse", Color=(0.72, 0.70, 0.66, 1))
+    wall, _ = material("Wall", "ShaderNodeBsdfDiffuse", Color=(0.33, 0.42, 0.50, 1))
     add_faces("Floor", [(-3, -3, 0), (3, -3, 0), (3, 2, 0), (-3, 2, 0)], [(0, 1, 2, 3)], floor)
     add_faces("Wall", [(-3, 2, 0), (3, 2, 0), (3, 2, 3), (-3, 2, 3)], [(0, 1, 2, 3)], wall)
     add_faces("Side", [(-3, -3, 0), (-3, 2, 0), (-3, 2, 3), (-3, -3, 3)], [(0, 1, 2, 3)], wall)
@@ -136,33 +110,18 @@ def build_light_and_camera(scene):
 
 
 def set_up_render(scene):
-    render = scene.render
-    render.resolution_x, render.resolution_y, render.resolution_percentage = 480, 360, 100
-    render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
-    scene.view_settings.view_transform = "AgX"
-    world = bpy.data.worlds.new("World")
-    scene.world = world
-    if bpy.app.version < (5, 0):
-        world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.10, 0.12, 0.16, 1)
-    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.35
-    render.engine = "RPPM"
+    set_up_frames(scene, FRAMES)
+    color_world(scene, (0.10, 0.12, 0.16), 0.35)
     settings = scene.rppm
     settings.iterations, settings.photons, settings.radius_scale = 32, 65536, 12.0
 
 
-def main():
-    rppm_addon.register()
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
+def build(scene):
     build_room()
     build_hare()
     build_light_and_camera(scene)
     set_up_render(scene)
-    bpy.context.preferences.filepaths.save_version = 0  # no .blend1 beside it
-    bpy.ops.wm.save_as_mainfile(filepath=str(Path(sys.argv[-1]).resolve()), compress=True)
-    rppm_addon.unregister()
 
 
 if __name__ == "__main__":
-    main()
+    save(build)

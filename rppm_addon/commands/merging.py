@@ -15,7 +15,7 @@ from ..session.continuation import Pause
 from ..session.renderer import exposed
 from ..session.results import NOTHING_HIT, Frame
 from .checkpoints import refuse_differences
-from .recorder import write_frame
+from .recorder import picture_metadata, write_frame
 
 
 @dataclass
@@ -46,13 +46,8 @@ class MergedStill:
 
     def write(self, paths: Sequence[Path]) -> None:
         """Write pictures as rppm render does. Raises PictureError or BlenderError."""
-        metadata = {
-            "iterations": self.iterations,
-            "photons": self.photons,
-            "seconds": f"{self.seconds:.3f}",
-            "device": ", ".join(self.devices),
-            "radius_metres": f"{self.radius_metres:.6g}",
-        }
+        devices = ", ".join(self.devices)
+        metadata = picture_metadata(self.iterations, self.photons, self.seconds, devices, self.radius_metres)
         for path in paths:
             if path.suffix == ".exr":
                 write_frame(path, self.frame, self.render.placement, metadata)

@@ -34,6 +34,22 @@ def split_values(values: list[str]) -> tuple[dict[str, object], list[tuple[str, 
     return settings, data_values
 
 
+def values_and_limits(options: argparse.Namespace) -> tuple[dict[str, object], list[tuple[str, str]]]:
+    """What split_values makes of --set, with --iterations and --photons among the settings."""
+    settings, data_values = split_values(options.values)
+    for name in ("iterations", "photons"):
+        if getattr(options, name) is not None:
+            settings[name] = getattr(options, name)
+    return settings, data_values
+
+
+def seconds_of(options: argparse.Namespace) -> float | None:
+    """How long to render: --seconds, or without a limit as long as --snapshots take."""
+    if options.seconds is None and options.iterations is None and options.snapshots:
+        return options.snapshots[-1]
+    return options.seconds
+
+
 def values_of_frames(settings: dict[str, object]) -> list[tuple[str, str]]:
     """Take what makes the seed of a frame out of the settings, to be set in the .blend file."""
     return [(f"rppm.{name}", str(settings.pop(name))) for name in ("seed", "animate_seed") if name in settings]

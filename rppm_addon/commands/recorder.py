@@ -131,13 +131,9 @@ class RenderRecorder(RenderObserver):
         """Write the outputs of a finished render, or its part. Raises PictureError."""
         result, scene = self.result, self.scene
         statistics = result.statistics
-        metadata = {
-            "iterations": statistics.iterations,
-            "photons": statistics.photons,
-            "seconds": f"{self.seconds:.3f}",
-            "device": statistics.device,
-            "radius_metres": f"{statistics.radius_metres:.6g}",
-        }
+        metadata = picture_metadata(
+            statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_metres
+        )
         for path in self.request.outputs:
             if path.suffix == ".exr":
                 write_frame(path, result.frame, placement_of(scene.camera), metadata)
@@ -187,6 +183,19 @@ def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> Re
     settings = settings.with_values(**values)
     settings.validate()
     return settings
+
+
+def picture_metadata(
+    iterations: int, photons: int, seconds: float, device: str, radius_metres: float
+) -> dict[str, object]:
+    """What the EXR of a whole picture tells of its render."""
+    return {
+        "iterations": iterations,
+        "photons": photons,
+        "seconds": f"{seconds:.3f}",
+        "device": device,
+        "radius_metres": f"{radius_metres:.6g}",
+    }
 
 
 def write_frame(path: Path, frame: "Frame", placement: Placement, metadata: Mapping[str, object]) -> None:

@@ -12,7 +12,15 @@ from ..scene.errors import SettingsError
 from .checkpoints import CheckpointRequest, StillKeeper
 from .frame_numbers import check_places
 from .interruption import Interruption
-from .options import is_blend, outputs_of_still, refuse_blend_options, split_values, values_of_frames, write_json
+from .options import (
+    is_blend,
+    outputs_of_still,
+    refuse_blend_options,
+    seconds_of,
+    values_and_limits,
+    values_of_frames,
+    write_json,
+)
 from .progress_bar import ProgressBar
 from .recorder import RenderRecorder, RenderRequest, apply_settings
 
@@ -22,11 +30,7 @@ if TYPE_CHECKING:
 
 def render(options: argparse.Namespace, bar: ProgressBar) -> int:
     """Do it; returns the exit status."""
-    settings, data_values = split_values(options.values)
-    if options.iterations is not None:
-        settings["iterations"] = options.iterations
-    if options.photons is not None:
-        settings["photons"] = options.photons
+    settings, data_values = values_and_limits(options)
     from_blend = is_blend(options.file)
     blend_request = None
     if from_blend:
@@ -41,11 +45,8 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
     keeper = _still_keeper(options, settings, {"blend": blend_request.as_plain()} if blend_request else {})
     for path in [*options.output, *([options.checkpoint] if options.checkpoint else [])]:
         make_folder(path)
-    seconds = options.seconds
-    if seconds is None and options.iterations is None and options.snapshots:
-        seconds = options.snapshots[-1]
     outputs = [] if options.iterations_range else options.output
-    request = RenderRequest(outputs, settings, seconds, options.snapshots)
+    request = RenderRequest(outputs, settings, seconds_of(options), options.snapshots)
     with Interruption() as interruption:
         recorder = RenderRecorder(request, bar, lambda: interruption.asked, not from_blend, keeper)
         report: dict[str, object] = {"scene": str(options.file)}
@@ -87,10 +88,7 @@ def _render_frames(
     check_places(options.output, options.frames)
     for path in options.output:
         make_folder(path)
-    seconds = options.seconds
-    if seconds is None and options.iterations is None and options.snapshots:
-        seconds = options.snapshots[-1]
-    render = RenderRequest(options.output, settings, seconds, options.snapshots)
+    render = RenderRequest(options.output, settings, seconds_of(options), options.snapshots)
     request = AnimationRequest(blend_request, render, options.frames, options.resume)
 
     def write_report(report: dict[str, object]) -> None:

@@ -105,6 +105,10 @@ class Guide:
     def memory_bytes(self) -> dict[str, int]:
         return {buffer.name: buffer.size for buffer in (self._starts, self._tallies, self._photon_cells)}
 
+    @property
+    def _cell_count(self) -> int:
+        return sum(int(np.prod(cells)) for cells in self._cells)
+
     def build(self, lights: np.ndarray, photons: int) -> None:
         """Forget all; set ``cells`` and ``first_cell`` of LIGHT records that have their kind and photon count."""
         self._cells = [cells_of(int(light["kind"]), int(light["photon_count"])) for light in lights]
@@ -130,8 +134,7 @@ class Guide:
 
     def read_tallies(self) -> np.ndarray:
         """(cells, 2) uint32: the photons that left through each cell so far, and those that were of use."""
-        count = sum(int(np.prod(cells)) for cells in self._cells)
-        return self._tallies.read(np.uint32, 2 * count).reshape(-1, 2).copy()
+        return self._tallies.read(np.uint32, 2 * self._cell_count).reshape(-1, 2).copy()
 
     def learn(self) -> tuple[np.ndarray, np.ndarray]:
         """Choose cells by the tallies from now on.
@@ -149,7 +152,7 @@ class Guide:
 
         Raises ValueError when these are not the cells that were tallied.
         """
-        shape = (sum(int(np.prod(cells)) for cells in self._cells), 2)
+        shape = (self._cell_count, 2)
         if tallies.shape != shape or (learnt is not None and learnt.shape != shape):
             raise ValueError(f"the lights have {shape[0]} cells, not {len(tallies)}")
         self._tallies.upload(tallies)

@@ -84,17 +84,15 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         pause.radius_metres,
         seconds,
     )
-    place, (height, width) = render.placement, state.depth.shape
-    top = place.height - place.y - height
-    frame = {"displayWindow": ((0, 0), (place.width - 1, place.height - 1)), "type": OpenEXR.scanlineimage}
+    height, width = state.depth.shape
+    common = {**render.placement.windows(width, height), "type": OpenEXR.scanlineimage}
     film = {
-        **frame,
+        **common,
         "compression": OpenEXR.RLE_COMPRESSION,
-        "dataWindow": ((place.x, top), (place.x + width - 1, top + height - 1)),
         _ATTRIBUTE: json.dumps({"format": FORMAT, **dataclasses.asdict(summary)}),
     }
     guide = {
-        **frame,
+        **common,
         "compression": OpenEXR.ZIPS_COMPRESSION,
         "dataWindow": ((0, 0), (len(state.tallies) - 1, 0)),
     }

@@ -9,10 +9,10 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from sent_members import watch_sent_members
 
 import rppm_addon
 from rppm_addon.blender import renderer_process, renderer_thread
-from rppm_addon.session import child_process
 from rppm_addon.session.client import ProcessState
 from rppm_addon.session.observers import RenderObserver, observing
 from rppm_addon.session.sessions import SessionKind
@@ -82,14 +82,7 @@ def test_an_animation_sends_only_what_changes(lit, windowed, monkeypatch, tmp_pa
     for frame in (1, 2, 3):
         lit.camera.location.x = 0.1 * frame
         lit.camera.keyframe_insert("location", frame=frame)
-    sent = {}
-    original = child_process.ChildProcess._send_part
-
-    def watch(self, kind, session, number, part, **content):
-        sent.setdefault((session, number), set()).update(part.document if kind == "members" else ())
-        original(self, kind, session, number, part, **content)
-
-    monkeypatch.setattr(child_process.ChildProcess, "_send_part", watch)
+    sent = watch_sent_members(monkeypatch)
 
     def frames():
         observer = Observer()

@@ -30,11 +30,15 @@ def library(context):
     library.release()
 
 
-@pytest.fixture
-def mapper(context, library):
+def new_mapper(context, library):
     mapper = ProgressivePhotonMapper(context, library)
     yield mapper
     mapper.release()
+
+
+mapper = pytest.fixture(new_mapper)
+other_mapper = pytest.fixture(new_mapper)
+"""For comparison, in the same test."""
 
 
 @pytest.fixture(scope="module")

@@ -45,13 +45,6 @@ def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
     return scene
 
 
-@pytest.fixture
-def other_mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
-
-
 @pytest.fixture(autouse=True)
 def several_bands(monkeypatch):
     monkeypatch.setattr(bands, "MAXIMUM_BAND_PIXELS", 16 * 6)

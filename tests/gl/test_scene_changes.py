@@ -94,13 +94,6 @@ def pictures(mapper: ProgressivePhotonMapper) -> list[np.ndarray]:
     return [mapper.film.read_radiance(), *mapper.film.read_surface()]
 
 
-@pytest.fixture
-def other_mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
-
-
 @pytest.mark.parametrize("change", CHANGES)
 def test_an_update_equals_a_build(mapper, other_mapper, change):
     scene = first_scene()

@@ -66,13 +66,6 @@ def pictures(mapper: ProgressivePhotonMapper, scene: Scene, iterations: int) -> 
     return [mapper.film.read_radiance(), *mapper.film.read_surface()]
 
 
-@pytest.fixture
-def other_mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
-
-
 def test_what_stays_where_it_is_gives_the_picture_without_a_shutter(mapper, other_mapper):
     """All is built anew in each iteration, but what was learned and the radii go on."""
     still = room()

@@ -7,9 +7,9 @@ import signal
 
 import numpy as np
 import pytest
+from sent_members import watch_sent_members
 
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.session import child_process
 from rppm_addon.session.client import ProcessState
 from rppm_addon.session.remote_rendering import RemoteRenderer
 from rppm_addon.session.render_job import RenderJob
@@ -68,14 +68,7 @@ def shows(remote, scene, x, pictures):
 
 
 def test_only_what_is_new_is_sent(remote, scene, pictures, monkeypatch):
-    sent = {}
-    original = child_process.ChildProcess._send_part
-
-    def watch(self, kind, session, number, part, **content):
-        sent.setdefault((session, number), set()).update(part.document if kind == "members" else ())
-        original(self, kind, session, number, part, **content)
-
-    monkeypatch.setattr(child_process.ChildProcess, "_send_part", watch)
+    sent = watch_sent_members(monkeypatch)
     for x in (0.0, 0.3, 0.6):
         shows(remote, scene, x, pictures)
     assert len({session for session, _ in sent}) == 1

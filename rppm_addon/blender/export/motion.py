@@ -188,8 +188,10 @@ class MotionExporter:
 
         def lasts(instance: Instance) -> bool:
             identity = placed.identities[id(instance)]
-            times = set(step_times(self._steps.get(identity, 1))) if self._steps.get(identity, 1) else set()
-            return instance.particle is None or self._matrices.get(identity, {}).keys() >= times - {MIDDLE}
+            steps = self._steps.get(identity, 1)
+            if instance.particle is None or steps == 0:
+                return True
+            return self._matrices.get(identity, {}).keys() >= set(step_times(steps)) - {MIDDLE}
 
         placed.instances = [instance for instance in placed.instances if lasts(instance)]
 

@@ -9,7 +9,7 @@ from ...scene import RenderSettings
 from ...scene.errors import SettingsError
 from ..frame_numbers import check_places
 from ..interruption import Interruption
-from ..options import is_blend, outputs_of_still, refuse_blend_options, split_values, values_of_frames
+from ..options import is_blend, outputs_of_still, refuse_blend_options, values_and_limits, values_of_frames
 from ..progress_bar import ProgressBar
 from ..recorder import apply_settings
 
@@ -23,10 +23,7 @@ def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
             f"rppm farm needs dask.distributed ({error}); install it with pip install -e '.[farm]'"
         ) from error
 
-    settings, data_values = split_values(options.values)
-    settings |= {
-        name: getattr(options, name) for name in ("iterations", "photons") if getattr(options, name) is not None
-    }
+    settings, data_values = values_and_limits(options)
     from_blend = is_blend(options.file)
     if from_blend:
         values_of_frames(settings)
