@@ -228,6 +228,11 @@ def test_particles_that_are_born_or_die_are_not_seen(scene):
     seen = [index for index, instance in enumerate(taken.instances) if instance.particle is not None]
     assert 0 < len(seen) < alive
     assert {movement.member for movement in taken.shutter.instances} == set(seen)
+    for still in scene.objects:
+        still.cycles.use_motion_blur = False
+    unblurred = taken_scene()
+    assert unblurred.shutter is None
+    assert sum(instance.particle is not None for instance in unblurred.instances) == alive
 
 
 def test_lights_and_cameras_move(scene):

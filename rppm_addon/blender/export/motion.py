@@ -62,7 +62,6 @@ class MotionExporter:
         self._matrices: dict[Identity, dict[float, np.ndarray]] = {}
         self._shapes: dict[int, dict[float, tuple[np.ndarray, np.ndarray] | None]] = {}
         self._cameras: dict[float, tuple[np.ndarray, tuple[float, ...]]] = {}
-        self._steps: dict[Identity, int] = {}
         self._steps_of_shapes: dict[int, int] = {}
         self._with_velocities: set[int] = set()
 
@@ -122,7 +121,6 @@ class MotionExporter:
     def _look_around(self, time: float, bases: dict[Identity, int], meshes: list[Mesh], changed: set[int]) -> None:
         """Note where everything is, and the shape of what has changed."""
         for identity, instance, source, steps, deforms in self._instances():
-            self._steps[identity] = steps
             if steps == 0 or time not in step_times(steps):
                 continue
             matrix = np.array(instance.matrix_world, np.float64)
@@ -175,6 +173,10 @@ class MotionExporter:
             self._flags[key] = steps, deforms
         return self._flags[key]
 
+    def _steps(self, identity: Identity) -> int:
+        """Of what there was in the middle of the shutter's time."""
+        return self._flags[identity[:2]][0]
+
     def _look_from(self, time: float, camera: bpy.types.Object) -> None:
         evaluated = camera.evaluated_get(self._depsgraph)
         steps, _ = _flags_of(evaluated)
@@ -188,7 +190,7 @@ class MotionExporter:
 
         def lasts(instance: Instance) -> bool:
             identity = placed.identities[id(instance)]
-            steps = self._steps.get(identity, 1)
+            steps = self._steps(identity)
             if instance.particle is None or steps == 0:
                 return True
             return self._matrices.get(identity, {}).keys() >= set(step_times(steps)) - {MIDDLE}
@@ -212,7 +214,7 @@ class MotionExporter:
             keys = self._matrices.get(identity)
             if keys is None:
                 continue
-            times = step_times(self._steps[identity])
+            times = step_times(self._steps(identity))
             # What is not there at some time stays where it is in the middle.
             raw = np.stack([keys.get(time, member.matrix) if time != MIDDLE else member.matrix for time in times])
             matrices, usable = usable_matrices(raw)
