@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from .commands.arguments import parser
 from .commands.farm.command import farm
 from .commands.options import is_blend, load_blend_or_saved, split_values, write_json
-from .commands.progress_bar import BarLogHandler, ProgressBar
+from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
 from .commands.rendering import render
 from .pictures import PictureError, make_folder
@@ -25,10 +25,13 @@ INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it, where nothing else is known."""
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the program; returns the exit status. Errors are one line on standard error."""
+def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECONDS) -> int:
+    """Run the program; returns the exit status. Errors are one line on standard error.
+
+    line_seconds: between lines of progress, where standard error is no terminal.
+    """
     options = parser().parse_args(arguments)
-    bar = ProgressBar(sys.stderr)
+    bar = ProgressBar(sys.stderr, line_seconds)
     handler = BarLogHandler(bar, sys.stderr)
     handler.setFormatter(logging.Formatter("rppm: %(message)s"))
     logging.basicConfig(level=logging.DEBUG if options.debug else logging.WARNING, handlers=[handler], force=True)

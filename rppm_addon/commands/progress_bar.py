@@ -7,14 +7,15 @@ import time
 from typing import TextIO
 
 _REDRAW_SECONDS = 0.1
-_LINE_SECONDS = 10.0
+LINE_SECONDS = 10.0
 
 
 class ProgressBar:
     """Shows a fraction and a few words on a stream."""
 
-    def __init__(self, stream: TextIO) -> None:
+    def __init__(self, stream: TextIO, line_seconds: float) -> None:
         self._stream = stream
+        self._line_seconds = line_seconds
         self._terminal = stream.isatty()
         self._due = 0.0
         self._drawn = False
@@ -25,7 +26,7 @@ class ProgressBar:
         fraction = min(max(fraction, 0.0), 1.0)
         if now < self._due and fraction < 1.0:
             return
-        self._due = now + (_REDRAW_SECONDS if self._terminal else _LINE_SECONDS)
+        self._due = now + (_REDRAW_SECONDS if self._terminal else self._line_seconds)
         if not self._terminal:
             self._stream.write(f"{fraction:4.0%} {words}\n")
             self._stream.flush()

@@ -10,10 +10,10 @@ from floor import floor_scene
 from rppm_addon.scene import save_scene
 
 
-def start_rppm(*arguments):
-    """The program as a process with pipes."""
+def start_rppm(*arguments, errors=subprocess.PIPE):
+    """The program as a process with pipes, or what ``errors`` says for standard error."""
     command = [sys.executable, "-m", "rppm_addon", *map(str, arguments)]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=errors, text=True)
 
 
 @pytest.fixture

@@ -27,9 +27,9 @@ def wait_for(what, condition):
     pytest.fail(f"{what}: not after {PATIENCE_SECONDS:.0f} s")
 
 
-def renders_below(process):
-    """The renders that a farm's workers have started; their parents are the workers."""
-    return _children_with(process, "rppm_addon.commands.farm.leash", recursive=True)
+def renders_below(process, words=""):
+    """The renders that a farm's workers have started with such words; their parents are the workers."""
+    return _children_with(process, "rppm_addon.commands.farm.leash", words, recursive=True)
 
 
 def workers_of(process):
@@ -37,11 +37,11 @@ def workers_of(process):
     return _children_with(process, "spawn_main", recursive=False)
 
 
-def _children_with(process, word, recursive):
+def _children_with(process, *words, recursive):
     found = []
     for child in psutil.Process(process.pid).children(recursive=recursive):
         with contextlib.suppress(psutil.Error):
-            if word in " ".join(child.cmdline()):
+            if all(word in " ".join(child.cmdline()) for word in words):
                 found.append(child)
     return found
 

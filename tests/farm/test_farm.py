@@ -3,6 +3,8 @@
 
 import contextlib
 import json
+import os
+import pty
 import re
 import signal
 
@@ -154,12 +156,16 @@ def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
 
 
 @pytest.mark.long
-def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_scene):
+def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_scene, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
     whole, merged, folder = tmp_path / "whole.exr", tmp_path / "merged.exr", tmp_path / "merged.farm"
     still = ("farm", saved_scene, "--iterations", 1200, "--parts", 1, "-o", merged)
-    with start_rppm(*still) as process:
-        told = iter(process.stderr.readline, "")
-        assert any(re.search(r"iterations 0 to 1199 on \S+ [1-9]\d?%", line) for line in told)
+    ours, theirs = pty.openpty()  # on a terminal progress is told at once
+    with start_rppm(*still, errors=theirs) as process, open(ours, errors="replace", newline="") as terminal:
+        os.close(theirs)
+        told = ""
+        while not re.search(r"iterations 0 to 1199 on \S+ [1-9]\d?%", told):
+            told = told[-200:] + terminal.read(1)
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
     assert process.returncode == 130
@@ -179,10 +185,12 @@ def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_s
 def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
     frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
     with start_rppm("farm", blend_files[0], *frames, "--retries", 1) as process:
+        lost = None
         for _ in range(2):
-            render = wait_for("a render", lambda: [render for render in renders_below(process) if render.is_running()])
-            render[0].parent().kill()
-            wait_for("its end", lambda lost=render[0]: not lost.is_running())
+            # A render takes a moment to end with its worker, and may outlive the next one.
+            renders = wait_for("frame 1", lambda known=lost: {*renders_below(process, "--frames 1 ")} - {known})
+            lost = renders.pop()
+            lost.parent().kill()
         output, errors = process.communicate(timeout=120)
     assert process.returncode == 1
     assert "rppm: frame 1 failed: its worker was lost 2 times" in errors

@@ -16,6 +16,8 @@ from ...cli import INTERRUPTED, main
 
 BETWEEN_INTERRUPTS_SECONDS = 5.0
 """The first has the render write its checkpoint and end, the second ends it wherever it is."""
+_LINE_SECONDS = 0.5
+"""The worker reads how far the render is."""
 PATIENCE_SECONDS = 10.0
 """Blender's own code may not hear interrupts; after so long the process ends regardless."""
 
@@ -33,4 +35,4 @@ def _end_when_released() -> None:
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the worker may have handed on that it ignores Ctrl-C
     threading.Thread(target=_end_when_released, daemon=True).start()
-    sys.exit(main())
+    sys.exit(main(line_seconds=_LINE_SECONDS))
