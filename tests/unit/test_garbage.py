@@ -17,6 +17,16 @@ def test_pauses_may_be_nested():
     assert gc.isenabled()
 
 
+def test_threads_may_pause_it_at_once():
+    first, second = collector_paused(), collector_paused()
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert not gc.isenabled()
+    second.__exit__(None, None, None)
+    assert gc.isenabled()
+
+
 def test_an_error_ends_the_pause():
     @collector_paused()
     def fail() -> None:
