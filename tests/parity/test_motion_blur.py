@@ -76,7 +76,8 @@ def test_when_the_shutter_opens(renderer, position):
     animate(moving, "location", (-1.5, 0.0, 0.6), (0.0, 0.0, 0.6), (0.0, 0.8, 0.6))
     animate(moving, "scale", (0.5, 1.0, 1.0), (1.0, 1.0, 1.0), (1.0, 1.0, 2.0))
     blur(0.8, position)
-    compare_with_cycles(renderer, f"position_{position.lower()}")
+    # The lamp glares in the floor: few samples of it are many times as bright as their mean.
+    compare_with_cycles(renderer, f"position_{position.lower()}", samples=1024, iterations=96, seeds=4)
 
 
 @pytest.mark.long
