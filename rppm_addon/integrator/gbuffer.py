@@ -7,13 +7,14 @@ import numpy as np
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from .importons import Importons
+from .low_discrepancy import scrambled_sobol
 from .records import CAMERA_VIEW
 from .stages import Stages
 
 
 def filter_offsets(iteration: int, width: float, seed: int) -> tuple[float, float]:
     """Subpixel offset of an iteration (from 1), in pixels, by the density of a Blackman-Harris
-    filter, along the R2 sequence (Roberts 2018) from a start of the seed's own.
+    filter, at Owen-scrambled Sobol points.
 
     The filter reaches over twice its width, as Cycles' does (measured).
     """
@@ -22,9 +23,8 @@ def filter_offsets(iteration: int, width: float, seed: int) -> tuple[float, floa
         0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
     )
     cumulated = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
-    g = 1.32471795724474602596
-    start = np.random.default_rng(seed).random(2)
-    u = (start + iteration / np.array([g, g**2])) % 1.0
+    scramble = np.random.default_rng((seed, 2)).integers(1 << 32, size=3)
+    u = scrambled_sobol(iteration - 1, tuple(map(int, scramble)))
     return tuple(float(2.0 * width * np.interp(value, cumulated / cumulated[-1], x)) for value in u)
 
 

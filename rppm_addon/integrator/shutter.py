@@ -8,9 +8,8 @@ import numpy as np
 from ..scene.motion import MovingScene
 from ..scene.scene import Scene
 from .geometry import finite_bounds, placed_boxes
+from .low_discrepancy import van_der_corput
 
-_MASK = (1 << 32) - 1
-_SCRAMBLE = (0x6C50B47C, 0xB82F1E52, 0xC7AFE638, 0x8D22F6E6)
 _MOMENTS = 17
 """Evenly over the time of the shutter: where what moves is looked for beforehand."""
 
@@ -18,16 +17,12 @@ _MOMENTS = 17
 def moment(iteration: int, seed: int) -> float:
     """Share, 0 to 1, of the light that the shutter lets pass, by which an iteration (from 1) has its time.
 
-    Van der Corput's sequence, scrambled as the points of shaders/common/low_discrepancy.glsl are: of 2^k iterations
-    each has a 2^k-th of the time, and a random place in it. That those points go through their indices in a shuffled
-    order keeps what they decide, such as the place on the lens, independent of the time.
+    Of 2^k iterations each has a 2^k-th of the time, and a random place in it. That the points of what else an
+    iteration decides go through their indices in a shuffled order keeps it, such as the place on the lens, independent
+    of the time.
     """
     scramble = int(np.random.default_rng((seed, 1)).integers(1 << 32))
-    bits = iteration - 1
-    bits = (bits + scramble) & _MASK
-    for factor in _SCRAMBLE:
-        bits ^= (bits * factor) & _MASK
-    return int(f"{bits:032b}"[::-1], 2) / 2.0**32
+    return van_der_corput(iteration - 1, scramble)
 
 
 def swept_bounds(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

@@ -16,17 +16,19 @@ uint owen_scramble(uint x, uint seed) {
     return bitfieldReverse(laine_karras(bitfieldReverse(x), seed));
 }
 
-// Second Sobol dimension: its generator matrix is Pascal's triangle modulo 2.
-uint sobol_second(uint index) {
-    uint result = 0u;
-    for (uint vector = 0x80000000u; index != 0u; index >>= 1u, vector ^= vector >> 1u)
-        if ((index & 1u) != 0u) result ^= vector;
-    return result;
+// Bits of the second Sobol dimension, lowest first: its generator matrix is Pascal's triangle modulo 2, which has a one
+// where the bits of the column's number include those of the row's.
+uint sobol_second_reversed(uint index) {
+    index ^= (index >> 1u) & 0x55555555u;
+    index ^= (index >> 2u) & 0x33333333u;
+    index ^= (index >> 4u) & 0x0f0f0f0fu;
+    index ^= (index >> 8u) & 0x00ff00ffu;
+    return index ^ (index >> 16u);
 }
 
 // Point `index` of a two-dimensional set; sets of different seeds are independent shuffles.
 vec2 scrambled_sobol(uint index, uvec4 seed) {
     uint shuffled = owen_scramble(index, seed.x);
-    return vec2(unit_float(owen_scramble(bitfieldReverse(shuffled), seed.y)),
-                unit_float(owen_scramble(sobol_second(shuffled), seed.z)));
+    return vec2(unit_float(bitfieldReverse(laine_karras(shuffled, seed.y))),
+                unit_float(bitfieldReverse(laine_karras(sobol_second_reversed(shuffled), seed.z))));
 }

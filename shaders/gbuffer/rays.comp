@@ -22,7 +22,7 @@ void main() {
     if (index >= camera.width * camera.height) return;
     // The points of a pixel cover the lens evenly as the iterations go by, and those of its neighbours are others.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, 0u, parameters.seed, STAGE_CAMERA << 24u));
-    vec2 lens = aperture_point(scrambled_sobol(parameters.iteration, choices)), at = window_point(index);
+    vec2 lens = aperture_point(scrambled_sobol(parameters.iteration - 1u, choices)), at = window_point(index);
     CameraRay ray = camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, lens) : panorama_ray(at, lens);
     rays[index] = world_ray(ray);
     camera_paths[index] = CameraPath(vec3(1.0), 0.0, ray.passed, 0.0, sqrt(ray.area / PI), PATH_STRAIGHT);

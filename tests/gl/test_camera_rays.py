@@ -25,7 +25,7 @@ WIDTH, HEIGHT = 24, 16
 KIND = PanoramaKind
 
 
-def traced_rays(context, library, camera, iteration=0, seed=0):
+def traced_rays(context, library, camera, iteration=1, seed=0):
     """Rays (H, W) and camera paths (H, W) of the whole region."""
     gl = context.moderngl
     width, height = camera.resolution
@@ -191,7 +191,7 @@ def lens_points(context, library, camera, count):
     """(count, H, W) origins and directions in the camera's axes (right, up, forward), with the clip start taken off."""
     origins, directions = [], []
     axes = camera.matrix[:3, :3] * (1, 1, -1)
-    for iteration in range(count):
+    for iteration in range(1, count + 1):
         rays, paths = traced_rays(context, library, camera, iteration)
         start = rays["origin"] - paths["total_length"][..., None] * rays["direction"].astype(float)
         origins.append((start - camera.matrix[:3, 3]) @ axes)
