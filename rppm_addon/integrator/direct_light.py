@@ -67,7 +67,7 @@ class DirectLight:
         self._sample.run(
             count,
             {
-                **stages.emission.buffers,
+                **stages.emission.tree_buffers,
                 "Closures": importons.closures.buffer,
                 "Rays": importons.rays.buffer,
                 "CameraPaths": importons.paths.buffer,

@@ -21,6 +21,7 @@ from .environment import Environment
 from .geometry import Geometry
 from .guide import Guide
 from .lamp_maps import LampMaps
+from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
 from .sources import SURFACES, SURROUNDINGS, source_name
@@ -42,12 +43,17 @@ LIGHT_PARAMETERS = {
     "emissive_triangle_count": "uint",
     "mesh_selection": "float",
     "world_selection": "float",
+    "environment_irradiance": "float",
+    "mesh_light": "uint",
+    "world_light": "uint",
+    **LIGHT_TREE_PARAMETERS,
     "seed": "uint",
     "iteration": "uint",
     "count": "uint",
 }
 """Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_selection`` and
-``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light."""
+``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS weights
+take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may give, W/m^2."""
 
 Record("EmitParameters", **LIGHT_PARAMETERS, target_count="uint")
 Record("FalloffParameters", **LIGHT_PARAMETERS)
@@ -111,6 +117,7 @@ class Emission:
         self.environment = Environment(context)
         self.lamp_maps = LampMaps(context)
         self.guide = Guide(context, library)
+        self._light_tree = LightTree(context)
         self._table = LIGHT.zeros(0)
         self._weights = np.zeros(0)
         self._names: list[str] = []
@@ -131,11 +138,17 @@ class Emission:
         }
 
     @property
+    def tree_buffers(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of emission/light_tree.glsl."""
+        return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
+
+    @property
     def memory_bytes(self) -> dict[str, int]:
         return {
             "lights": self._lights.size,
             **self.emitters.memory_bytes,
             "photon targets": self._targets.size,
+            "light tree": self._light_tree.nodes.size,
             "environment": self.environment.memory_bytes,
             "lamp maps": self.lamp_maps.memory_bytes,
             **self.guide.memory_bytes,
@@ -226,7 +239,7 @@ class Emission:
         kept = self._table if keep_learned and names == self._names else None
         self._names, self._powers = names, powers
         self.photon_flux = sum(powers) / scene.settings.photons
-        # Direct light picks a light by power, half of it evenly so that a dim near lamp is not starved.
+        # By power, half of it evenly: what does not choose by the point, and MIS weights.
         selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
         table = np.array(entries, LIGHT.dtype)
         table["selection_probability"] = selection
@@ -245,6 +258,7 @@ class Emission:
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
+        self._light_tree.build(table, self.emitters.leaves)
         self._parameters = {
             "scene_centre": geometry.centre,
             "scene_radius": radius,
@@ -255,6 +269,10 @@ class Emission:
             "emissive_triangle_count": self.emitters.count,
             "mesh_selection": float(selection[table["kind"] == MESH].sum()),
             "world_selection": float(selection[table["kind"] == WORLD].sum()),
+            "environment_irradiance": 2 * math.pi * float(np.mean(self.environment.mean_radiance)),
+            "mesh_light": int(np.argmax(table["kind"] == MESH)),
+            "world_light": int(np.argmax(table["kind"] == WORLD)),
+            **self._light_tree.parameters,
         }
 
     def begin(self) -> None:
@@ -335,6 +353,7 @@ class Emission:
         self._lights.release()
         self.emitters.release()
         self._targets.release()
+        self._light_tree.nodes.release()
         self.guide.release()
         self.lamp_maps.release()
         self.environment.release()

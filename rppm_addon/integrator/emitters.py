@@ -14,7 +14,8 @@ from ..materials.emitted import Emits
 from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from .geometry import Geometry
-from .records import CLOSURE, EMISSIVE_TRIANGLE, HIT, NO_TRIANGLE, RAY
+from .light_tree import triangle_leaves
+from .records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY
 from .resolve import Resolve
 
 Record("EmittersParameters", count="uint", photons="uint")
@@ -31,7 +32,8 @@ _STEPS = 1 << 24
 class Emitters:
     """The emissive triangles of a scene, and the emission of those whose material has it vary over the surface.
 
-    ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W.
+    ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves`` are
+    theirs of the light tree.
     """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
@@ -45,6 +47,7 @@ class Emitters:
         self._closures = GrowingBuffer(context, "closures of emitters")
         self.count = 0
         self.power = np.zeros(3)
+        self.leaves = LIGHT_NODE.zeros(0)
         self._varying = False
         self._world_triangles: moderngl.Buffer | None = None
 
@@ -67,6 +70,7 @@ class Emitters:
         self._ask(records, corners, kinds, varying, resolve)
         bright = records["radiance"].max(axis=1, initial=0.0) > 0
         records, varying = records[bright], varying[bright]
+        self.leaves = triangle_leaves(records, corners[bright].reshape(-1, 3, 3))
         self._varying = bool(varying.any())
         self._world_triangles = geometry.triangles.buffer
         self.count = len(records)

@@ -101,7 +101,7 @@ class Importons:
         self._scatter.run(
             count,
             {
-                **stages.emission.buffers,
+                **stages.emission.tree_buffers,
                 "Closures": self.closures.buffer,
                 "Rays": self.rays.buffer,
                 "CameraPaths": self.paths.buffer,

@@ -231,6 +231,23 @@ EMISSIVE_TRIANGLE = Record(
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
 choosing it, and that of choosing it or one before."""
 
+LIGHT_NODE = Record(
+    "LightNode",
+    low="vec3",
+    intensity="float",
+    high="vec3",
+    cosine_normals="float",
+    axis="vec3",
+    cosine_emission="float",
+    member="uint",
+    two_sided="uint",
+    unused0="uint",
+    unused1="uint",
+)
+"""Lights below a node of the light tree: their box, metres; the sum of their intensities, W/sr, of a sun its irradiance,
+W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; and of a leaf the
+number of its light or emissive triangle."""
+
 PERSPECTIVE, ORTHOGRAPHIC = range(2)
 """Projections of cameras; those of panoramas follow in the order of PanoramaKind. As in shaders/gbuffer/."""
 

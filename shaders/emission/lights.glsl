@@ -191,7 +191,7 @@ vec3 sample_area_light(Light light, vec3 point, vec2 u, out float density) {
     return to_light;
 }
 
-LightSample sample_light_at_one_metre(Light light, vec3 point, float u_choice, vec2 u) {
+LightSample sample_light_at_one_metre(Light light, uint emissive_triangle, vec3 point, vec2 u) {
     LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
     if (light.kind == LIGHT_WORLD) {
         result.direction = sample_world(u, result.density);
@@ -230,15 +230,14 @@ LightSample sample_light_at_one_metre(Light light, vec3 point, float u_choice, v
     }
     vec3 to_light, radiance;
     if (light.kind == LIGHT_MESH) {
-        uint index = search_emissive_triangle(u_choice);
-        EmissiveTriangle emissive = emissive_triangles[index];
+        EmissiveTriangle emissive = emissive_triangles[emissive_triangle];
         vec3 v0, v1, v2;
         triangle_corners(emissive.triangle, v0, v1, v2);
         float solid_angle = triangle_solid_angle(point, v0, v1, v2);
         if (solid_angle <= 0.0) return result;
         to_light = sample_spherical_triangle(point, v0, v1, v2, solid_angle, u);
         radiance = sampled_radiance(emissive);
-        result.density = emissive.share / solid_angle;
+        result.density = 1.0 / solid_angle;
         result.triangle = emissive.triangle;
     } else {
         if (dot(point - light.position, light.normal) <= 0.0) return result;
@@ -273,11 +272,23 @@ vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
     return radius * (disk.x * t + disk.y * b + forward * direction);
 }
 
-LightSample sample_light(Light light, vec3 point, float u_choice, vec2 u) {
-    LightSample result = sample_light_at_one_metre(light, point, u_choice, u);
+// Of the emissive meshes: of one triangle, by its number among emissive_triangles[].
+LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+    LightSample result = sample_light_at_one_metre(light, emissive_triangle, point, u);
     vec3 from_centre = point + result.distance * result.direction - light.position;
     if (result.density == 0.0 && is_sphere(light)) from_centre = sample_facing_half(light.radius, -result.direction, u);
     result.weight *= distance_factor(light, result.distance) * emitted_factor(light, from_centre, -result.direction);
+    return result;
+}
+
+// Of the emissive meshes: of any triangle, by its share.
+LightSample sample_whole_light(Light light, vec3 point, float u_choice, vec2 u) {
+    if (light.kind != LIGHT_MESH) return sample_light(light, 0u, point, u);
+    uint index = search_emissive_triangle(u_choice);
+    LightSample result = sample_light(light, index, point, u);
+    float share = emissive_triangles[index].share;
+    result.density *= share;
+    result.weight /= share;
     return result;
 }
 
@@ -346,17 +357,4 @@ vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distan
     vec3 radiance = passed_plain_light(light, origin, direction, maximum_distance, distance, density);
     vec3 from_centre = origin + distance * direction - light.position;
     return radiance * distance_factor(light, distance) * emitted_factor(light, from_centre, -direction);
-}
-
-// Radiance of the light objects that a ray passes; they hide nothing.
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_density) {
-    vec3 radiance = vec3(0.0);
-    for (uint index = 0u; index < parameters.light_count; ++index) {
-        Light light = lights[index];
-        if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) continue;
-        float density;
-        vec3 passed = passed_light(light, origin, direction, maximum_distance, density);
-        radiance += passed * scattered_share(scatter_density, density * light.selection_probability);
-    }
-    return radiance;
 }

@@ -17,7 +17,7 @@ layout(local_size_x = 64) in;
 #include "gbuffer/projections.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
-#include "emission/lights.glsl"
+#include "emission/light_tree.glsl"
 layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) buffer CameraPaths { CameraPath camera_paths[]; };
@@ -58,6 +58,12 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radi
     return importon;
 }
 
+// In 1/sr, of shadow rays to the environment from a vertex that sends a ray on.
+float environment_shadow_ray_pdf(vec3 direction) {
+    bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
+    return left_to_rays ? 0.0 : parameters.world_selection * world_density(direction);
+}
+
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
@@ -71,10 +77,15 @@ void main() {
     bool hit = closure_hit(closure);
     bool straight = (path.flags & PATH_STRAIGHT) != 0u, gathered = (path.flags & PATH_GATHERED) != 0u;
     // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left
-    // to photons but for the world's.
+    // to photons but for the environment's. Shadow rays find direct light, and share the environment's with this ray.
     if (gathered && !hit) {
-        if ((path.flags & PATH_CAUSTIC) == 0u) return;
         vec3 world = world_radiance(ray.direction);
+        if ((path.flags & PATH_CAUSTIC) == 0u) {
+            if (parameters.next_event == 0u) return;
+            float weight = scattered_share(path.scatter_density, environment_shadow_ray_pdf(ray.direction));
+            radiances[index].rgb += gathering_vertices[index].weight * path.throughput * world * weight;
+            return;
+        }
         float photons = world_photon_share(largest(world), parameters.world_photon_flux, gathering_vertices[index].radius);
         gathering_vertices[index].found = path.throughput * world * (1.0 - photons);
         return;
@@ -88,7 +99,7 @@ void main() {
         if (straight && background && parameters.film_transparent != 0u)
             seen.a -= (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
         else {
-            float share = scattered_share(path.scatter_density, parameters.world_selection * world_density(ray.direction));
+            float share = scattered_share(path.scatter_density, environment_shadow_ray_pdf(ray.direction));
             seen.rgb += path.throughput * (straight ? world_radiance_seen(ray.direction) : world_radiance(ray.direction)) * share;
         }
         radiances[index] += seen;
@@ -123,7 +134,7 @@ void main() {
 
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_IMPORTONS << 24u));
-    vec2 u_lobe = scrambled_sobol(parameters.iteration, choices);
+    vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u && !gathered;
     importons[index] = make_importon(closure, path.throughput, viewer, radius, u_lobe.y,
                                      gathers ? GATHERS_BY_RAY : (gathered ? GATHERED_BY_RAY : GATHERS_ALL));
@@ -137,12 +148,12 @@ void main() {
     float survival = path_survival(total);
     float u = u_lobe.x;
     if (u >= survival) return;
-    vec2 u_direction = scrambled_sobol(parameters.iteration, pcg4d(choices));
-    float u_event = scrambled_sobol(parameters.iteration, pcg4d(choices + 1u)).x;
+    vec2 u_direction = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices));
+    float u_event = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)).x;
     u *= total / survival;
     vec3 direction, weight;
     bool transmitted;
-    float probability;
+    float probability, straight_density = path.scatter_density;
     path.scatter_density = 0.0;
     bool sets_out = u < gathering;
     if (sets_out) {
@@ -159,10 +170,12 @@ void main() {
         direction = sample_cosine_hemisphere(normal, u_direction);
         weight = transmitted ? closure.translucent : closure.diffuse;
         found_weight = diffuse_factor(closure, transmitted ? -normal : normal, viewer, direction);
+        path.scatter_density = probability * survival / total * max(dot(normal, direction), 0.0) / PI;
     } else if (u < shares.x) {
         direction = ray.direction;
         weight = closure.transparent;
         if ((closure.flags & CLOSURE_SHADOWLESS) == 0u) path.flags |= PATH_CAUSTIC;
+        else path.scatter_density = straight_density;  // shadow rays pass as well
         transmitted = true;
         probability = shares.x;
     } else {

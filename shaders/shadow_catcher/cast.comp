@@ -33,7 +33,7 @@ void main() {
         float u = next_random(random), u_part = next_random(random), u_choice = next_random(random);
         vec2 u_place = next_random2(random);
         Light light = lights[choose_light((float(k) + u) / float(CANDIDATES))];
-        LightSample sampled = sample_light(light, closure.position, u_part, u_place);
+        LightSample sampled = sample_whole_light(light, closure.position, u_part, u_place);
         bool lights_diffuse = (light.flags & RAY_DIFFUSE) != 0u && sampled.triangle != closure.triangle;
         float given = largest(sampled.weight) * max(dot(shading, sampled.direction), 0.0) / light.selection_probability;
         if (!lights_diffuse || !(given > 0.0) || dot(geometric, sampled.direction) <= 0.0) continue;

@@ -16,7 +16,7 @@ void main() {
     if (index >= parameters.count) return;
     RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
     float u_choice = next_random(random);
-    LightSample sampled = sample_light(lights[0], parameters.point, u_choice, next_random2(random));
+    LightSample sampled = sample_whole_light(lights[0], parameters.point, u_choice, next_random2(random));
     float density = 0.0;
     vec3 seen = vec3(0.0);
     if (sampled.triangle != NO_TRIANGLE) {

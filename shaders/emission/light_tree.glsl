@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The light that a shadow ray goes to, chosen by what each may give at a point, and the light objects that a ray
+// passes (rppm_addon/integrator/light_tree.py).
+
+#include <LightNode>
+#include "emission/lights.glsl"
+layout(std430, binding = 13) readonly buffer LightNodes { LightNode light_nodes[]; };
+
+// Random numbers of 24 bits last for so many levels.
+const uint LEVELS_OF_A_NUMBER = 12u;
+// What gives little where nothing is in the way may be all that arrives: so much of the choice is even, between
+// kinds of light, and on the whole way down a tree.
+const float EVEN_FRACTION_OF_KINDS = 0.25, EVEN_FRACTION_OF_TREE = 0.2;
+
+float sine_of(float cosine) { return sqrt(max(0.0, 1.0 - cosine * cosine)); }
+
+// Cosine of the angle less another one, or of 0 when that is larger.
+float cosine_of_difference(float cosine, float less_cosine) {
+    return cosine > less_cosine ? 1.0 : cosine * less_cosine + sine_of(cosine) * sine_of(less_cosine);
+}
+
+// Where light is asked for: one side of the surface may be all that it can reach.
+struct LitPoint { vec3 position; vec3 normal; bool both_sides; };
+
+float facing(LitPoint point, vec3 direction) {
+    float cosine = dot(point.normal, direction);
+    return point.both_sides ? abs(cosine) : cosine;
+}
+
+// Irradiance, W/m^2, that the lights below a node may give: 0 only where they give none.
+float node_importance(LightNode node, LitPoint point) {
+    if (!(node.intensity > 0.0)) return 0.0;
+    vec3 to_centre = 0.5 * (node.low + node.high) - point.position, half_size = 0.5 * (node.high - node.low);
+    float distance2 = dot(to_centre, to_centre), radius2 = dot(half_size, half_size);
+    if (distance2 <= radius2 * 1.0001) return node.intensity / max(radius2, 1e-20);
+    vec3 direction = to_centre * inversesqrt(distance2);
+    float cosine_bounds = sqrt(1.0 - radius2 / distance2);
+    float received = cosine_of_difference(facing(point, direction), cosine_bounds);
+    float leaving = -dot(node.axis, direction);
+    if (node.two_sided != 0u) leaving = abs(leaving);
+    float emitted = cosine_of_difference(cosine_of_difference(leaving, node.cosine_normals), cosine_bounds);
+    if (received <= 0.0 || emitted < node.cosine_emission - 1e-3) return 0.0;
+    return node.intensity * received * max(emitted, 1e-3) / distance2;
+}
+
+// Of a tree whose root is the first node but one: its children together know more than it does.
+float tree_importance(uint first, uint leaves, LitPoint point) {
+    if (leaves == 0u) return 0.0;
+    if (leaves == 1u) return node_importance(light_nodes[first + 1u], point);
+    return node_importance(light_nodes[first + 2u], point) + node_importance(light_nodes[first + 3u], point);
+}
+
+float sun_importance(LightNode sun, LitPoint point) {
+    return sun.intensity * max(0.0, cosine_of_difference(facing(point, -sun.axis), sun.cosine_normals));
+}
+
+// Number of the light among lights[], and of the triangle among emissive_triangles[]. probability 0: none gives any.
+struct LightChoice { uint light; uint triangle; float probability; };
+
+// Down a tree: sets the leaf's member, and returns its probability.
+float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep, out uint member) {
+    float probability = 1.0, even_fraction = EVEN_FRACTION_OF_TREE / float(max(findMSB(leaves), 1));
+    uint node = 1u;
+    for (uint level = 1u; node < leaves; ++level) {
+        float low = node_importance(light_nodes[first + 2u * node], point), high = node_importance(light_nodes[first + 2u * node + 1u], point);
+        if (!(low + high > 0.0)) return 0.0;
+        float low_probability = low / (low + high);
+        if (low > 0.0 && high > 0.0) low_probability = mix(low_probability, 0.5, even_fraction);
+        bool goes_low = u < low_probability;
+        u = goes_low ? u / low_probability : (u - low_probability) / (1.0 - low_probability);
+        if (level == LEVELS_OF_A_NUMBER) u = u_deep;
+        u = clamp(u, 0.0, 0.99999994);
+        probability *= goes_low ? low_probability : 1.0 - low_probability;
+        node = 2u * node + (goes_low ? 0u : 1u);
+    }
+    member = light_nodes[first + node].member;
+    return probability;
+}
+
+// environment_irradiance: what the environment counts for, W/m^2. u_deep takes over where u has been used up.
+LightChoice choose_light_at(LitPoint point, float environment_irradiance, float u, float u_deep) {
+    uint kinds = 3u + parameters.sun_count;
+    float total = 0.0, shining = 0.0, chosen_importance = 0.0;
+    vec3 importances = vec3(tree_importance(0u, parameters.light_tree_leaves, point),
+                            tree_importance(parameters.triangle_tree, parameters.triangle_tree_leaves, point), environment_irradiance);
+    for (uint kind = 0u; kind < kinds; ++kind) {
+        float importance = kind < 3u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+        total += importance;
+        shining += importance > 0.0 ? 1.0 : 0.0;
+    }
+    LightChoice choice = LightChoice(0u, 0u, 0.0);
+    if (!(total > 0.0)) return choice;
+    uint chosen = kinds;
+    for (uint kind = 0u; kind < kinds; ++kind) {
+        float importance = kind < 3u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+        if (!(importance > 0.0)) continue;
+        float probability = (1.0 - EVEN_FRACTION_OF_KINDS) * importance / total + EVEN_FRACTION_OF_KINDS / shining;
+        chosen = kind;
+        choice.probability = probability;
+        if (u < probability) break;
+        u -= probability;
+    }
+    u = clamp(u / choice.probability, 0.0, 0.99999994);
+    uint member = 0u;
+    if (chosen == 0u) {
+        choice.probability *= choose_leaf(0u, parameters.light_tree_leaves, point, u, u_deep, member);
+        choice.light = member;
+    } else if (chosen == 1u) {
+        choice.probability *= choose_leaf(parameters.triangle_tree, parameters.triangle_tree_leaves, point, u, u_deep, member);
+        choice.light = parameters.mesh_light;
+        choice.triangle = member;
+    } else choice.light = chosen == 2u ? parameters.world_light : light_nodes[parameters.first_sun + chosen - 3u].member;
+    return choice;
+}
+
+// --- light objects that a ray passes ---------------------------------------------------------------
+
+bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, float maximum_distance) {
+    vec3 at_low = (low - origin) * inverse_direction, at_high = (high - origin) * inverse_direction;
+    vec3 enter = min(at_low, at_high), leave = max(at_low, at_high);
+    return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
+}
+
+vec3 passed_if_visible(uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_density) {
+    Light light = lights[number];
+    if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return vec3(0.0);
+    float density;
+    vec3 passed = passed_light(light, origin, direction, maximum_distance, density);
+    return passed * scattered_share(scatter_density, density * light.selection_probability);
+}
+
+// Radiance of the light objects that a ray passes; they hide nothing.
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_density) {
+    vec3 radiance = vec3(0.0);
+    if (maximum_distance >= INFINITY_DISTANCE)
+        for (uint sun = 0u; sun < parameters.sun_count; ++sun)
+            radiance += passed_if_visible(light_nodes[parameters.first_sun + sun].member, origin, direction, maximum_distance, ray, scatter_density);
+    if (parameters.light_tree_leaves == 0u) return radiance;
+    vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    uint node = 1u;
+    do {
+        LightNode at = light_nodes[node];
+        bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, maximum_distance);
+        if (met && node < parameters.light_tree_leaves) { node *= 2u; continue; }
+        if (met) radiance += passed_if_visible(at.member, origin, direction, maximum_distance, ray, scatter_density);
+        // The node beside it, or beside the nearest one above that has one.
+        node += 1u;
+        node >>= uint(findLSB(node));
+    } while (node > 1u);
+    return radiance;
+}

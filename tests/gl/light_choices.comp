@@ -1,0 +1,33 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lights chosen at points, and what rays pass of the light objects: by the tree, and of all one by one.
+
+layout(local_size_x = 64) in;
+
+#include <LightChoicesParameters>
+#include "common/invocation.glsl"
+#include "common/random.glsl"
+layout(std140, binding = 0) uniform Parameters { LightChoicesParameters parameters; };
+#include "emission/light_tree.glsl"
+layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
+    if (parameters.looks_at_lights != 0u) {
+        vec3 origin = 4.0 * (vec3(next_random(random), next_random2(random)) - 0.5), direction = sample_sphere(next_random2(random));
+        vec3 all = vec3(0.0);
+        for (uint light = 0u; light < parameters.light_count; ++light) {
+            float pdf;
+            all += passed_light(lights[light], origin, direction, parameters.reach, pdf);
+        }
+        results[index] = vec4(visible_light(origin, direction, parameters.reach, RAYS_WITH_VISIBILITY, 0.0).xy, all.xy);
+        return;
+    }
+    // Evenly spaced numbers: each choice gets the part of them that is its probability.
+    float u = (float(index) + 0.5) / float(parameters.count);
+    LightChoice choice = choose_light_at(LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u),
+                                         parameters.environment_irradiance, u, next_random(random));
+    results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(choice.triangle), choice.probability, 0.0);
+}
