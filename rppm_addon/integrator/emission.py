@@ -52,8 +52,9 @@ LIGHT_PARAMETERS = {
     "count": "uint",
 }
 """Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_selection`` and
-``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS weights
-take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may give, W/m^2."""
+``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
+weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
+give, W/m^2."""
 
 Record("EmitParameters", **LIGHT_PARAMETERS, target_count="uint")
 Record("FalloffParameters", **LIGHT_PARAMETERS)

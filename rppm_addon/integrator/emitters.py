@@ -32,8 +32,8 @@ _STEPS = 1 << 24
 class Emitters:
     """The emissive triangles of a scene, and the emission of those whose material has it vary over the surface.
 
-    ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves`` are
-    theirs of the light tree.
+    ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves``
+    are theirs of the light tree.
     """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:

@@ -244,9 +244,9 @@ LIGHT_NODE = Record(
     unused0="uint",
     unused1="uint",
 )
-"""Lights below a node of the light tree: their box, metres; the sum of their intensities, W/sr, of a sun its irradiance,
-W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; and of a leaf the
-number of its light or emissive triangle."""
+"""Lights below a node of the light tree: their box, metres; the sum of their intensities, W/sr, of a sun its
+irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; and of
+a leaf the number of its light or emissive triangle."""
 
 PERSPECTIVE, ORTHOGRAPHIC = range(2)
 """Projections of cameras; those of panoramas follow in the order of PanoramaKind. As in shaders/gbuffer/."""
