@@ -26,7 +26,7 @@ class RenderSettings:
 
     iterations: int = 128
     time_limit: float = 0.0
-    """Stop after so many seconds; 0 is no limit."""
+    """Stop with the iteration that ends nearest to so many seconds; 0 is no limit."""
     photons: int = 65536
     """Photons emitted in each iteration, shared among the lights."""
     camera_path_length: int = 8

@@ -77,7 +77,10 @@ class SlicedRender:
         """Whether the photons and the film are those of a complete iteration, or of none."""
 
     def slices(self) -> Iterator[None]:
-        """Render until the settings' iterations or time limit are reached. Raises the errors of scene/errors.py."""
+        """Render the settings' iterations, or as many as end nearest to the time limit, but one.
+
+        Raises the errors of scene/errors.py.
+        """
         mapper, settings = self._mapper, self._scene.settings
         mapper.timers.reset()
         # The pass pictures the deep cubemap, and roulette draws by its cells: there the centre is not free.
@@ -90,15 +93,18 @@ class SlicedRender:
         while self.iterations < settings.iterations:
             yield
             self.between_iterations = False
+            began = self._elapsed
             yield from mapper.steps()
             self._context.finish()
+            seconds_each = self._elapsed - began
             self.iterations += 1
             self.between_iterations = True
             self._report()
             self._take_snapshots()
             if time.perf_counter() - self._kept >= self._continuation.interval:
                 self.keep()
-            if 0.0 < settings.time_limit <= self._elapsed:
+            # Another one would end farther from the limit than this one has.
+            if 0.0 < settings.time_limit <= self._elapsed + 0.5 * seconds_each:
                 return
 
     def _begin(self) -> Iterator[None]:
