@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes .venv with the pinned packages, and installs what headless OpenGL needs on Debian.
+# Makes .venv with the pinned packages, installs what headless OpenGL needs on Debian, and unpacks a newer Mesa.
 # Quick when all is there. PYTHON names the Python 3.11 to use.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -54,12 +54,18 @@ if [ ! -x .venv/bin/python ] && ! "$python" -c 'import ensurepip' 2>/dev/null; t
 fi
 install_system_packages
 
-stamp=.venv/set-up-done
-wanted=$(sha256sum pyproject.toml .ci/set_up.sh | sha256sum)
-if [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ]; then
-    exit 0
-fi
-echo "set-up: Python packages into .venv (Blender as a module among them: a few minutes the first time)"
-[ -x .venv/bin/python ] || "$python" -m venv .venv
-.venv/bin/python -m pip install --quiet --disable-pip-version-check --root-user-action=ignore -e '.[blender,farm,test]'
-echo "$wanted" >"$stamp"
+install_python_packages() {
+    local stamp=.venv/set-up-done wanted
+    wanted=$(sha256sum pyproject.toml .ci/set_up.sh | sha256sum)
+    if [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ]; then
+        return
+    fi
+    echo "set-up: Python packages into .venv (Blender as a module among them: a few minutes the first time)"
+    [ -x .venv/bin/python ] || "$python" -m venv .venv
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --root-user-action=ignore \
+        -e '.[blender,farm,test]'
+    echo "$wanted" >"$stamp"
+}
+
+install_python_packages
+[ -e .mesa/release ] || .venv/bin/python .ci/unpack_mesa.py

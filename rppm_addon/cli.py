@@ -132,7 +132,8 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
         blender = "no bpy module: saved scenes only (make setup, or pip install bpy==5.0.1)"
     print(f"Blender  {blender}")
     device = device_information(options.device)
-    print(f"Device   {device.name}\nDriver   {device.driver}\nOpenGL   {device.version}")
+    unpacked = f", unpacked in {device.driver_folder}" if device.driver_folder else ""
+    print(f"Device   {device.name}\nDriver   {device.driver}{unpacked}\nOpenGL   {device.version}")
     for name, value in device.limits.items():
         print(f"  {name} {value}")
     print("Missing  " + ("nothing" if not device.missing else "\n         ".join(device.missing)))

@@ -82,6 +82,8 @@ class RppmPreferences(bpy.types.AddonPreferences):
         column = self.layout.column(align=True)
         reading(column, "Device", device.name)
         reading(column, "Driver", device.driver)
+        if device.driver_folder:
+            reading(column, "Driver Folder", device.driver_folder)
         reading(column, "OpenGL", device.version)
         for name, text in _LIMITS.items():
             if name in device.limits:

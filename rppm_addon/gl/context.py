@@ -4,11 +4,13 @@
 import ctypes
 import logging
 import os
+import re
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..scene.errors import DeviceError
+from .project_mesa import load_project_mesa
 
 log = logging.getLogger(__name__)
 
@@ -36,6 +38,14 @@ class DeviceInformation:
     version: str
     limits: dict[str, object] = field(default_factory=dict)
     missing: list[str] = field(default_factory=list)
+    driver_folder: str = ""
+    """Where the driver was loaded from, if it is not the system's."""
+
+    @property
+    def label(self) -> str:
+        """Device and driver's version: where both are the same, so are pictures bit for bit."""
+        # The driver is its vendor, OpenGL's version, maybe the profile in brackets, and its own version.
+        return f"{self.name}, {re.sub(r'^.*?[0-9]+[.][0-9.]+ (?:[(].*?[)] )?', '', self.driver, count=1)}"
 
 
 class Context:
@@ -57,6 +67,7 @@ class Context:
 
         if sys.platform == "darwin":
             raise DeviceError("macOS stops at OpenGL 4.1; RPPM needs 4.3: use Linux or Windows")
+        mesa = load_project_mesa()
         options = {}
         device = device if device is not None else os.environ.get("RPPM_DEVICE", "")
         if sys.platform.startswith("linux"):
@@ -80,6 +91,7 @@ class Context:
             driver=f"{info['GL_VENDOR']} {info['GL_VERSION']}",
             version=f"{gl.version_code // 100}.{gl.version_code % 100 // 10}",
             limits={name: info[name] for name in _LIMITS if name in info},
+            driver_folder=str(mesa or ""),
         )
         context = cls(gl, information)
         if not context.has_program_binaries:
@@ -88,7 +100,7 @@ class Context:
             information.missing.append("float atomics (splatting uses a slower compare-and-swap)")
         if context.is_software:
             information.missing.append("a GPU (Mesa renders on the processor)")
-        log.info("device %s, %s", information.name, information.driver)
+        log.info("device %s, %s %s", information.name, information.driver, information.driver_folder)
         return context
 
     @property

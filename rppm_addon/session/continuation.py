@@ -16,7 +16,7 @@ class Pause:
 
     state: RenderState
     device: str
-    """Its name: another one computes the same picture, but not bit for bit."""
+    """Its label: another one, or another driver, computes the same picture, but not bit for bit."""
     radius_metres: float
     """r_max of the last iteration."""
     deep_cubemap: np.ndarray | None = None

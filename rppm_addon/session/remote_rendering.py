@@ -82,7 +82,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
             stopped_at = time.monotonic()
             session.stop()
         if stopped_at is not None and not (shown and time.monotonic() - stopped_at < STOP_SECONDS):
-            return empty_result(scene, process.device.name if process.device else "")
+            return empty_result(scene, process.device.label if process.device else "")
         try:
             event, content = session.events.get(timeout=POLL_SECONDS)
         except queue.Empty:

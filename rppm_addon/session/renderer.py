@@ -113,7 +113,7 @@ class SlicedRender:
         if pause is not None:
             mapper.resume(pause.state)
             self.iterations = self._found = mapper.iterations_in_film
-            if pause.device != self._context.information.name:
+            if pause.device != self._context.information.label:
                 self._scene.warn(
                     f"the checkpoint is of the device {pause.device}: the picture is not the same bit for bit "
                     "as that of an uninterrupted render"
@@ -128,7 +128,7 @@ class SlicedRender:
         """Tell whoever keeps the render how to go on with it, once there is something to keep."""
         if self._continuation.keep is not None and self.between_iterations and self.iterations > 0:
             mapper = self._mapper
-            device = self._context.information.name
+            device = self._context.information.label
             self._continuation.keep(Pause(mapper.state(), device, mapper.splat_radii[0], self._inspection))
         self._kept = time.perf_counter()
 
@@ -159,7 +159,7 @@ class SlicedRender:
     def result(self, stopped: bool) -> RenderResult:
         """The picture and the figures; ``stopped`` says whether slices() was left before its end."""
         if self.iterations == 0:
-            return empty_result(self._scene, self._context.information.name)
+            return empty_result(self._scene, self._context.information.label)
         mapper, seconds, warnings = self._mapper, self._elapsed, list(self._scene.warnings)
         balance = {}
         if self.between_iterations and self.iterations > self._found:
@@ -172,7 +172,7 @@ class SlicedRender:
             photons=self.progress.photons,
             seconds=seconds,
             build_seconds=mapper.build_seconds,
-            device=self._context.information.name,
+            device=self._context.information.label,
             triangles=mapper.triangle_count,
             radius_metres=mapper.splat_radii[0],
             stage_seconds=mapper.timers.seconds,
