@@ -10,7 +10,7 @@ SECONDS_EACH ?= 60
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' Makefile
 
-setup: ## Install what is missing: system packages (Debian, as root) and .venv
+setup: ## Install what is missing: system packages (Debian, as root), .venv and a newer Mesa
 	@.ci/set_up.sh
 
 render: setup ## Render the sample scene inside Blender with RPPM to out/ (PNG and EXR)
@@ -52,6 +52,6 @@ bench: setup ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=-
 bench-export: setup ## Measure what a frame costs in which everything moves (BENCH=--quick)
 	.venv/bin/python tests/benchmarks/export_speed.py --output out/benchmarks/export.json $(BENCH)
 
-clean: ## Remove what was made: out/, caches (.venv stays)
+clean: ## Remove what was made: out/, caches (.venv and .mesa stay)
 	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info
 	find rppm_addon tests tools docs -name __pycache__ -type d -prune -exec rm -rf {} +

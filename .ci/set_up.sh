@@ -69,3 +69,17 @@ install_python_packages() {
 
 install_python_packages
 [ -e .mesa/release ] || .venv/bin/python .ci/unpack_mesa.py
+
+# Drivers that render on the processor compile for longer than a first picture should take.
+compile_programs() {
+    local stamp=.venv/programs-compiled
+    if [ "$stamp" -nt .mesa/release ]; then # also where there is no .mesa
+        return
+    fi
+    echo "set-up: compiling the renderer's programs, once (a minute of processor time; five minutes at most)"
+    timeout --kill-after=10 300 .venv/bin/rppm compile docs/samples/first_light.blend ||
+        echo "set-up: not all of them are compiled; renders compile what they need"
+    touch "$stamp"
+}
+
+compile_programs

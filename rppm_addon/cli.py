@@ -11,6 +11,7 @@ import traceback
 from collections.abc import Sequence
 
 from .commands.arguments import parser
+from .commands.compiling import compile_programs
 from .commands.farm.command import farm
 from .commands.options import is_blend, load_blend_or_saved, split_values, write_json
 from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
@@ -152,4 +153,12 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     return 0
 
 
-_RUNS = {"render": render, "merge": _merge, "farm": farm, "export": _export, "inspect": _inspect, "info": _info}
+_RUNS = {
+    "render": render,
+    "merge": _merge,
+    "farm": farm,
+    "export": _export,
+    "inspect": _inspect,
+    "compile": compile_programs,
+    "info": _info,
+}

@@ -37,6 +37,7 @@ def parser() -> argparse.ArgumentParser:
     _add_farm(commands, scene, common)
     _add_export(commands, scene, common)
     _add_inspect(commands, scene, common)
+    _add_compile(commands, scene, common)
     _add_info(commands, scene, common)
     return program
 
@@ -195,6 +196,17 @@ def _add_inspect(commands, scene: argparse.ArgumentParser, common: argparse.Argu
         "that is hit), entries (read along the ray); default: steps",
     )
     _add_json(inspect, "write counts and bytes by buffer as JSON")
+
+
+def _add_compile(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+    compile_ = commands.add_parser(
+        "compile",
+        parents=[scene, common],
+        help="compile the programs that a scene needs, so that its first picture need not wait for them",
+        description="Compile the programs that pictures of a scene need and keep them on the disk, where renders and "
+        "Blender find them. Other scenes share all but those of the materials.",
+    )
+    compile_.add_argument("file", type=Path, metavar="FILE", help="a .blend file or a .npz of rppm export")
 
 
 def _add_info(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:

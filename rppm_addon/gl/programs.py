@@ -3,7 +3,7 @@
 
 import logging
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import moderngl
 
@@ -24,6 +24,7 @@ class _Program:
 
     def __init__(self, context: Context, sources: list[Source]) -> None:
         self.context = context
+        self.before_first_run: Callable[[], None] | None = None
         self.name = " + ".join(source.files[0] for source in sources)
         self.blocks: dict[str, int] = {}
         self.record = None
@@ -37,6 +38,9 @@ class _Program:
         self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
 
     def _bind(self, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None) -> None:
+        if self.before_first_run is not None:
+            self.before_first_run()
+            self.before_first_run = None
         if buffers.keys() != self.blocks.keys():
             missing = sorted(self.blocks.keys() - buffers.keys())
             unknown = sorted(buffers.keys() - self.blocks.keys())
@@ -172,6 +176,10 @@ class ProgramLibrary:
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
         self.made = 0
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
+        self.started = 0
+        """Programs that have run; llvmpipe for one generates their code only then."""
+        self.on_start: Callable[[], None] | None = None
+        """Called before a program runs for the first time, with ``started`` counting it already."""
 
     def compute(
         self,
@@ -197,9 +205,15 @@ class ProgramLibrary:
         if key not in self._programs:
             start = time.perf_counter()
             self._programs[key] = make()
+            self._programs[key].before_first_run = self._start
             self.made += 1
             log.debug("%s ready in %.3f s", key[0], time.perf_counter() - start)
         return self._programs[key]
+
+    def _start(self) -> None:
+        self.started += 1
+        if self.on_start is not None:
+            self.on_start()
 
     def _compute(self, path: str, defines: dict, inserts: dict) -> ComputeProgram:
         return ComputeProgram(self.context, self._cache, expand(path, defines, inserts))

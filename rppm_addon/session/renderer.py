@@ -247,6 +247,21 @@ class Renderer:
         render.keep()
         return render.result(stopped)
 
+    def compile(self, scene: Scene, on_program: Callable[[int, int], None]) -> int:
+        """Have the driver compile the programs that pictures of a scene need, and keep them on the disk.
+
+        The scene is rendered, as drivers compile for the state in which programs run: make it small. ``on_program`` is
+        told before each program that runs for the first time the how many-th it is, and how many there are so far.
+        Returns their number. Raises the errors of scene/errors.py.
+        """
+        library = self._library
+        library.on_start = lambda: on_program(library.started, library.made)
+        try:
+            self.render(scene)
+        finally:
+            library.on_start = None
+        return library.started
+
     def inspect(self, scene: Scene) -> tuple[np.ndarray, dict[str, int], dict[str, int]]:
         """What the camera's rays cost in the scene's deep cubemap, without rendering.
 

@@ -119,6 +119,19 @@ def test_parameters_reach_the_shader_and_binaries_are_kept(context, shader_folde
     assert len(kept) == (1 if context.has_program_binaries else 0)
 
 
+def test_programs_are_told_of_before_they_first_run(context, shader_folder):
+    (shader_folder / "scale.comp").write_text(PROGRAM)
+    buffer = context.moderngl.buffer(np.ones(16, np.float32).tobytes())
+    library, told = ProgramLibrary(context), []
+    library.on_start = lambda: told.append((library.started, library.made))
+    first, second = library.compute("scale.comp"), library.compute("scale.comp", {"UNUSED": 1})
+    assert told == []
+    for program in (second, first, second):
+        program.run(4, {"Values": buffer}, {"factor": 1.0, "offset": (0, 0, 0), "turn": np.eye(4)})
+    assert told == [(1, 2), (2, 2)]
+    library.release()
+
+
 def test_a_spoiled_binary_is_compiled_again(context, shader_folder):
     (shader_folder / "scale.comp").write_text(PROGRAM)
     ProgramLibrary(context).compute("scale.comp")
