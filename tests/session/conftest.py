@@ -17,7 +17,7 @@ from rppm_addon.session.client import Patience, RendererProcess
 FAKE = Path(__file__).with_name("fake_renderer.py")
 
 
-def wait_until(condition, seconds=60.0):
+def wait_until(condition, seconds=180.0):
     """What the condition gives once it is true; fails the test when it does not become so."""
     deadline = time.monotonic() + seconds
     while not (value := condition()):
