@@ -67,7 +67,8 @@ def test_white_glass_that_stores_photons_vanishes_in_a_white_sky(renderer):
     ball(1.0, material(GLASS, "MULTI_GGX", Color=1.0, Roughness=0.6, IOR=1.5), segments=48)
     camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 18.0)
     settings = {"specular_roughness": 0.0, "final_gather": False, "camera_path_length": 2, "photon_path_length": 24}
-    pictures = render_rppm(renderer, seeds=3, photons=16384, iterations=12, **settings).pictures
+    # Many seeds: of three, chance alone made the error twice what it is.
+    pictures = render_rppm(renderer, seeds=12, photons=16384, iterations=3, **settings).pictures
     means = pictures.mean(axis=(1, 2, 3))
     error = means.std(ddof=1) / np.sqrt(len(means))
     print(f"\n{means.mean():.4f} +- {error:.4f}")
