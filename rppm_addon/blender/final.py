@@ -124,6 +124,7 @@ def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
         statistics.triangles,
         statistics.source_watts,
         statistics.source_photons,
+        statistics.density_estimation,
         tuple(statistics.warnings),
     )
 

@@ -174,6 +174,16 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         description="Leave out half of the splats at random and count the others twice: faster iterations, more noise",
         default=DEFAULTS.splat_roulette,
     )
+    density_estimation: EnumProperty(
+        name="Density Estimation",
+        description="How photons and the points that take them find each other: any way gives the same picture",
+        items=[
+            ("AUTOMATIC", "Automatic", "Try both with the first photons and take the faster one", 0),
+            ("RASTERIZED", "Rasterized", "Splat photons onto pixels by rasterization, as the paper does", 1),
+            ("GRID", "Photon Grid", "Sort photons into grids of cells, and look for them in the cells around", 2),
+        ],
+        default=DEFAULTS.density_estimation.name,
+    )
     filter_width: FloatProperty(
         name="Filter Width",
         description="Width of the Blackman-Harris pixel filter; 0 looks through the middle of pixels only",

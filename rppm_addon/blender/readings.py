@@ -9,7 +9,7 @@ import numpy as np
 
 from ..integrator.bandwidth import radius_in_pixels, shrinkage
 from ..integrator.memory import Memory, expected_memory
-from ..scene import Camera, RenderSettings
+from ..scene import Camera, DensityEstimation, RenderSettings
 from .reports import RenderReport
 
 
@@ -52,7 +52,8 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
     """What rendering width x height pixels takes, with what a former render of the scene needed beside."""
 
     def expected(settings: RenderSettings, width: int, height: int) -> Memory:
-        return expected_memory(width, height, settings.photons, settings.photon_path_length)
+        rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
+        return expected_memory(width, height, settings.photons, settings.photon_path_length, rasterized)
 
     scene_bytes = None
     if report is not None:

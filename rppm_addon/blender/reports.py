@@ -46,6 +46,8 @@ class RenderReport:
     """Power by light source, as integrator/sources.py names them."""
     source_photons: dict[str, int] = field(default_factory=dict)
     """Photons of the last iteration by light source."""
+    density_estimation: str = ""
+    """The route that was taken, a name of DensityEstimation; empty before the first iteration."""
     warnings: tuple[str, ...] = ()
     warning_count: int = 0
     """All of them, where ``warnings`` was cut short."""
@@ -81,6 +83,7 @@ def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
         triangles=scene.triangle_count,
         source_watts=status.source_watts,
         source_photons=status.source_photons,
+        density_estimation=status.density_estimation,
         warnings=tuple(status.warnings),
     )
 

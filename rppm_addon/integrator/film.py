@@ -9,7 +9,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from .importons import Importons
-from .splatting import Splatting
+from .splat_sums import SplatSums
 
 Record("SurfaceParameters", count="uint", first_pixel="uint", iteration="uint", segment="uint")
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
@@ -54,14 +54,12 @@ class Film:
             {"count": count, "first_pixel": first_pixel, "iteration": iteration, "segment": segment},
         )
 
-    def add(
-        self, radiances: moderngl.Buffer, splatting: Splatting, count: int, first_pixel: int, iteration: int
-    ) -> None:
+    def add(self, radiances: moderngl.Buffer, sums: SplatSums, count: int, first_pixel: int, iteration: int) -> None:
         """Add the band's estimate of an iteration."""
         self._accumulate.run(
             count,
-            {"Radiances": radiances, "Gathered": splatting.gathered.buffer, "Film": self._radiance.buffer},
-            {"count": count, "quantum": splatting.quantum, "first_pixel": first_pixel, "iteration": iteration},
+            {"Radiances": radiances, "SplatSums": sums.buffer, "Film": self._radiance.buffer},
+            {"count": count, "quantum": sums.quantum, "first_pixel": first_pixel, "iteration": iteration},
         )
 
     def read_radiance(self) -> np.ndarray:

@@ -14,7 +14,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from .records import GATHERING_VERTEX
-from .splatting import Splatting
+from .splat_sums import SplatSums
 
 Record("FoundParameters", count="uint", quantum="float")
 Record(
@@ -57,7 +57,7 @@ class FinalGather:
 
     def run(
         self,
-        splatting: Splatting,
+        sums: SplatSums,
         radiances: moderngl.Buffer,
         count: int,
         width: int,
@@ -70,11 +70,11 @@ class FinalGather:
         self._found_program.run(
             count,
             {
-                "Gathered": splatting.gathered.buffer,
+                "SplatSums": sums.buffer,
                 "FoundRadiances": self.radiances.buffer,
                 "GatheringVertices": self.vertices.buffer,
             },
-            {"count": count, "quantum": splatting.quantum},
+            {"count": count, "quantum": sums.quantum},
         )
         radius = SHARED_RADIUS * radius_in_pixels
         self._share_program.run(

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .bands import bands_of
+from .photon_grid import importon_memory
 from .records import (
     CAMERA_PATH,
     CLOSURE,
@@ -81,9 +82,10 @@ def reckon_memory(groups: Mapping[str, Mapping[str, int]], pixels: int, photons:
     return Memory(pixels, photons, segments, ppm, {group: sizes for group, sizes in working.items() if sizes})
 
 
-def expected_memory(width: int, height: int, photons: int, segments: int) -> Memory:
+def expected_memory(width: int, height: int, photons: int, segments: int, rasterized: bool = False) -> Memory:
     """The buffers whose size follows from the settings, known before anything is rendered.
 
+    rasterized: whether photons are splatted by rasterization, not gathered from a grid.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
     pixels, band = width * height, width * bands_of(width, height)[0][1]
@@ -114,11 +116,11 @@ def expected_memory(width: int, height: int, photons: int, segments: int) -> Mem
             "triangles of sampled lights": 4 * band,
         },
         "final gather": {"gathering vertices": GATHERING_VERTEX.size * band, "found radiance": 16 * band},
-        "splatting": {
+        "density estimation": {
             "stored photons": 8 + 4 * photons * segments,
-            "splat core list": 4 * (band + 1),
             "gathered radiance": 48 * band,
             "diffused photons": 4 * band,
+            **({"splat core list": 4 * (band + 1)} if rasterized else importon_memory(band)),
         },
         "passes": {"film": 16 * pixels, "film surface": 16 * pixels, "film surface counts": 4 * pixels},
     }

@@ -18,6 +18,7 @@ from ..scene.errors import CheckpointError
 from ..scene.garbage import collector_paused
 from ..scene.motion import MovingScene
 from ..scene.scene import Scene
+from ..scene.settings import DensityEstimation
 from ..scene.settings import DirectLight as DirectLightMode
 from .bands import bands_of
 from .bandwidth import (
@@ -35,6 +36,7 @@ from .bandwidth import (
 from .camera_view import camera_view, is_rasterized
 from .changes import Changes, changes_between, snapshot
 from .deep_cubemap import DeepCubemap
+from .density_estimator import DensityEstimator
 from .direct_light import DirectLight
 from .emission import Emission
 from .film import Film
@@ -52,9 +54,10 @@ from .primary_rays import PrimaryRays
 from .resolve import Resolve
 from .shadow_catcher import ShadowCatcher
 from .shutter import moment, swept_bounds
-from .splatting import Splatting, StoredPhotons, radiance_quantum
+from .splat_sums import radiance_quantum
 from .stages import Stages
 from .state import RenderState
+from .stored_photons import CameraRaster, SplatRadii, StoredPhotons, TakingImportons
 
 log = logging.getLogger(__name__)
 
@@ -214,7 +217,7 @@ class ProgressivePhotonMapper:
             else PrimaryRays(self.context, self._library)
         )
         self._importons = Importons(self.context, self._library, width * rows)
-        self._splatting = Splatting(self.context, self._library, width, rows)
+        self._density_estimator = DensityEstimator(self.context, self._library, width, rows)
         self._direct_light = DirectLight(self.context, self._library, width * rows)
         self._final_gather = FinalGather(self.context, self._library, width * rows)
         self._shadow_catcher = ShadowCatcher(self.context, self._library, width * rows, self.scene)
@@ -223,7 +226,7 @@ class ProgressivePhotonMapper:
             self._photons,
             self._gbuffer,
             self._importons,
-            self._splatting,
+            self._density_estimator,
             self._direct_light,
             self._final_gather,
             self._shadow_catcher,
@@ -297,8 +300,8 @@ class ProgressivePhotonMapper:
                 if self._gathers:
                     self._share_gathered_light()
                 self._update_film()
-            if self._splatting.counting:
-                diffused_photons.append(self._splatting.diffused_photons(self._count))
+            if self._density_estimator.sums.counting:
+                diffused_photons.append(self._density_estimator.sums.diffused_photons(self._count))
         if self.iteration <= LEARNING_ITERATIONS:
             with self.timers.stage("learning"):
                 self._tally(diffused_photons)
@@ -388,6 +391,11 @@ class ProgressivePhotonMapper:
         return self._emission.source_photons
 
     @property
+    def density_estimation(self) -> DensityEstimation:
+        """The route that photons and importons find each other by."""
+        return self._density_estimator.route
+
+    @property
     def triangle_count(self) -> int:
         return self._geometry.triangle_count
 
@@ -403,7 +411,7 @@ class ProgressivePhotonMapper:
             "direct light": self._direct_light.memory_bytes,
             "final gather": self._final_gather.memory_bytes,
             "shadow catcher": self._shadow_catcher.memory_bytes,
-            "splatting": self._splatting.memory_bytes,
+            "density estimation": self._density_estimator.memory_bytes,
             "passes": self.film.memory_bytes,
         }
         settings = self.scene.settings
@@ -419,6 +427,7 @@ class ProgressivePhotonMapper:
         """Give the lists of photons to splat the length that the first iteration needs, which build cannot know."""
         self.iteration = 1
         self._trace_photons()
+        self._density_estimator.prepare()
         self.iteration = 0
 
     def flux_balance(self) -> dict[str, float]:
@@ -468,21 +477,37 @@ class ProgressivePhotonMapper:
         """DirectPhotonHits and TracePhotons."""
         self._photons.run(self._stages, self.iteration)
         # With next-event rays direct photons would count direct light twice.
-        indirect_only = self.scene.settings.direct_light is DirectLightMode.RAYS
+        settings, estimator = self.scene.settings, self._density_estimator
+        indirect_only = settings.direct_light is DirectLightMode.RAYS
+        listed = estimator.photon_list
         with self.timers.stage("photon list"):
-            self._splatting.collect(
+            listed.collect(
                 self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, indirect_only
             )
         if self.iteration == 1:
             spread = wide_radius(
-                self._splatting.diffused_count, self._expected, self._geometry.bounds_low, self._geometry.bounds_high
+                listed.diffused_count, self._expected, self._geometry.bounds_low, self._geometry.bounds_high
             )
             self._wide_radius = min(spread, self._widest_radius)
-        self._splatting.count_in(
+        estimator.sums.count_in(
             radiance_quantum(self._emission.photon_flux, max(self.splat_radii)),
-            self._roulette_seed() if self.scene.settings.splat_roulette else 0,
+            self._roulette_seed() if settings.splat_roulette else 0,
             learns_after(self.iteration),
         )
+        bounds = self._geometry.bounds_low, self._geometry.bounds_high
+        photons = StoredPhotons(
+            self._photons.photons.buffer,
+            listed.buffer,
+            listed.count,
+            listed.count - listed.diffused_count,
+            listed.diffused_count,
+            self._photons.world_radiances.buffer,
+            settings.photons,
+            self._emission.photon_flux,
+            SplatRadii(*self.splat_radii),
+            float(np.max(np.abs(bounds))),
+        )
+        estimator.begin(settings.density_estimation, photons)
 
     def _tally(self, diffused_photons: list[np.ndarray]) -> None:
         """Of what use the iteration's photons were, and how many diffused ones pixels found, (pixels,) by band."""
@@ -518,7 +543,7 @@ class ProgressivePhotonMapper:
         view = camera_view(self.scene.camera, first_row, rows, offset)
         with self.timers.stage("gbuffer"):
             self._importons.begin()
-            self._splatting.begin()
+            self._density_estimator.sums.begin()
             if self._gathers:
                 self._final_gather.begin()
             self._begin_band(view, first_row, self.iteration)
@@ -572,48 +597,32 @@ class ProgressivePhotonMapper:
                     self._stages, self._importons, self._count, self._first_pixel, self.iteration, segment
                 )
 
-    def _stored_photons(self, segment: int) -> StoredPhotons:
-        """To be splatted onto the importons of a segment, from which the gathering ray is the next."""
-        settings = self.scene.settings
-        return StoredPhotons(
-            self._photons.photons.buffer,
-            self._photons.world_radiances.buffer,
-            settings.photons,
-            self._emission.photon_flux,
-            max(settings.camera_path_length - segment - 2, 0),
+    def _taking_importons(self, segment: int, raster: CameraRaster | None = None) -> TakingImportons:
+        """Those of a segment, from which the gathering ray is the next."""
+        return TakingImportons(
+            self._importons.importons.buffer,
+            self._count,
+            gathers=segment == 0 and self._gathers,
+            by_ray=segment > 0 and self._gathers,
+            most_scattered=max(self.scene.settings.camera_path_length - segment - 2, 0),
+            raster=raster,
+            centre=self.centre,
         )
 
     def _direct_splatting(self) -> None:
+        raster = CameraRaster(self._gbuffer.camera, self.film.width, self._rows)
         with self.timers.stage("direct splatting"):
-            self._splatting.direct(
-                self._stored_photons(0),
-                self._importons.importons.buffer,
-                self._gbuffer.camera,
-                self.film.width,
-                self._rows,
-                self.splat_radii,
-                self._gathers,
-            )
+            self._density_estimator.estimate(self._taking_importons(0, raster))
 
     def _indirect_splatting(self, segment: int) -> None:
-        narrow, wide = self.splat_radii
-        if segment > 0 and self._gathers:
-            narrow = radius_by_ray(narrow, wide)
         with self.timers.stage("indirect splatting"):
-            self._splatting.indirect(
-                self._stored_photons(segment),
-                self._importons.importons.buffer,
-                self._count,
-                self.centre,
-                (narrow, wide),
-                segment == 0 and self._gathers,
-            )
+            self._density_estimator.estimate(self._taking_importons(segment))
 
     def _share_gathered_light(self) -> None:
         """What the gathering rays found, to the pixels that they left from and to those around."""
         with self.timers.stage("final gather"):
             self._final_gather.run(
-                self._splatting,
+                self._density_estimator.sums,
                 self._importons.radiances.buffer,
                 self._count,
                 self.film.width,
@@ -628,7 +637,7 @@ class ProgressivePhotonMapper:
         with self.timers.stage("film"):
             self.film.add(
                 self._importons.radiances.buffer,
-                self._splatting,
+                self._density_estimator.sums,
                 self._count,
                 self._first_pixel,
                 self.iterations_in_film,

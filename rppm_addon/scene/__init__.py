@@ -9,7 +9,7 @@ from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, Ra
 from .motion import CameraMovement, Deformation, Movement, MovingScene, Shutter
 from .node_graphs import Link, NodeGraph, ShaderNode
 from .scene import Scene
-from .settings import DirectLight, RenderSettings
+from .settings import DensityEstimation, DirectLight, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "Camera",
     "CameraMovement",
     "Deformation",
+    "DensityEstimation",
     "DirectLight",
     "Image",
     "Instance",

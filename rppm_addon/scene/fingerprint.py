@@ -11,8 +11,9 @@ from .documents import encode
 from .scene import Scene
 from .settings import RenderSettings
 
-LIMITS = frozenset({"iterations", "time_limit", "iterations_per_frame"})
-"""Settings that say when a render ends or is shown, and nothing of what an iteration finds."""
+UNSEEN = frozenset({"iterations", "time_limit", "iterations_per_frame", "density_estimation"})
+"""Settings that say when a render ends or is shown or by which way it comes to its picture, and nothing of what an
+iteration finds."""
 _NOT_RENDERED = frozenset({"settings", "warnings"})
 
 
@@ -40,4 +41,4 @@ def scene_digests(scene: Scene) -> dict[str, str]:
 def plain_settings(settings: RenderSettings) -> dict[str, object]:
     """The settings that a picture depends on by name, as JSON has them."""
     values = encode(settings, lambda array: array.tolist())
-    return {name: value for name, value in values.items() if name not in LIMITS}
+    return {name: value for name, value in values.items() if name not in UNSEEN}

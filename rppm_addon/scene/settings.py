@@ -20,6 +20,17 @@ class DirectLight(enum.Enum):
     PHOTONS = "PHOTONS"
 
 
+class DensityEstimation(enum.Enum):
+    """How photons and the points that take them find each other: the same picture, at different speed."""
+
+    AUTOMATIC = "AUTOMATIC"
+    """Whichever is faster, found by trying both."""
+    RASTERIZED = "RASTERIZED"
+    """Photons are splatted by rasterization, as in the paper."""
+    GRID = "GRID"
+    """Photons are gathered from hashed grids."""
+
+
 @dataclass
 class RenderSettings:
     """Settings of the photon mapper. Lengths in metres, times in seconds."""
@@ -48,7 +59,8 @@ class RenderSettings:
     final_gather: bool = True
     """Whether light that other surfaces send to a point is looked for along one ray, at whose end photons count."""
     splat_roulette: bool = False
-    """Whether half of the splat fragments end unseen and the others count twice (paper section 4.2, Fig. 5)."""
+    """Whether half of the splats are left out and the others count twice (paper section 4.2, Fig. 5)."""
+    density_estimation: DensityEstimation = DensityEstimation.AUTOMATIC
     iterations_per_frame: int = 1
     """N_ipf: iterations between two pictures shown."""
     seed: int = 0

@@ -83,9 +83,8 @@ class SlicedRender:
         """
         mapper, settings = self._mapper, self._scene.settings
         mapper.timers.reset()
-        # The pass pictures the deep cubemap, and roulette draws by its cells: there the centre is not free.
-        exact = settings.deep_cubemap_pass or settings.splat_roulette
-        mapper.update(self._scene, stray=0.0 if exact else STRAY)
+        # The pass pictures the deep cubemap: there the centre is not free.
+        mapper.update(self._scene, stray=0.0 if settings.deep_cubemap_pass else STRAY)
         if settings.deep_cubemap_pass:
             self._inspection = mapper.inspect_deep_cubemap()[..., :3]
         yield from self._begin()
@@ -175,6 +174,7 @@ class SlicedRender:
             device=self._context.information.label,
             triangles=mapper.triangle_count,
             radius_metres=mapper.splat_radii[0],
+            density_estimation=mapper.density_estimation.name,
             stage_seconds=mapper.timers.seconds,
             memory_bytes=mapper.memory_bytes,
             flux_watts=balance,

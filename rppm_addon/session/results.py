@@ -56,6 +56,8 @@ class RenderStatistics:
     device: str
     triangles: int
     radius_metres: float
+    density_estimation: str = ""
+    """The route that was taken, a name of DensityEstimation."""
     stage_seconds: dict[str, float] = field(default_factory=dict)
     memory_bytes: dict[str, int] = field(default_factory=dict)
     flux_watts: dict[str, float] = field(default_factory=dict)

@@ -27,6 +27,8 @@ class SessionStatus:
     radius_metres: float = 0.0
     """r_max of the iteration."""
     memory_bytes: int = 0
+    density_estimation: str = ""
+    """As RenderStatistics has it."""
     iterations_per_second: float = 0.0
     photons_per_second: float = 0.0
     source_watts: dict[str, float] = field(default_factory=dict)

@@ -118,6 +118,7 @@ class Viewing:
                     elapsed_seconds=now - started,
                     radius_metres=mapper.splat_radii[0],
                     memory_bytes=sum(mapper.memory_bytes.values()),
+                    density_estimation=mapper.density_estimation.name,
                     iterations_per_second=mapper.iteration / (now - built),
                     photons_per_second=mapper.photons_emitted / (now - built),
                     source_watts=mapper.source_watts,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer declares the storage blocks of photons[] and importons[] before, and the members photon_count,
-// world_photon_flux and most_scattered of its parameters.
+// The includer declares before the members photon_count, world_photon_flux and most_scattered of its parameters.
+#include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/sampling.glsl"
 #include "common/gathering.glsl"
@@ -46,31 +46,31 @@ float caustic_share(uint photon_number, float radius) {
     return found ? world_photon_share(radiance, parameters.world_photon_flux, radius) : 1.0;
 }
 
+// What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which an
+// importon takes photons of its kind. offset: from importon to photon.
+bool within_reach(uint gathers, float narrow, vec3 offset, uint photon_flags, float wide_radius) {
+    if (gathers == GATHERS_BY_RAY && (photon_flags & PHOTON_INDIRECT) != 0u) return false;
+    float radius = photon_radius(photon_flags, narrow, wide_radius);
+    return dot(offset, offset) < radius * radius && narrow > 0.0;
+}
+
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
-// integral over the unit disk is 1. False when it adds nothing. Most pairs are too far apart: only
-// what decides that is read first.
-bool density_estimate(uint importon_number, uint photon_number, float wide_radius, out vec3 radiance) {
+// integral over the unit disk is 1. False when it adds nothing.
+bool density_estimate(Importon importon, Photon photon, uint photon_number, float wide_radius, out vec3 radiance) {
     radiance = vec3(0.0);
-    bool by_ray = importons[importon_number].gathers == GATHERS_BY_RAY;
-    if (by_ray && (photons[photon_number].flags & PHOTON_INDIRECT) != 0u) return false;
-    float narrow = importons[importon_number].radius;
-    vec3 offset = photons[photon_number].position - importons[importon_number].position;
-    float radius = photon_radius(photons[photon_number].flags, narrow, wide_radius), radius2 = radius * radius;
-    float distance2 = dot(offset, offset);
-    if (!(distance2 < radius2) || !(narrow > 0.0)) return false;
-    vec3 geometric = unpack_unit_vector(importons[importon_number].geometric_normal);
+    vec3 offset = photon.position - importon.position;
+    if (!within_reach(importon.gathers, importon.radius, offset, photon.flags, wide_radius)) return false;
+    float radius = photon_radius(photon.flags, importon.radius, wide_radius), radius2 = radius * radius;
+    vec3 geometric = unpack_unit_vector(importon.geometric_normal);
     if (abs(dot(offset, geometric)) > PLANE_TOLERANCE * radius) return false;
-    vec3 photon_normal = unpack_unit_vector(photons[photon_number].geometric_normal);
+    vec3 photon_normal = unpack_unit_vector(photon.geometric_normal);
     float alignment = dot(geometric, photon_normal);
     if (abs(alignment) < NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
-    if (alignment < 0.0 && !lobe_transmits(unpack_kind(importons[importon_number].lobe_kind))
-        && largest(importons[importon_number].translucent) <= 0.0) return false;
-    vec3 direction = photons[photon_number].direction;
-    Importon importon = importons[importon_number];
-    float kernel = 2.0 * (1.0 - distance2 / radius2) / (PI * radius2);
-    float geometric_cosine = abs(dot(photon_normal, direction));
-    radiance = evaluate_importon(importon, direction, alignment > 0.0, geometric_cosine) * photons[photon_number].flux * kernel;
-    if (by_ray && (photons[photon_number].flags & PHOTON_DIRECT) == 0u) radiance *= caustic_share(photon_number, narrow);
+    if (alignment < 0.0 && !lobe_transmits(unpack_kind(importon.lobe_kind)) && largest(importon.translucent) <= 0.0) return false;
+    float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
+    float geometric_cosine = abs(dot(photon_normal, photon.direction));
+    radiance = evaluate_importon(importon, photon.direction, alignment > 0.0, geometric_cosine) * photon.flux * kernel;
+    if (importon.gathers == GATHERS_BY_RAY && (photon.flags & PHOTON_DIRECT) == 0u) radiance *= caustic_share(photon_number, importon.radius);
     return largest(radiance) > 0.0;
 }

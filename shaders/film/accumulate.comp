@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #include <FilmParameters>
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { FilmParameters parameters; };
-#include "splatting/read_sums.glsl"
+#include "splat_sums/read.glsl"
 layout(std430, binding = 0) readonly buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 2) buffer Film { vec4 film[]; };
 

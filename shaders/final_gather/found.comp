@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/gathering.glsl"
 layout(std140, binding = 0) uniform Parameters { FoundParameters parameters; };
-#include "splatting/read_sums.glsl"
+#include "splat_sums/read.glsl"
 layout(std430, binding = 0) buffer FoundRadiances { vec4 found_radiances[]; };
 layout(std430, binding = 2) readonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
 

@@ -14,8 +14,7 @@ layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; u
 layout(std430, binding = 2) readonly buffer Core { uint core_count; uint core_importons[]; };
 layout(std430, binding = 3) readonly buffer Importons { Importon importons[]; };
 #include "common/importon.glsl"
-#include "splatting/gathered.glsl"
-#include "splatting/diffused.glsl"
+#include "splatting/meet.glsl"
 
 void main() {
     uint index = invocation_index();
@@ -24,11 +23,5 @@ void main() {
     vec3 p = photons[photon].position - parameters.centre;
     float reach = 3.001 * max(parameters.radius, parameters.wide_radius);
     if (dot(p, p) > reach * reach) return;
-    for (uint k = 0u; k < core_count; ++k) {
-        vec3 radiance;
-        if (density_estimate(core_importons[k], photon, parameters.wide_radius, radiance)) {
-            add_gathered(core_importons[k], photon, radiance, parameters.quanta);
-            count_diffused(core_importons[k], photon, parameters.counting);
-        }
-    }
+    for (uint k = 0u; k < core_count; ++k) meet(core_importons[k], photon);
 }

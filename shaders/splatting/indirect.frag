@@ -6,13 +6,11 @@
 #include <Importon>
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-#include "splatting/roulette.glsl"
 layout(std430, binding = 0) buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
 #include "common/importon.glsl"
-#include "splatting/gathered.glsl"
-#include "splatting/diffused.glsl"
+#include "splatting/meet.glsl"
 
 flat in uint photon_number;
 flat in uint face;
@@ -22,15 +20,5 @@ void main() {
     ivec2 size = ivec2(int(parameters.width) / 3);
     ivec2 cell = ivec2(gl_FragCoord.xy) - ivec2(int(face) % 3, int(face) / 3) * size;
     int place = (int(face) * size.x + cell.y) * size.x + cell.x;
-    uint entry = heads[place];
-    if (entry == 0u || rejected(photon_number, uint(place))) return;
-    while (entry != 0u) {
-        uint importon = entry - 1u;
-        vec3 radiance;
-        if (density_estimate(importon, photon_number, parameters.wide_radius, radiance)) {
-            add_gathered(importon, photon_number, radiance, parameters.quanta);
-            count_diffused(importon, photon_number, parameters.counting);
-        }
-        entry = importons[importon].next;
-    }
+    for (uint entry = heads[place]; entry != 0u; entry = importons[entry - 1u].next) meet(entry - 1u, photon_number);
 }

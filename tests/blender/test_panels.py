@@ -175,13 +175,15 @@ def test_expected_memory(scene):
 
 
 def test_rates_and_the_last_renders(scene):
-    reports.record(scene.session_uid, report(RenderKind.VIEWPORT, iterations=4, photons=1000))
+    viewport = report(RenderKind.VIEWPORT, iterations=4, photons=1000, density_estimation="GRID")
+    reports.record(scene.session_uid, viewport)
     for number in range(1, 4):
         reports.record(scene.session_uid, report(photons=8000 * number, warnings=("a", "b")))
     status = drawn(panels.performance.RPPM_PT_status, context_of(scene)).labels
     assert status.index("Viewport") < status.index("Final")
     assert "1 iterations, 250 photons" in status and "2 iterations, 6.00 k photons" in status
     assert "8 of 8" in status and "200.0 MiB" in status
+    assert status.count("Density Estimation") == status.count("Photon Grid") == 1
     table = drawn(panels.performance.RPPM_PT_last_renders, context_of(scene)).labels
     start = table.index("Photons")
     assert table[start : start + 4] == ["Photons", "24.0 k", "16.0 k", "8.00 k"]

@@ -290,6 +290,7 @@ def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
     final = rendered(facing)
     assert final.source_watts == told.source_watts and final.source_photons == told.source_photons
     assert final.radius_metres == pytest.approx(told.radius_metres, rel=1e-6)
+    assert {final.density_estimation, told.density_estimation} <= {"GRID", "RASTERIZED"}
     shown = drawn(panels.performance.RPPM_PT_status, context_of(facing)).labels
     assert shown.index("Viewport") < shown.index("Final")
 

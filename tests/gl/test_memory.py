@@ -8,7 +8,9 @@ import scenes
 
 from rppm_addon.integrator.bands import MAXIMUM_BAND_PIXELS
 from rppm_addon.integrator.memory import expected_memory
+from rppm_addon.scene import DensityEstimation
 
+ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
 SETTINGS = {"photons": 3000, "photon_path_length": 5, "camera_path_length": 2, "iterations": 1}
 
 
@@ -29,16 +31,20 @@ def test_a_megapixel_takes_no_more_than_in_the_paper(renderer):
     assert memory.ppm_bytes <= memory.paper_bytes
 
 
-def test_all_buffers_of_a_render_are_reckoned(renderer):
+@pytest.mark.parametrize("route", ROUTES)
+def test_all_buffers_of_a_render_are_reckoned(renderer, route):
     """None twice, none forgotten, and the lists as long as the first iteration makes them."""
-    scene = scenes.room(16, **SETTINGS)
+    scene = scenes.room(16, density_estimation=route, **SETTINGS)
     memory = renderer.memory(scene)
     told = renderer.render(scene).statistics.memory_bytes
     groups = [memory.ppm, *memory.working.values()]
     assert {name: size for sizes in groups for name, size in sizes.items()} == told
     assert sum(map(len, groups)) == len(told)
     assert memory.total_bytes == sum(told.values())
-    assert told["stored photons"] > 4 * 3000 * 5 and told["splat jobs"] > 16 * 3000
+    assert told["stored photons"] > 4 * 3000 * 5
+    rasterized = route is DensityEstimation.RASTERIZED
+    assert ("splat jobs" in told) == rasterized == ("sorted photons" not in told)
+    assert told["splat jobs" if rasterized else "sorted photons"] > 16 * 3000
 
 
 def test_buffers_of_the_camera_have_the_size_of_a_band(renderer):
@@ -52,13 +58,16 @@ def test_buffers_of_the_camera_have_the_size_of_a_band(renderer):
     assert {**two.working, "passes": 0} == {**one.working, "passes": 0}
 
 
+@pytest.mark.parametrize("route", ROUTES)
 @pytest.mark.parametrize(("width", "height"), [(16, 16), (2048, 200)])
-def test_what_the_settings_alone_take_is_known_beforehand(renderer, width, height):
-    scene = scenes.room(16, **SETTINGS)
+def test_what_the_settings_alone_take_is_known_beforehand(renderer, width, height, route):
+    scene = scenes.room(16, density_estimation=route, **SETTINGS)
     scene = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, width=width, height=height))
-    memory, expected = renderer.memory(scene), expected_memory(width, height, 3000, 5)
+    rasterized = route is DensityEstimation.RASTERIZED
+    memory, expected = renderer.memory(scene), expected_memory(width, height, 3000, 5, rasterized)
     assert expected.ppm == memory.ppm and expected.paper_bytes == memory.paper_bytes
     for group, sizes in expected.working.items():
         assert sizes == {name: memory.working[group][name] for name in sizes}
         # Nothing but what depends on the scene or the camera's kind is left out.
-        assert set(memory.working[group]) - set(sizes) <= {"visibility buffer", "splat jobs", "splat cubemap"}
+        lists = {"splat jobs", "splat cubemap"} if rasterized else {"photon grid", "sorted photons"}
+        assert set(memory.working[group]) - set(sizes) <= {"visibility buffer", *lists}

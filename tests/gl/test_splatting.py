@@ -6,7 +6,7 @@ import pytest
 import scenes
 from test_geometry import unpack
 
-from rppm_addon.integrator import splatting
+from rppm_addon.integrator import splat_sums, splatting
 from rppm_addon.integrator.records import (
     GATHERED_BY_RAY,
     GATHERS_BY_RAY,
@@ -15,7 +15,9 @@ from rppm_addon.integrator.records import (
     PHOTON_INDIRECT,
     PHOTON_STORED,
 )
-from rppm_addon.scene import DirectLight
+from rppm_addon.scene import DensityEstimation, DirectLight
+
+ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
 
 
 def brute_force(importons, photons, wide):
@@ -46,14 +48,18 @@ def brute_force(importons, photons, wide):
 
 
 def diffuse_room(**settings):
-    fixed = {"photons": 4096, "direct_light": DirectLight.PHOTONS, "radius_scale": 60.0, "filter_width": 0.0}
+    fixed = {
+        "photons": 4096, "direct_light": DirectLight.PHOTONS, "radius_scale": 60.0, "filter_width": 0.0,
+        "density_estimation": DensityEstimation.RASTERIZED,
+    }  # fmt: skip
     scene = scenes.room(24, **{"final_gather": False, **fixed, **settings})
     scene.instances = scene.instances[:5] + scene.instances[6:]  # the mirror stays
     return scene
 
 
-def test_direct_splats_are_all_pairs(mapper):
-    mapper.build(diffuse_room(camera_path_length=1))
+@pytest.mark.parametrize("route", ROUTES)
+def test_direct_splats_are_all_pairs(mapper, route):
+    mapper.build(diffuse_room(camera_path_length=1, density_estimation=route))
     mapper.iterate()
     count = 24 * 24
     importons = mapper._importons.importons.read(IMPORTON.dtype, count)
@@ -76,17 +82,18 @@ def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
         if centre is not None:
             mapper.centre = np.array(centre)
         mapper.iterate()
-        gathered.append(mapper._splatting.gathered.read(np.uint64, 6 * count).reshape(-1, 6)[:, :3])
+        gathered.append(mapper._density_estimator.sums.read(count)[:, 0])
     importons = mapper._importons.importons.read(IMPORTON.dtype, count)  # those seen in the mirror
     expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
-    got = (gathered[1] - gathered[0]) * mapper._splatting.quantum
+    got = (gathered[1] - gathered[0]) * mapper._density_estimator.sums.quantum
     assert (expected > 0).any(axis=1).sum() > 15
     np.testing.assert_allclose(got, expected, rtol=2e-3, atol=2e-4 * expected.max())
 
 
-def test_gathering_splats_are_all_pairs(mapper, monkeypatch):
+@pytest.mark.parametrize("route", ROUTES)
+def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
     """First hits take what came straight or by the mirror; where the gathering rays end, all photons count."""
-    mapper.build(diffuse_room(camera_path_length=2, final_gather=True))
+    mapper.build(diffuse_room(camera_path_length=2, final_gather=True, density_estimation=route))
     count, first = 24 * 24, []
     direct_splatting = mapper._direct_splatting
 
@@ -100,7 +107,8 @@ def test_gathering_splats_are_all_pairs(mapper, monkeypatch):
     photons, wide = mapper.read_photons().ravel(), mapper.splat_radii[1]
     assert (first[0]["gathers"][first[0]["radius"] > 0] == GATHERS_BY_RAY).all()
     parts = [brute_force(importons, photons, wide) for importons in (first[0], last)]
-    got = mapper._splatting.gathered.read(np.uint64, 6 * count).reshape(-1, 2, 3) * mapper._splatting.quantum
+    sums = mapper._density_estimator.sums
+    got = sums.read(count) * sums.quantum
     found = last["gathers"][:, None] == GATHERED_BY_RAY
     assert all((part > 0).any(axis=1).mean() > 0.5 for part in parts)
     # What the ray finds is summed apart; behind the mirror the last segment is the first that stores.
@@ -115,19 +123,19 @@ def gathered_picture(mapper, **settings) -> np.ndarray:
     return mapper.film.read_radiance()[..., :3].astype(np.float64)
 
 
+@pytest.mark.parametrize("route", ROUTES)
 @pytest.mark.parametrize("shift", [12, 40])
-def test_sums_do_not_depend_on_what_they_count_in(mapper, monkeypatch, shift):
+def test_sums_do_not_depend_on_what_they_count_in(mapper, monkeypatch, shift, route):
     """Coarse quanta round by their share only; fine ones fill the high words."""
-    expected = gathered_picture(mapper)
-    monkeypatch.setattr(splatting, "_PHOTON_QUANTA", 1 << shift)
-    got = gathered_picture(mapper)
-    words = mapper._splatting.gathered.read(np.uint32, 12 * 24 * 24).reshape(-1, 2)
-    assert words[:, 1].any() == (shift == 40)
+    expected = gathered_picture(mapper, density_estimation=route)
+    monkeypatch.setattr(splat_sums, "_PHOTON_QUANTA", 1 << shift)
+    got = gathered_picture(mapper, density_estimation=route)
+    assert (mapper._density_estimator.sums.read(24 * 24) >= 1 << 32).any() == (shift == 40)
     np.testing.assert_allclose(got, expected, rtol=1e-6, atol=2.0 ** -min(shift, 20) * expected.mean())
 
 
 def test_splat_roulette_keeps_the_mean(mapper):
-    """Half of the fragments end and the others count twice: the picture's mean stays, its noise grows."""
+    """Half of the pairs are left out and the others count twice: the picture's mean stays, its noise grows."""
     full = gathered_picture(mapper)
     halves = [gathered_picture(mapper, splat_roulette=True, seed=0) for _ in range(2)]
     assert (halves[0] == halves[1]).all()

@@ -9,7 +9,7 @@ import pytest
 from full_scene import full_scene
 
 from rppm_addon.scene import DirectLight, RenderSettings, load_scene, save_scene
-from rppm_addon.scene.fingerprint import LIMITS, plain_settings, scene_digests
+from rppm_addon.scene.fingerprint import UNSEEN, plain_settings, scene_digests
 
 
 def test_a_scene_that_was_saved_is_the_same(tmp_path):
@@ -49,7 +49,7 @@ def test_the_least_change_shows(member, change):
 def test_settings_but_for_the_limits():
     plain = plain_settings(RenderSettings(direct_light=DirectLight.PHOTONS, alpha=0.6))
     assert (plain["direct_light"], plain["alpha"]) == ("PHOTONS", 0.6)
-    assert plain.keys() == {field.name for field in dataclasses.fields(RenderSettings)} - LIMITS
+    assert plain.keys() == {field.name for field in dataclasses.fields(RenderSettings)} - UNSEEN
     assert plain == plain_settings(
         RenderSettings(direct_light=DirectLight.PHOTONS, alpha=0.6, iterations=7, time_limit=5.0)
     )

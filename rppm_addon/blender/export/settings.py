@@ -6,7 +6,7 @@ import dataclasses
 import bpy
 import numpy as np
 
-from ...scene import DirectLight, RenderSettings
+from ...scene import DensityEstimation, DirectLight, RenderSettings
 
 
 def export_settings(scene: bpy.types.Scene, viewport: bool = False) -> RenderSettings:
@@ -21,6 +21,7 @@ def export_settings(scene: bpy.types.Scene, viewport: bool = False) -> RenderSet
             if hasattr(stored, field.name):
                 setattr(settings, field.name, getattr(stored, field.name))
         settings.direct_light = DirectLight[stored.direct_light]
+        settings.density_estimation = DensityEstimation[stored.density_estimation]
         if stored.animate_seed:
             settings.seed = seed_of_frame(stored.seed, scene.frame_current)
         if viewport:

@@ -65,6 +65,9 @@ def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Sce
     rates = f"{rate_text(report.iterations_per_second)} iterations, {rate_text(report.photons_per_second)} photons"
     reading(column, "Per Second", rates)
     reading(column, "Time", f"{seconds_text(report.seconds)}, {seconds_text(report.build_seconds)} of it building")
+    if report.density_estimation:
+        routes = scene.rppm.bl_rna.properties["density_estimation"].enum_items
+        reading(column, "Density Estimation", routes[report.density_estimation].name)
     if report.device:
         reading(column, "Device", report.device)
 

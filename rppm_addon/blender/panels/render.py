@@ -75,6 +75,7 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "animate_seed", text="", icon="TIME")
+        column.prop(settings, "density_estimation")
         column.prop(settings, "splat_roulette")
 
 

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Density estimation: photons meet importons (Eq. 1) by one of two routes, which give the same sums bit for bit.
+
+Splatting (splatting.py) rasterizes photons, as the paper does; importons gather from a photon grid (photon_grid.py).
+"""
+
+import logging
+import time
+from weakref import WeakKeyDictionary
+
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..scene.settings import DensityEstimation
+from .photon_grid import PhotonGrid
+from .splat_sums import SplatSums
+from .splatting import Splatting
+from .stored_photons import PhotonList, StoredPhotons, TakingImportons
+
+log = logging.getLogger(__name__)
+
+_FEWEST_TO_TRY = 1000
+"""Photons, and importons, to try both routes with."""
+_WARM_UP_PHOTONS = 64
+"""To compile with."""
+_UNDECIDED = DensityEstimation.GRID
+_faster: WeakKeyDictionary[ProgramLibrary, DensityEstimation] = WeakKeyDictionary()
+"""The faster route once both were tried, by the open device's programs."""
+
+
+class DensityEstimator:
+    """Estimates densities at the importons of a band by the route that the settings ask for.
+
+    AUTOMATIC takes the faster one: with the first photons and importons that are a thousand and more both are tried.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
+        self._context = context
+        self._library = library
+        self._width, self._rows = width, rows
+        self._wanted = DensityEstimation.AUTOMATIC
+        self._routes: dict[DensityEstimation, Splatting | PhotonGrid] = {}
+        self._prepared: DensityEstimation | None = None
+        self._photons: StoredPhotons | None = None
+        self.photon_list = PhotonList(context, library)
+        self.sums = SplatSums(context, width * rows)
+
+    @property
+    def route(self) -> DensityEstimation:
+        """The one that is taken, which nothing but speed depends on."""
+        if self._wanted is not DensityEstimation.AUTOMATIC:
+            return self._wanted
+        return _faster.get(self._library, _UNDECIDED)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        parts = (self.photon_list, self.sums, *self._routes.values())
+        return {name: size for part in parts for name, size in part.memory_bytes.items()}
+
+    def begin(self, wanted: DensityEstimation, photons: StoredPhotons) -> None:
+        """Take an iteration's photons."""
+        self._wanted, self._photons, self._prepared = wanted, photons, None
+
+    def prepare(self) -> None:
+        """Bring the photons into the order that the route needs, unless that was done; release the other route."""
+        route = self.route
+        for other in self._routes.keys() - {route}:
+            self._routes.pop(other).release()
+        if self._prepared is not route:
+            self._get(route).prepare(self._photons)
+            self._prepared = route
+
+    def estimate(self, importons: TakingImportons) -> None:
+        """Add to the sums what the photons give."""
+        if not self._photons.count:
+            return
+        if self._wanted is DensityEstimation.AUTOMATIC and self._library not in _faster:
+            self._try_both(importons)
+        self.prepare()
+        self._get(self.route).splat(self._photons, importons, self.sums)
+
+    def _try_both(self, importons: TakingImportons) -> None:
+        """Take the route that is faster with these importons, if they are many and take all photons.
+
+        Nothing is added, and what contributes is marked as it will be anyway.
+        """
+        photons = self._photons
+        if importons.gathers or min(photons.count, importons.count) < _FEWEST_TO_TRY:
+            return
+        self._prepared = None
+        with self.sums.left_alone():
+            self._seconds(DensityEstimation.GRID, photons.first(_WARM_UP_PHOTONS), importons)
+            if self._get(DensityEstimation.GRID).visited < _FEWEST_TO_TRY:
+                return
+            by_grid = self._seconds(DensityEstimation.GRID, photons, importons)
+            # Ever more photons until it is clear, lest the trial take long where rasterization does.
+            count, rasterized, growth = _WARM_UP_PHOTONS, 0.0, 16.0
+            self._seconds(DensityEstimation.RASTERIZED, photons.first(count), importons)
+            while rasterized <= by_grid and count < photons.count:
+                count = min(int(growth * count), photons.count)
+                rasterized = self._seconds(DensityEstimation.RASTERIZED, photons.first(count), importons)
+                growth = min(max(1.5 * by_grid / rasterized, 2.0), 16.0)
+        _faster[self._library] = DensityEstimation.RASTERIZED if rasterized <= by_grid else DensityEstimation.GRID
+        log.debug(
+            "density estimation: %.1f ms from the grid, %.1f ms rasterized with %d of %d photons",
+            1e3 * by_grid, 1e3 * rasterized, count, photons.count,
+        )  # fmt: skip
+
+    def _seconds(self, name: DensityEstimation, photons: StoredPhotons, importons: TakingImportons) -> float:
+        route = self._get(name)
+        route.prepare(photons)  # buffers grow
+        self._context.finish()
+        start = time.perf_counter()
+        route.prepare(photons)
+        route.splat(photons, importons, self.sums)
+        self._context.finish()
+        return time.perf_counter() - start
+
+    def _get(self, route: DensityEstimation) -> Splatting | PhotonGrid:
+        if route not in self._routes:
+            self._routes[route] = (
+                Splatting(self._context, self._library, self._width, self._rows)
+                if route is DensityEstimation.RASTERIZED
+                else PhotonGrid(self._context, self._library, self._width * self._rows)
+            )
+        return self._routes[route]
+
+    def release(self) -> None:
+        for part in (self.photon_list, self.sums, *self._routes.values()):
+            part.release()

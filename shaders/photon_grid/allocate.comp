@@ -1,0 +1,19 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A range for each bucket that holds any photon, or importon; the order of the ranges changes no sum.
+
+layout(local_size_x = 64) in;
+
+#include <AllocateParameters>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { AllocateParameters parameters; };
+layout(std430, binding = 0) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint size = buckets[index].y;
+    if (size == 0u) return;
+    uint first = atomicAdd(cursor, size);
+    buckets[index] = uvec2(first, first);
+}

@@ -1,0 +1,104 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each importon gathers the photons around it and adds them to its sums, which no other thread touches meanwhile.
+// A visit is an importon's number and how many photons of its buckets it has looked at before: a thread that comes to
+// the end of its rounds leaves the rest to another visit.
+
+layout(local_size_x = 32) in;
+
+#include <GatherPhotonsParameters>
+#include <Importon>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { GatherPhotonsParameters parameters; };
+#include "common/importon.glsl"
+#include "photon_grid/grids.glsl"
+#include "splat_sums/roulette.glsl"
+#include "splat_sums/collect.glsl"
+layout(std430, binding = 0) buffer Photons { Photon photons[]; };
+layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 2) readonly buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
+layout(std430, binding = 3) readonly buffer SortedPhotons { uvec4 sorted_photons[]; };
+layout(std430, binding = 7) readonly buffer Visits { uint visit_groups[3]; uint visit_count; uvec2 visits[]; };
+layout(std430, binding = 8) buffer UnfinishedVisits { uint unfinished_groups[3]; uint unfinished_count; uvec2 unfinished_visits[]; };
+
+const uint CORNERS = 8u;
+
+// A sphere meets the cells from low to high, at most one apart along each axis.
+struct Cells { ivec3 low; ivec3 high; };
+
+// A little farther than the radius: rounding must not part a photon from its cell.
+float reach_of(float radius) { return 1.0002 * radius + parameters.rounding; }
+
+Cells cells_around(vec3 position, float radius, float side) {
+    float reach = reach_of(radius);
+    return Cells(cell_of(position - reach, side), cell_of(position + reach, side));
+}
+
+uint finest_grid(float radius) {
+    uint grid = CAUSTIC_GRIDS - 1u;
+    while (grid > 0u && parameters.caustic_sides[grid] < 2.0 * reach_of(radius)) --grid;
+    return grid;
+}
+
+void leave(uvec2 visit) {
+    uint place = atomicAdd(unfinished_count, 1u);
+    unfinished_visits[place] = visit;
+    if (place % gl_WorkGroupSize.x == 0u) atomicAdd(unfinished_groups[0], 1u);
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= visit_count) return;
+    uvec2 visit = visits[index];
+    Importon importon = importons[visit.x];
+    // Corners of caustic cells, then of those of diffused photons, then of those of indirect ones.
+    uint corner = parameters.caustics != 0u ? 0u : CORNERS;
+    uint corners = importon.gathers != GATHERS_BY_RAY && wide_in_use[1] != 0u ? 3u * CORNERS
+                 : wide_in_use[0] != 0u ? 2u * CORNERS : CORNERS;
+    uint caustic_grid = finest_grid(importon.radius);
+    float narrow = importon.radius, wide = max(narrow, parameters.wide_radius), radius = narrow;
+    Cells cells = cells_around(importon.position, narrow, side_of(caustic_grid));
+    Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
+    Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u);
+    uint next = 0u, end = 0u, passed = visit.y, looked_at = visit.y, rounds = parameters.most_rounds;
+    bool any = false;
+    while (true) {
+        // On to the next photon within reach first: the threads of a group then evaluate theirs together.
+        uint number;
+        bool near = false;
+        while (!near && rounds > 0u && (next < end || corner < corners)) {
+            --rounds;
+            if (next < end) {
+                uvec4 candidate = sorted_photons[next++];
+                ++looked_at;
+                vec3 offset = uintBitsToFloat(candidate.xyz) - importon.position;
+                near = dot(offset, offset) < radius * radius;
+                number = candidate.w;
+            } else {
+                uint grid = corner < CORNERS ? caustic_grid : CAUSTIC_GRIDS - 1u + corner / CORNERS;
+                if (corner >= CORNERS) {
+                    radius = wide;
+                    cells = wide_cells;
+                }
+                ivec3 cell = cells.low + ivec3(corner & 1u, (corner >> 1u) & 1u, (corner >> 2u) & 1u);
+                ++corner;
+                if (all(lessThanEqual(cell, cells.high))) {
+                    uvec2 range = buckets[bucket_in(grid, cell)];
+                    uint skipped = min(passed, range.y - range.x);
+                    passed -= skipped;
+                    next = range.x + skipped;
+                    end = range.y;
+                }
+            }
+        }
+        if (!near) break;
+        vec3 radiance;
+        if (rejected(number, visit.x)) continue;
+        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, radiance)) continue;
+        any = true;
+        photons[number].contributed = 1u;
+        collect_splat(collected, radiance, corner > CORNERS);
+    }
+    if (any) write_collected(visit.x, importon.gathers == GATHERED_BY_RAY, collected);
+    if (next < end || corner < corners) leave(uvec2(visit.x, looked_at));
+}

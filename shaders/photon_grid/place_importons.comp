@@ -1,0 +1,24 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of importons that gather, those of a cell side by side: the threads of a group then walk the same photons.
+
+layout(local_size_x = 64) in;
+
+#include <GroupParameters>
+#include <Importon>
+#include "common/invocation.glsl"
+#include "photon_grid/cells.glsl"
+layout(std140, binding = 0) uniform Parameters { GroupParameters parameters; };
+layout(std430, binding = 0) readonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 1) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
+layout(std430, binding = 2) writeonly buffer Visits { uint visit_groups[3]; uint visit_count; uvec2 visits[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index == 0u) {
+        visit_count = cursor;
+        visit_groups = uint[3]((cursor + parameters.group_size - 1u) / parameters.group_size, 1u, 1u);
+    }
+    if (index >= parameters.count || !(importons[index].radius > 0.0)) return;
+    visits[atomicAdd(buckets[bucket_of(cell_of(importons[index].position, parameters.side), parameters.buckets)].y, 1u)] = uvec2(index, 0u);
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Photons add to the sums of importons, many threads at once.
+// The includer declares the storage blocks of photons[] and importons[] and the members of SUM_PARAMETERS
+// (integrator/splat_sums.py).
+
+#include "splat_sums/sums.glsl"
+layout(std430, binding = 4) buffer SplatSums { uint sum_words[]; };
+layout(std430, binding = 5) buffer DiffusedPhotons { uint diffused_photons[]; };
+
+void add_quanta(uint place, float quanta) {
+    uvec2 added = whole_quanta(quanta);
+    if (added.x > 0u && atomicAdd(sum_words[place], added.x) > 0xffffffffu - added.x) added.y += 1u;
+    if (added.y > 0u) atomicAdd(sum_words[place + 1u], added.y);
+}
+
+// Threads that meet here write the same mark.
+void add_splat(uint importon, uint photon, vec3 radiance) {
+    photons[photon].contributed = 1u;
+    uint place = first_word(importon, importons[importon].gathers == GATHERED_BY_RAY);
+    add_quanta(place, radiance.r * parameters.quanta);
+    add_quanta(place + 2u, radiance.g * parameters.quanta);
+    add_quanta(place + 4u, radiance.b * parameters.quanta);
+    if (parameters.counting != 0u && (photons[photon].flags & PHOTON_DIFFUSED) != 0u) atomicAdd(diffused_photons[importon], 1u);
+}

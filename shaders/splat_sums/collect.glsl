@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An importon collects for itself what photons add, in a thread that no other thread meets at its sums.
+// The includer declares the members of SUM_PARAMETERS (integrator/splat_sums.py).
+
+#include "splat_sums/sums.glsl"
+layout(std430, binding = 4) buffer SplatSums { uint sum_words[]; };
+layout(std430, binding = 5) buffer DiffusedPhotons { uint diffused_photons[]; };
+
+struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; };
+
+void add_words(inout uvec2 sum, uvec2 added) {
+    sum.x += added.x;
+    sum.y += added.y + (sum.x < added.x ? 1u : 0u);
+}
+
+void collect_splat(inout Collected collected, vec3 radiance, bool diffused) {
+    add_words(collected.red, whole_quanta(radiance.r * parameters.quanta));
+    add_words(collected.green, whole_quanta(radiance.g * parameters.quanta));
+    add_words(collected.blue, whole_quanta(radiance.b * parameters.quanta));
+    if (diffused) ++collected.diffused;
+}
+
+void write_words(uint place, uvec2 added) {
+    uvec2 sum = uvec2(sum_words[place], sum_words[place + 1u]);
+    add_words(sum, added);
+    sum_words[place] = sum.x;
+    sum_words[place + 1u] = sum.y;
+}
+
+void write_collected(uint importon, bool by_ray, Collected collected) {
+    uint place = first_word(importon, by_ray);
+    write_words(place, collected.red);
+    write_words(place + 2u, collected.green);
+    write_words(place + 4u, collected.blue);
+    if (parameters.counting != 0u && collected.diffused > 0u) diffused_photons[importon] += collected.diffused;
+}

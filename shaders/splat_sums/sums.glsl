@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums of what photons add to importons, in whole quanta of radiance: 64 bits in two words, since the sum of integers
+// does not depend on their order and that of floats does. For each pixel of the band they are six, low words first:
+// three channels of what its importons take, and three of what its gathering ray finds.
+
+const float WORD = 4294967296.0;
+const float MOST_QUANTA = 4611686018427387904.0;  // 2^62
+
+uint first_word(uint pixel, bool by_ray) { return 12u * pixel + (by_ray ? 6u : 0u); }
+
+// Low and high word of a number of quanta, rounded.
+uvec2 whole_quanta(float quanta) {
+    if (!(quanta >= 0.5)) return uvec2(0u);
+    quanta = min(quanta, MOST_QUANTA);
+    float high = floor(quanta / WORD);
+    // What a float cannot count in whole quanta already is whole.
+    float rest = quanta - high * WORD;
+    return uvec2(rest < 8388608.0 ? floor(rest + 0.5) : rest, high);
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A photon meets an importon. Only what decides whether it is near is read of most pairs.
+// The includer declares the storage blocks of photons[] and importons[] and the parameters.
+
+#include "splat_sums/roulette.glsl"
+#include "splat_sums/add.glsl"
+
+void meet(uint importon, uint photon) {
+    if (rejected(photon, importon)) return;
+    vec3 offset = photons[photon].position - importons[importon].position, radiance;
+    if (!within_reach(importons[importon].gathers, importons[importon].radius, offset, photons[photon].flags, parameters.wide_radius)) return;
+    if (density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, radiance)) add_splat(importon, photon, radiance);
+}

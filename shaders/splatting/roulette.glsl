@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Russian roulette of splat fragments (paper section 4.2, Fig. 5): half of them end before they read an importon, and
-// the quanta of the others count twice. Needs the member roulette of the parameters; 0 keeps all.
-#include "common/random.glsl"
-
-bool rejected(uint photon, uint place) {
-    return parameters.roulette != 0u && (pcg4d(uvec4(photon, place, parameters.roulette, STAGE_SPLATTING)).x & 0x80000000u) != 0u;
-}

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photon grids by themselves: no photon within reach is missed, wherever it lies and however many there are."""
+
+import numpy as np
+import pytest
+
+from rppm_addon.gl.buffers import GrowingBuffer
+from rppm_addon.integrator.photon_grid import PhotonGrid
+from rppm_addon.integrator.records import (
+    GATHERED_BY_RAY,
+    GATHERS_ALL,
+    GATHERS_BY_RAY,
+    IMPORTON,
+    PHOTON,
+    PHOTON_DIFFUSED,
+    PHOTON_INDIRECT,
+    PHOTON_STORED,
+)
+from rppm_addon.integrator.splat_sums import SplatSums
+from rppm_addon.integrator.stored_photons import PhotonList, SplatRadii, StoredPhotons, TakingImportons
+
+UP = 0
+"""The packed unit vector (0, 0, 1)."""
+
+
+class Device:
+    """Photons and importons on a floor, all facing up, and the grid that they meet by."""
+
+    def __init__(self, context, library) -> None:
+        self._context, self._library = context, library
+
+    def gather(
+        self, photons: np.ndarray, importons: np.ndarray, radii: SplatRadii
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(photons,) bool of those that contributed, (importons,) diffused photons taken, (importons,) bool of those
+        whose sums are more than 0."""
+        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "world radiances")]
+        radiances = np.zeros(len(photons), np.float32)
+        for buffer, array in zip(buffers, (photons, importons, radiances), strict=True):
+            buffer.upload(array)
+        listed = PhotonList(self._context, self._library)
+        listed.collect(buffers[0].buffer, len(photons), indirect_only=False)
+        sums = SplatSums(self._context, len(importons))
+        sums.count_in(1e-6, 0, True)
+        sums.begin()
+        grid = PhotonGrid(self._context, self._library, len(importons))
+        stored = StoredPhotons(
+            buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
+            buffers[2].buffer, len(photons), 1.0, radii, float(np.abs(photons["position"]).max()),
+        )  # fmt: skip
+        taking = TakingImportons(buffers[1].buffer, len(importons), False, True, 0, None, np.zeros(3))
+        grid.prepare(stored)
+        grid.splat(stored, taking, sums)
+        contributed = buffers[0].read(PHOTON.dtype, len(photons))["contributed"] != 0
+        result = contributed, sums.diffused_photons(len(importons)), sums.read(len(importons)).any(axis=(1, 2))
+        for part in (*buffers, listed, sums, grid):
+            part.release()
+        return result
+
+
+@pytest.fixture
+def device(context, library):
+    return Device(context, library)
+
+
+def photons_at(positions: np.ndarray, flags: int) -> np.ndarray:
+    photons = PHOTON.zeros(len(positions))
+    photons["position"], photons["flags"], photons["flux"] = positions, PHOTON_STORED | flags, 1.0
+    photons["direction"], photons["geometric_normal"] = (0, 0, 1), UP
+    return photons
+
+
+def importons_at(positions: np.ndarray, radii: np.ndarray, gathers: int = GATHERS_ALL) -> np.ndarray:
+    importons = IMPORTON.zeros(len(positions))
+    importons["position"], importons["radius"], importons["gathers"] = positions, radii, gathers
+    importons["direction"], importons["diffuse"] = (0, 0, 1), 1.0
+    importons["geometric_normal"] = importons["diffuse_normal"] = importons["shading_normal"] = UP
+    return importons
+
+
+@pytest.mark.parametrize("flags", [0, PHOTON_DIFFUSED, PHOTON_DIFFUSED | PHOTON_INDIRECT])
+@pytest.mark.parametrize("offset", [(0.0, 0.0), (1e4, -1e4), (-3e4, 7.0)])
+@pytest.mark.parametrize("largest", [0.4, 0.02])
+def test_no_photon_within_reach_is_missed(device, flags, offset, largest):
+    """Radii far below the largest, and floats that are coarser than the smallest of them."""
+    random = np.random.default_rng(11)
+    side = 16
+    centres = np.stack(np.meshgrid(np.arange(side), np.arange(side)), -1).reshape(-1, 2) * 2.1 * largest
+    reach = largest * random.choice([1.0, 0.4, 0.3, 0.1, 0.06], len(centres))
+    around = random.uniform(-1.05, 1.05, (len(centres), 40, 2))
+    around[:, :20] = np.tile([(0.9995, 0), (-0.9995, 0), (0, 0.9995), (0, -0.9995)], (5, 1))
+    around *= reach[:, None, None] * random.uniform(0.998, 1.0, (len(centres), 40, 1))
+
+    def on_floor(points: np.ndarray) -> np.ndarray:
+        points = points.reshape(-1, 2) + offset
+        return np.concatenate([points, np.zeros((len(points), 1))], axis=1).astype(np.float32)
+
+    photons, importons = photons_at(on_floor(centres[:, None] + around), flags), importons_at(on_floor(centres), reach)
+    radii = SplatRadii(largest, 0.5 * reach.min())
+    contributed, diffused, _ = device.gather(photons, importons, radii)
+    offsets = photons["position"].astype(np.float64) - importons["position"][:, None].astype(np.float64)
+    distances = np.linalg.norm(offsets, axis=-1)
+    reach = importons["radius"].astype(np.float64)[:, None]
+    inside, near = distances < reach * (1 - 1e-5), distances < reach * (1 + 1e-5)
+    assert inside.sum() > 4000 and (~near.any(axis=0)).sum() > 500
+    assert contributed[inside.any(axis=0)].all() and not contributed[~near.any(axis=0)].any()
+    if flags:
+        assert (diffused >= inside.sum(axis=1)).all() and (diffused <= near.sum(axis=1)).all()
+    else:
+        assert not diffused.any()
+
+
+@pytest.mark.parametrize("flags", [0, PHOTON_DIFFUSED])
+def test_as_many_photons_as_one_likes_lie_in_a_cell(device, flags):
+    """llvmpipe ends the loops of a thread after 65535 rounds; nothing may be lost for that."""
+    count = 150_000
+    random = np.random.default_rng(3)
+    positions = np.zeros((count, 3), np.float32)
+    positions[:, :2] = random.uniform(-0.01, 0.01, (count, 2))
+    importons = importons_at(np.array([[0.001 * k, 0, 0] for k in range(20)], np.float32), np.full(20, 0.05))
+    importons["radius"][7] = 0.0
+    contributed, diffused, any_light = device.gather(photons_at(positions, flags), importons, SplatRadii(0.05, 0.05))
+    takes = np.arange(20) != 7
+    assert contributed.all()
+    np.testing.assert_array_equal(diffused, np.where(takes & (flags != 0), count, 0))
+    np.testing.assert_array_equal(any_light, takes)
+
+
+def test_who_takes_what(device):
+    """Importons whose paths gather take no indirect photons; those without a radius nothing at all."""
+    positions = np.zeros((3, 3), np.float32)
+    photons = photons_at(positions, 0)
+    photons["flags"] |= np.array([0, PHOTON_DIFFUSED, PHOTON_DIFFUSED | PHOTON_INDIRECT], np.uint32)
+    for gathers, expected in ((GATHERS_ALL, 2), (GATHERS_BY_RAY, 1), (GATHERED_BY_RAY, 2)):
+        importons = importons_at(np.zeros((2, 3), np.float32), np.array([0.1, 0.0], np.float32), gathers)
+        contributed, diffused, any_light = device.gather(photons, importons, SplatRadii(0.1, 0.2))
+        np.testing.assert_array_equal(contributed, [True, True, gathers != GATHERS_BY_RAY])
+        np.testing.assert_array_equal(diffused, [expected, 0])
+        np.testing.assert_array_equal(any_light, [True, False])
+    nothing = importons_at(np.zeros((2, 3), np.float32), np.zeros(2))
+    contributed, diffused, _ = device.gather(photons, nothing, SplatRadii(0.1, 0.2))
+    assert not contributed.any() and not diffused.any()
