@@ -11,7 +11,7 @@ from benchmark_scenes import Subject
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import RenderSettings
+from rppm_addon.scene import DensityEstimation, RenderSettings
 
 STAGES = {
     "photon paths": ("emission", "photon tracing", "photon resolve", "photon scattering", "photon list"),
@@ -113,6 +113,7 @@ class Rendering:
             photon_path_length=photon_length,
             camera_path_length=camera_length,
             final_gather=False,  # the paper's estimate
+            density_estimation=DensityEstimation.RASTERIZED,
         )
         self._scene = subject.scene
         proportion = self._camera.width / self._camera.height

@@ -1,0 +1,85 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures both routes of density estimation, in turns, and checks that they give the same bits.
+
+Takes scenes that `rppm export` wrote; without any, a box with a glass and a mirror sphere. Prints a table.
+"""
+
+import argparse
+import dataclasses
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks"):  # the checkout, installed or not
+    if str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))
+
+import numpy as np  # noqa: E402
+import scenes  # noqa: E402
+from benchmark_machine import Clock  # noqa: E402
+
+from rppm_addon.commands.saved_scene import camera_at_resolution  # noqa: E402
+from rppm_addon.gl.context import Context  # noqa: E402
+from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
+from rppm_addon.scene import DensityEstimation, Scene, load_scene  # noqa: E402
+
+ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
+STAGES = "direct splatting", "indirect splatting"
+
+
+def measure(context: Context, library: ProgramLibrary, clock: Clock, scene: Scene, iterations: int) -> np.ndarray:
+    """(routes, 3): the least seconds of density estimation and of an iteration, and MiB of density estimation.
+
+    One iteration before is not counted.
+    """
+    mappers, figures = [], []
+    for route in ROUTES:
+        mapper = ProgressivePhotonMapper(context, library)
+        mapper.timers.clock = clock.now
+        mapper.build(dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, density_estimation=route)))
+        mapper.iterate()
+        mappers.append(mapper)
+        figures.append([])
+    for _ in range(iterations):
+        for mapper, seconds in zip(mappers, figures, strict=True):
+            mapper.timers.reset()
+            total = clock.once(mapper.iterate)
+            seconds.append((sum(mapper.timers.seconds[stage] for stage in STAGES), total))
+    films = [mapper.film.read_radiance().view(np.uint32) for mapper in mappers]
+    if not np.array_equal(*films):
+        raise SystemExit("the two routes give different pictures")
+    mebibytes = [sum(mapper.memory.working["density estimation"].values()) / 2**20 for mapper in mappers]
+    for mapper in mappers:
+        mapper.release()
+    return np.column_stack([np.min(figures, axis=1), mebibytes])
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", type=Path, nargs="*", metavar="SCENE.npz")
+    parser.add_argument("--size", type=int, default=256, metavar="N", help="pixels a side (256)")
+    parser.add_argument("--photons", type=int, default=65536, metavar="N", help="an iteration (65536)")
+    parser.add_argument("--iterations", type=int, default=2, metavar="N", help="iterations that are timed (2)")
+    options = parser.parse_args(arguments)
+    context = Context.create()
+    library, clock = ProgramLibrary(context), Clock(context)
+    print(f"{context.information.name}; {clock.description}\n")
+    quantities = "density estimation, s", "iteration, s", "memory, MiB"
+    print("| scene |", " | ".join(f"{name}: rasterized | grid | ratio" for name in quantities), "|")
+    print("|---|" + 9 * "---:|")
+    for path in options.scenes or [None]:
+        scene = scenes.room(options.size) if path is None else load_scene(path)
+        camera = camera_at_resolution(dataclasses.replace(scene.camera, crop=None), options.size, options.size)
+        settings = dataclasses.replace(scene.settings, photons=options.photons)
+        scene = dataclasses.replace(scene, camera=camera, settings=settings)
+        rasterized, grid = measure(context, library, clock, scene, options.iterations)
+        cells = [f"{a:.3g} | {b:.3g} | {a / b:.1f}" for a, b in zip(rasterized, grid, strict=True)]
+        print("|", "box with spheres" if path is None else path.stem, "|", " | ".join(cells), "|", flush=True)
+    context.release()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
