@@ -10,8 +10,9 @@ from .options import load_blend_or_saved, split_values
 from .progress_bar import ProgressBar
 from .recorder import apply_settings
 
-_LONGEST_SIDE = 48
-"""Pixels, so that rendering takes next to no time beside compiling."""
+_LONGEST_SIDE = 64
+"""Pixels, so that rendering takes next to no time beside compiling, and yet both routes of density estimation are
+tried."""
 _MOST_PHOTONS = 1024
 _ITERATIONS = 2
 """The second is the first that rests on what another one learned."""

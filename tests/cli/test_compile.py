@@ -24,7 +24,7 @@ def test_a_scene_is_made_small_in_its_proportions():
     scene.camera = dataclasses.replace(scene.camera, width=1920, height=1080)
     scene.settings = dataclasses.replace(scene.settings, photons=1 << 20, iterations=1000, time_limit=5.0)
     small = _small(scene)
-    assert isinstance(small.camera, Camera) and small.camera.resolution == (48, 27)
+    assert isinstance(small.camera, Camera) and small.camera.resolution == (64, 36)
     assert (small.settings.photons, small.settings.iterations, small.settings.time_limit) == (1024, 2, 0.0)
     assert (scene.camera.width, scene.settings.photons) == (1920, 1 << 20)
     scene.camera = dataclasses.replace(scene.camera, width=7, height=3)
