@@ -17,10 +17,13 @@ class Method:
     """What it is good for, in a few words."""
 
 
+OWN = "rppm"
+"""The method whose wins and losses are told."""
+
 METHODS = {
     method.name: method
     for method in (
-        Method("rppm", "RPPM", "rppm", why="the defaults of the add-on"),
+        Method(OWN, "RPPM", "rppm", why="the defaults of the add-on"),
         Method("cycles", "Cycles", "cycles", why="path tracing; clamping and adaptive sampling off"),
         Method(
             "cycles_caustics",
@@ -44,3 +47,15 @@ METHODS = {
 def chosen(names: list[str] | None) -> list[Method]:
     """The methods of these names, or all; KeyError where there is none."""
     return list(METHODS.values()) if not names else [METHODS[name] for name in names]
+
+
+REFERENCES = {
+    "glass_box": ("rppm", "cycles"),
+    "mirror_ring": ("rppm", "cycles"),
+    "pool": ("rppm", "cycles"),
+    "interior": ("rppm", "cycles"),
+    "hall": ("rppm", "cycles"),
+    "window_room": ("rppm", "cycles"),
+    "gray_world": ("rppm", "cycles"),
+}
+"""The two independent methods whose long runs are a scene's reference."""

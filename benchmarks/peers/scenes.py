@@ -5,8 +5,20 @@ import math
 
 import numpy as np
 
-from .description import AreaLight, Camera, Diffuse, Glass, Light, Mesh, Mirror, Scene, SphereLight, SpotLight
-from .description import SunLight, unit
+from .description import (
+    AreaLight,
+    Camera,
+    Diffuse,
+    Glass,
+    Light,
+    Mesh,
+    Mirror,
+    Scene,
+    SphereLight,
+    SpotLight,
+    SunLight,
+    unit,
+)
 from .shapes import band, box, checkered_floor, floor, quads, room, sphere, washer, waves
 
 _WHITE, _RED, _GREEN = Diffuse((0.75, 0.75, 0.75)), Diffuse((0.65, 0.06, 0.05)), Diffuse((0.12, 0.45, 0.12))
@@ -60,7 +72,7 @@ def interior() -> Scene:
     meshes = [
         *room(5, 6, 2.6, walls),
         box("table", (-0.8, 0.3, 0.68), (0.8, 1.3, 0.74), _WOOD),
-        *(box(f"leg {x} {y}", (x, y, 0.0), (x + 0.06, y + 0.06, 0.68), _WOOD) for x in (-0.75, 0.69) for y in (0.35, 1.2)),
+        *(_leg(x, y) for x in (-0.75, 0.69) for y in (0.35, 1.2)),
         box("cupboard", (1.6, 1.6, 0.0), (2.4, 2.9, 1.9), _BLUE),
         box("sofa", (-2.4, -0.6, 0.0), (-1.5, 1.5, 0.45), _GREEN),
         box("back of the sofa", (-2.48, -0.6, 0.0), (-2.3, 1.5, 0.9), _GREEN),
@@ -72,6 +84,10 @@ def interior() -> Scene:
     ]
     camera = Camera((0.3, -2.8, 1.5), (-0.1, 1.0, 0.9), math.radians(58.0))
     return Scene("interior", "Room with two lamps", meshes, lights, camera)
+
+
+def _leg(x: float, y: float) -> Mesh:
+    return box(f"leg {x} {y}", (x, y, 0.0), (x + 0.06, y + 0.06, 0.68), _WOOD)
 
 
 def hall() -> Scene:

@@ -8,8 +8,20 @@ import bpy
 import mathutils
 import numpy as np
 
-from ..description import AreaLight, Diffuse, Glass, Light, Material, Mesh, Mirror, Scene, SphereLight, SpotLight
-from ..description import SunLight, frame_of
+from ..description import (
+    AreaLight,
+    Diffuse,
+    Glass,
+    Light,
+    Material,
+    Mesh,
+    Mirror,
+    Scene,
+    SphereLight,
+    SpotLight,
+    SunLight,
+    frame_of,
+)
 from ..scenes import make_scene
 
 
