@@ -4,10 +4,9 @@
 import sys
 from pathlib import Path
 
-from .environments import ROOT, run
+from .environments import OUT, run
 from .scenes import make_scene
 
-OUT = ROOT / "out" / "peers"
 _LIMIT = 300.0
 
 

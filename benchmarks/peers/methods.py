@@ -15,6 +15,8 @@ class Method:
     options: dict[str, object] = field(default_factory=dict)
     why: str = ""
     """What it is good for, in a few words."""
+    leaves_out: tuple[str, ...] = ()
+    """Scenes that it cannot be given as they are."""
 
 
 OWN = "rppm"
@@ -38,6 +40,36 @@ METHODS = {
             "cycles",
             {"denoise": True},
             "OpenImageDenoise by albedo and normal, its time included",
+        ),
+        Method(
+            "luxcore_photongi",
+            "LuxCore, PhotonGI",
+            "luxcore",
+            {"engine": "photongi"},
+            "path tracing with a caustic cache that is renewed as it goes",
+        ),
+        Method(
+            "luxcore_light_tracing",
+            "LuxCore, light tracing",
+            "luxcore",
+            {"engine": "light_tracing"},
+            "path tracing, with light tracing for caustics",
+        ),
+        Method(
+            "luxcore_bidirectional",
+            "LuxCore, bidirectional",
+            "luxcore",
+            {"engine": "bidirectional"},
+            "bidirectional path tracing with Metropolis sampling",
+        ),
+        Method("mitsuba_path", "Mitsuba, path", "mitsuba", {"integrator": "path"}, "path tracing"),
+        Method(
+            "mitsuba_ptracer",
+            "Mitsuba, particle tracer",
+            "mitsuba",
+            {"integrator": "ptracer"},
+            "light tracing alone: what is seen through glass or mirrors stays black; it has no sun with an extent",
+            leaves_out=("window_room",),
         ),
     )
 }

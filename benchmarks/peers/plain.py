@@ -12,8 +12,8 @@ import json
 import sys
 
 from .description import Scene
-from .environments import run_job
-from .files import OUT, SceneFiles
+from .environments import OUT, run_job
+from .files import SceneFiles
 from .jobs import Answer, Job
 from .metrics import convergence_rate, mean_ratio, relative_mse
 from .scenes import plain_scenes

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from .description import Scene
-from .environments import run_job
-from .files import OUT, PeersError, SceneFiles
+from .environments import OUT, run_job
+from .files import PeersError, SceneFiles
 from .jobs import Answer, Job
 from .methods import METHODS, REFERENCES, Method
 from .metrics import relative_mse

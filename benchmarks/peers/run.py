@@ -17,8 +17,8 @@ import numpy as np
 from tests.benchmarks.benchmark_machine import checkout_commit, processor_name, usable_cores
 
 from .description import Scene
-from .environments import ROOT, install, run_job
-from .files import OUT, PeersError, SceneFiles
+from .environments import OUT, ROOT, install, run_job
+from .files import PeersError, SceneFiles
 from .jobs import Answer, Job
 from .methods import METHODS, Method, chosen
 from .metrics import caustic_ratio, exposure_of, flip, mean_ratio, relative_mse
@@ -43,6 +43,8 @@ def measure(scene: Scene, methods: list[Method], files: SceneFiles, store: Refer
     )
     results.scenes.append(result)
     for method in methods:
+        if scene.name in method.leaves_out:
+            continue
         start = time.monotonic()
         source = files.of(method.adapter, scene.name)
         place = str(folder / method.name)
