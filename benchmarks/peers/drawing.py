@@ -8,6 +8,7 @@ import numpy as np
 import PIL.Image
 import PIL.ImageDraw
 
+from .environments import ROOT
 from .methods import OWN
 from .metrics import displayed
 from .results import Results, SceneResult
@@ -49,9 +50,9 @@ def draw_sheet(results: Results, mark: float, path: Path) -> None:
                 found[columns.index(curve.label)] = (point.file, f"{curve.label}, {point.seconds:.1f} s")
         found[len(columns)] = (scene.reference_file, "reference")
         for column, (file, label) in found.items():
-            if not Path(file).exists():
+            if not (ROOT / file).exists():
                 continue
-            levels = np.round(255.0 * displayed(np.load(file), scene.exposure)).astype(np.uint8)
+            levels = np.round(255.0 * displayed(np.load(ROOT / file), scene.exposure)).astype(np.uint8)
             sheet.paste(PIL.Image.fromarray(levels), (column * size, row * height))
             draw.text((column * size + 3, row * height + size + 1), label, fill=(220, 220, 220))
     sheet.save(path)

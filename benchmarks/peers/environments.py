@@ -116,4 +116,4 @@ def run(command: list[str], seconds: float, log: Path, variables: dict[str, str]
     if status == 0:
         return ""
     lines = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-    return f"{lines[-1] if lines else 'no message'} (exit status {status}; see {log})"
+    return f"{lines[-1] if lines else 'no message'} (exit status {status}; see {os.path.relpath(log, ROOT)})"

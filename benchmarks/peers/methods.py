@@ -55,13 +55,6 @@ METHODS = {
             {"engine": "light_tracing"},
             "path tracing, with light tracing for caustics",
         ),
-        Method(
-            "luxcore_bidirectional",
-            "LuxCore, bidirectional",
-            "luxcore",
-            {"engine": "bidirectional"},
-            "bidirectional path tracing with Metropolis sampling",
-        ),
         Method("mitsuba_path", "Mitsuba, path", "mitsuba", {"integrator": "path"}, "path tracing"),
         Method(
             "mitsuba_ptracer",
@@ -82,12 +75,12 @@ def chosen(names: list[str] | None) -> list[Method]:
 
 
 REFERENCES = {
-    "glass_box": ("rppm", "cycles"),
-    "mirror_ring": ("rppm", "cycles"),
-    "pool": ("rppm", "cycles"),
-    "interior": ("rppm", "cycles"),
-    "hall": ("rppm", "cycles"),
-    "window_room": ("rppm", "cycles"),
-    "gray_world": ("rppm", "cycles"),
+    "glass_box": (OWN, "mitsuba_path"),
+    "mirror_ring": (OWN, "luxcore_light_tracing"),
+    "pool": (OWN, "mitsuba_path"),
+    "interior": ("cycles", "mitsuba_path"),
+    "hall": ("cycles", "mitsuba_path"),
+    "window_room": ("cycles", "mitsuba_path"),
+    "gray_world": ("cycles", "mitsuba_path"),
 }
-"""The two independent methods whose long runs are a scene's reference."""
+"""The two independent methods whose long runs are a scene's reference; RPPM only where paths alone would take days."""

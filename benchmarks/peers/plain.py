@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Plain scenes, error per sample: RPPM's iterations against Cycles' samples, in a gray world and in a black one.
 
-    python -m benchmarks.peers.plain [--samples 8,32] [--scenes plane boxes] [--reference-samples 1024]
+    make bench-peers BENCH='--plain --samples 8,32 --scenes plane boxes --reference-samples 1024'
 
 The reference is a long run of Cycles with another seed, kept in out/peers/plain/. Prints a table and writes
 out/peers/plain.json. The number of samples does not depend on what else the machine does.
@@ -83,14 +83,15 @@ def table(rows: list[dict[str, object]]) -> str:
     return "\n".join(lines)
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def main(arguments: list[str] | None = None) -> int:
+    """The program; without arguments those of the command line. Returns the exit status."""
+    parser = argparse.ArgumentParser("bench-peers --plain", description=__doc__.splitlines()[0])
     parser.add_argument("--samples", type=lambda text: [int(part) for part in text.split(",")], default=[8])
     parser.add_argument("--scenes", nargs="*", help="plane, checkers, boxes, suns, spot; all without")
     parser.add_argument("--world", choices=("gray", "black"), help="only scenes in this world")
     parser.add_argument("--reference-samples", type=int, default=1024)
     parser.add_argument("--resolution", type=int, default=256)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     comparison = PlainComparison(options.resolution, options.samples, options.reference_samples)
     rows = []
     for name, scene in plain_scenes().items():

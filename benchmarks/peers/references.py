@@ -16,12 +16,16 @@ import numpy as np
 from .description import Scene
 from .environments import OUT, run_job
 from .files import PeersError, SceneFiles
-from .jobs import Answer, Job
-from .methods import METHODS, REFERENCES, Method
+from .jobs import DEPTH, Answer, Job
+from .methods import METHODS, OWN, REFERENCES, Method
 from .metrics import relative_mse
 
 _SEEDS = (1001, 1002)
 """Not those of the pictures that are compared."""
+
+
+_OPTIONS: dict[str, dict[str, object]] = {OWN: {"photon_path_length": DEPTH, "camera_path_length": DEPTH}}
+"""Where a method's best settings end paths earlier than the others' do."""
 
 
 @dataclass
@@ -103,7 +107,8 @@ class ReferenceStore:
         answer_file = folder / "answer.json"
         if not answer_file.exists():
             source = self._files.of(method.adapter, scene.name)
-            job = Job(scene.name, str(folder), source, method.options, [seconds], [], self._resolution, seed)
+            options = method.options | _OPTIONS.get(method.name, {})
+            job = Job(scene.name, str(folder), source, options, [seconds], [], self._resolution, seed)
             answer = run_job(method.adapter, job)
             if answer.error or not answer.pictures:
                 raise PeersError(f"no reference of {scene.name} by {method.name or 'Cycles'}: {answer.error}")

@@ -3,7 +3,6 @@
 
 from pathlib import Path
 
-from .drawing import draw_curves, draw_sheet
 from .methods import METHODS, OWN
 from .results import Curve, Results, SceneResult
 
@@ -12,6 +11,8 @@ _SHEET_SECONDS = 10.0
 
 def write_page(results: Results, page: Path, images: Path) -> None:
     """Write the page, and its pictures into a folder beside or below it."""
+    from .drawing import draw_curves, draw_sheet  # late: the bench extra
+
     images.mkdir(parents=True, exist_ok=True)
     for scene in results.scenes:
         draw_curves(scene, images / f"{scene.name}.png")

@@ -26,6 +26,7 @@ class Point:
     caustic_ratio: float | None
     """None where the scene is not about caustics."""
     file: str
+    """From the checkout's folder."""
 
 
 @dataclass
@@ -71,7 +72,7 @@ class SceneResult:
     agreement: Agreement
     exposure: float
     reference_file: str
-    """.npy, (H, W, 3)."""
+    """.npy, (H, W, 3); from the checkout's folder."""
     curves: list[Curve] = field(default_factory=list)
 
 

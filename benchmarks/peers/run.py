@@ -16,6 +16,7 @@ import numpy as np
 
 from tests.benchmarks.benchmark_machine import checkout_commit, processor_name, usable_cores
 
+from . import plain
 from .description import Scene
 from .environments import OUT, ROOT, install, run_job
 from .files import PeersError, SceneFiles
@@ -39,7 +40,8 @@ def measure(scene: Scene, methods: list[Method], files: SceneFiles, store: Refer
     np.save(reference_file, reference.pixels)
     exposure, counts = exposure_of(reference.pixels), scene.counts
     result = SceneResult(
-        scene.name, scene.title, counts.triangles, counts.lights, reference.agreement, exposure, str(reference_file)
+        scene.name, scene.title, counts.triangles, counts.lights, reference.agreement, exposure,
+        os.path.relpath(reference_file, ROOT),
     )
     results.scenes.append(result)
     for method in methods:
@@ -73,7 +75,7 @@ def curve_of(method: Method, answer: Answer, reference: Reference, exposure: flo
                 flip(pixels, true, exposure),
                 mean_ratio(pixels, true),
                 caustic,
-                picture.file,
+                os.path.relpath(picture.file, ROOT),
             )
         )
     return Curve(
@@ -104,7 +106,7 @@ def parse() -> argparse.Namespace:
     """The command line; --quick changes what is not given."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="three scenes, 2 and 5 s, cheap references")
-    parser.add_argument("--plain", action="store_true", help="plain scenes by sample (benchmarks/peers/plain.py)")
+    parser.add_argument("--plain", action="store_true", help="plain scenes by sample; --plain --help tells its options")
     parser.add_argument("--scenes", nargs="*", choices=tuple(SCENES), metavar="SCENE", help=", ".join(SCENES))
     parser.add_argument("--methods", nargs="*", choices=tuple(METHODS), metavar="METHOD", help=", ".join(METHODS))
     parser.add_argument("--seconds", type=lambda text: sorted(float(part) for part in text.split(",")))
@@ -116,7 +118,7 @@ def parse() -> argparse.Namespace:
     options.scenes = options.scenes or (QUICK if options.quick else tuple(SCENES))
     options.seconds = options.seconds or ([2.0, 5.0] if options.quick else [2.0, 5.0, 10.0, 30.0, 60.0])
     if options.reference_seconds is None:
-        options.reference_seconds = 40.0 if options.quick else 1800.0
+        options.reference_seconds = 40.0 if options.quick else 600.0
     return options
 
 
@@ -129,6 +131,8 @@ def write_pages(results: Results, publish: bool) -> None:
 
 
 def main() -> int:
+    if "--plain" in sys.argv[1:]:
+        return plain.main([argument for argument in sys.argv[1:] if argument != "--plain"])
     options = parse()
     if options.page:
         write_pages(Results.read(OUT / "results.json"), options.publish)

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""LuxCore by pyluxcore. Option engine: photongi, light_tracing, bidirectional or vertex_merging."""
+"""LuxCore by pyluxcore. Option engine: photongi or light_tracing.
+
+Its bidirectional engine (BIDIRCPU) is left out: in two of the scenes its means are 5 % and 10 % above those of path
+tracing by Cycles, Mitsuba and LuxCore itself, whatever filter and sampler.
+"""
 
 import math
 import sys
@@ -25,12 +29,15 @@ ENGINES: dict[str, dict[str, object]] = {
     "photongi": {
         **_PATH,
         "path.photongi.sampler.type": "METROPOLIS",
-        "path.photongi.photon.maxcount": 100_000_000,
+        "path.photongi.photon.maxcount": 500_000,
         "path.photongi.photon.maxdepth": DEPTH,
         "path.photongi.photon.time.start": 0.0,
+        # Fewer visibility samples than by default: the scenes are small, and those would take seconds.
+        "path.photongi.visibility.lookup.radius": 0.06,
+        "path.photongi.visibility.maxsamplecount": 65536,
         "path.photongi.indirect.enabled": False,
         "path.photongi.caustic.enabled": True,
-        "path.photongi.caustic.maxsize": 100_000,
+        "path.photongi.caustic.maxsize": 30_000,
         "path.photongi.caustic.lookup.radius": 0.05,
         "path.photongi.caustic.lookup.normalangle": 10.0,
         "path.photongi.caustic.updatespp": 8,
@@ -42,20 +49,6 @@ ENGINES: dict[str, dict[str, object]] = {
         "path.hybridbackforward.enable": True,
         "path.hybridbackforward.partition": 0.7,
         "path.hybridbackforward.glossinessthreshold": 0.05,
-    },
-    "bidirectional": {
-        "renderengine.type": "BIDIRCPU",
-        "sampler.type": "METROPOLIS",
-        "path.maxdepth": DEPTH,
-        "light.maxdepth": DEPTH,
-    },
-    "vertex_merging": {
-        "renderengine.type": "BIDIRVMCPU",
-        "sampler.type": "SOBOL",
-        "path.maxdepth": DEPTH,
-        "light.maxdepth": DEPTH,
-        "bidirvm.lightpath.count": 65536,
-        "bidirvm.alpha": 0.7,
     },
 }
 
