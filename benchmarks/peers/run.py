@@ -40,7 +40,12 @@ def measure(scene: Scene, methods: list[Method], files: SceneFiles, store: Refer
     np.save(reference_file, reference.pixels)
     exposure, counts = exposure_of(reference.pixels), scene.counts
     result = SceneResult(
-        scene.name, scene.title, counts.triangles, counts.lights, reference.agreement, exposure,
+        scene.name,
+        scene.title,
+        counts.triangles,
+        counts.lights,
+        reference.agreement,
+        exposure,
         os.path.relpath(reference_file, ROOT),
     )
     results.scenes.append(result)

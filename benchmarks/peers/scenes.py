@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scenes of the comparison, and the plain ones in which light sampling alone makes the noise."""
+"""The scenes of the comparison, and the plain ones in which light sampling alone makes the noise.
+
+The camera sees no sphere that is a light, neither straight nor by mirrors: LuxCore would not show it.
+"""
 
 import math
 
@@ -41,7 +44,7 @@ def mirror_ring() -> Scene:
         band("outer side", 1.05, 0.0, 0.4, True, metal),
         washer("rim", 1.0, 1.05, 0.4, metal),
     ]
-    lamp = SphereLight("lamp", (-2.4, 0.6, 1.9), 0.06, 120.0)
+    lamp = AreaLight("lamp", (-2.4, 0.6, 1.9), unit((2.4, -0.6, -1.7)), 0.1, 40.0)
     camera = Camera((0.0, -3.6, 3.4), (0.0, -0.1, 0.0), math.radians(36.0))
     meshes = [floor("plane", 6.0, _WHITE), *ring]
     return Scene("mirror_ring", "Mirror ring on a plane", meshes, [lamp], camera, caustic=True)
@@ -80,7 +83,7 @@ def interior() -> Scene:
     ]
     lights: list[Light] = [
         AreaLight("ceiling lamp", (0.0, 0.6, 2.55), _DOWN, 0.5, 60.0),
-        SphereLight("floor lamp", (-2.0, 2.4, 1.5), 0.12, 25.0, (1.0, 0.75, 0.45)),
+        SphereLight("floor lamp", (1.9, -2.6, 1.5), 0.12, 25.0, (1.0, 0.75, 0.45)),
     ]
     camera = Camera((0.3, -2.8, 1.5), (-0.1, 1.0, 0.9), math.radians(58.0))
     return Scene("interior", "Room with two lamps", meshes, lights, camera)
@@ -102,10 +105,10 @@ def hall() -> Scene:
     for row in range(20):
         for column in range(10):
             position = (-4.05 + 0.9 * column, -9.5 + row, 3.4 + 0.4 * random.random())
-            color = tuple(0.3 + 0.7 * random.random(3))
+            color = tuple((0.3 + 0.7 * random.random(3)).tolist())
             power = 2.0 * math.exp(random.normal())
             lights.append(SphereLight(f"lamp {row} {column}", position, 0.03, power, color))
-    camera = Camera((0.6, -9.4, 1.7), (-0.2, 0.0, 1.5), math.radians(56.0))
+    camera = Camera((0.6, -9.6, 3.2), (-0.2, -4.0, -0.3), math.radians(56.0))
     return Scene("hall", "Hall with 200 lamps", [*room(10, 20, 4, walls), *pillars], lights, camera)
 
 

@@ -28,8 +28,8 @@ _PASS_SECONDS = 0.25
 """About how long a pass takes: long enough to fill the vectors, short enough to stop in time."""
 _FILTER_DEVIATION = 0.427
 """Pixels; of the Gauss curve nearest to Blackman-Harris with Cycles' width of 1.5."""
-_SUN_DISTANCE = 100.0
-"""Metres; Mitsuba's only sun without extent casts other shadows, so a far disk stands for it."""
+_SUN_DISTANCE = 5000.0
+"""Metres; Mitsuba's only sun has no extent and casts other shadows, so a far disk stands for it."""
 
 
 def choose_variant() -> str:
