@@ -137,9 +137,7 @@ def gray_world() -> Scene:
     return Scene("gray_world", "Lamp in a gray world", _boxes(), [lamp], _VIEW, world=0.05)
 
 
-SCENES = {
-    make.__name__: make for make in (glass_box, mirror_ring, pool, interior, hall, window_room, gray_world)
-}
+SCENES = {make.__name__: make for make in (glass_box, mirror_ring, pool, interior, hall, window_room, gray_world)}
 """Makers by name."""
 QUICK = ("glass_box", "mirror_ring", "gray_world")
 

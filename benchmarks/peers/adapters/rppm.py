@@ -42,9 +42,12 @@ def render(job: Job, scene: Scene, recorder: Recorder) -> None:
         if job.samples:
             renderer.render(limited(iterations=max(job.samples)), on_progress)
         else:
-            renderer.render(
-                limited(iterations=_NO_LIMIT, time_limit=max(job.seconds)), on_progress, None, job.seconds, keep
+            limit = max(job.seconds)
+            result = renderer.render(
+                limited(iterations=_NO_LIMIT, time_limit=limit), on_progress, None, job.seconds, keep
             )
+            if limit not in [picture.mark for picture in recorder.answer.pictures]:
+                keep(limit, result.frame)  # it ended with the iteration nearest to the limit, shortly before
 
 
 if __name__ == "__main__":
