@@ -121,8 +121,9 @@ def _method_words(results: Results) -> str:
         "starting, compiling and a first rough render do not, but are the first picture's time, with what earlier "
         "runs left in caches on disk.",
         "- relMSE: mean of (picture - reference)^2 / (reference^2 + 0.01), the worst 0.1 % of the pixels left out. A "
-        "picture that came late counts for its error on the way, interpolated in logarithms. FLIP (LDR, 67 pixels per "
-        "degree, all pictures of a scene at one exposure) and energy are those of the last time.",
+        "picture that came late counts for its error on the way, interpolated in logarithms; a first one may be 15 % "
+        "late. FLIP (LDR, 67 pixels per degree, all pictures of a scene at one exposure) and energy are those of the "
+        "last time.",
         "- Energy: mean radiance over the reference's. Caustic's energy: what the picture has within the caustic's "
         "mask beyond a render without caustics, over what the reference has.",
         "- Memory: the most that the process held, Python and Blender included where the renderer lives in them.",

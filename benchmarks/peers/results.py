@@ -9,8 +9,8 @@ from pathlib import Path
 
 from .references import Agreement
 
-_SLACK = 1.05
-"""A picture that comes so much later than asked for still counts as in time."""
+_SLACK = 1.15
+"""A first picture that comes so much later than asked for still counts as in time."""
 
 
 @dataclass
