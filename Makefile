@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-long test-gui lint pairs parity bench bench-export clean
+.PHONY: help setup render sample extension test test-long test-gui lint pairs parity bench bench-tools bench-export bench-peers clean
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
@@ -43,15 +43,20 @@ pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to
 parity: setup ## Compare each feature with Cycles: table, contact sheets in out/parity/, docs/compatibility.md
 	.venv/bin/python -m tests.parity.features.report $(ROWS)
 
-bench: setup ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
-	@.venv/bin/python -c 'import matplotlib' 2>/dev/null || .venv/bin/python -m pip install --quiet \
+bench-tools: setup
+	@.venv/bin/python -c 'import matplotlib, flip_evaluator' 2>/dev/null || .venv/bin/python -m pip install --quiet \
 		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
+
+bench: bench-tools ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
 	.venv/bin/python tests/benchmarks/run.py --scene-folder $(SCENES) $(BENCH)
 	.venv/bin/python tests/benchmarks/frame_costs.py --output out/benchmarks/frame_costs.json $(filter --quick,$(BENCH))
 
 bench-export: setup ## Measure what a frame costs in which everything moves (BENCH=--quick)
 	.venv/bin/python tests/benchmarks/export_speed.py --output out/benchmarks/export.json $(BENCH)
 
+bench-peers: bench-tools ## Compare with Cycles, LuxCore and Mitsuba at equal time, to out/peers/ (BENCH=--quick, --plain, --publish)
+	.venv/bin/python -m benchmarks.peers.run $(BENCH)
+
 clean: ## Remove what was made: out/, caches (.venv and .mesa stay)
 	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info
-	find rppm_addon tests tools docs -name __pycache__ -type d -prune -exec rm -rf {} +
+	find rppm_addon tests tools docs benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -82,13 +82,13 @@ def describe(context: Context, clock: Clock, commit: str | None = None) -> dict[
         "driver": information.driver,
         "opengl": information.version,
         "software_driver": context.is_software,
-        "processor": _processor(),
+        "processor": processor_name(),
         "cores": clock.cores,
         "system": platform.platform(),
         "python": platform.python_version(),
         "moderngl": moderngl.__version__,
         "numpy": np.__version__,
-        "commit": commit or _commit(),
+        "commit": commit or checkout_commit(),
         "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "clock": clock.description,
     }
@@ -103,7 +103,7 @@ def slug(machine: dict[str, object]) -> str:
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-") or "device"
 
 
-def _processor() -> str:
+def processor_name() -> str:
     """The processor's name, without the padding that some makers add."""
     try:
         found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
@@ -113,7 +113,7 @@ def _processor() -> str:
     return " ".join(name.split())
 
 
-def _commit() -> str:
+def checkout_commit() -> str:
     """The checkout's commit; with + where tracked files other than figures differ from it."""
 
     def git(*arguments: str) -> str:
