@@ -16,7 +16,8 @@ log = logging.getLogger(__name__)
 _EMPTY_COMPUTE = "#version 430 core\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
 _EMPTY_VERTEX = "#version 430 core\nvoid main() { gl_Position = vec4(0.0); }\n"
 _EMPTY_FRAGMENT = "#version 430 core\nvoid main() {}\n"
-_GROUPS_PER_ROW = 65535
+GROUPS_PER_ROW = 65535
+"""Groups of a dispatch along an axis that every device allows."""
 
 
 class _Program:
@@ -77,8 +78,8 @@ class ComputeProgram(_Program):
             return
         self._bind(buffers, parameters)
         groups = -(-threads // self.local_size)
-        rows = -(-groups // _GROUPS_PER_ROW)
-        self._program.run(min(groups, _GROUPS_PER_ROW), rows)
+        rows = -(-groups // GROUPS_PER_ROW)
+        self._program.run(min(groups, GROUPS_PER_ROW), rows)
         self.context.barrier()
 
     def run_indirect(

@@ -33,6 +33,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..scene.errors import DeviceError
 from . import records  # noqa: F401  the kernels include Ray and Hit
+from .living_paths import LivingPaths
 
 log = logging.getLogger(__name__)
 
@@ -88,7 +89,7 @@ BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
 Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
 Record("DivideLevel", first_tile="uint", end_tile="uint", level="uint", side_exponent="uint", fragment_count="uint")
 Record("MergeLevel", first_cell="uint", end_cell="uint")
-Record("TraceRange", first_ray="uint", end_ray="uint")
+Record("TraceParameters", first_place="uint")
 
 FINEST_RESOLUTION = 1 << 14
 
@@ -221,17 +222,17 @@ class DeepCubemap:
         }
         log.debug("deep cubemap: %s", self.counts)
 
-    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, count: int) -> None:
-        """Find the nearest hit of each of ``count`` Ray records; writes Hit records.
+    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths) -> None:
+        """Find the nearest hits of the living paths' Ray records; writes Hit records.
 
         A hit at just maximum_distance counts, one at distance 0 does not. Where nothing is hit,
         triangle is NO_TRIANGLE and the rest without meaning.
         """
-        self._trace("deep_cubemap/trace.comp", {"Rays": rays, "Hits": hits}, count)
+        self._trace("deep_cubemap/trace.comp", {"Rays": rays, "Hits": hits}, living)
 
-    def occluded(self, rays: moderngl.Buffer, visibility: moderngl.Buffer, count: int) -> None:
-        """Write a uint for each of ``count`` Ray records: 1 where trace would hit nothing, else 0."""
-        self._trace("deep_cubemap/occluded.comp", {"Rays": rays, "Visibility": visibility}, count)
+    def occluded(self, rays: moderngl.Buffer, visibility: moderngl.Buffer, living: LivingPaths) -> None:
+        """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0."""
+        self._trace("deep_cubemap/occluded.comp", {"Rays": rays, "Visibility": visibility}, living)
 
     @property
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
@@ -271,12 +272,15 @@ class DeepCubemap:
     def _list(self, name: str) -> moderngl.Buffer:
         return self._lists[name][0].buffer
 
-    def _trace(self, kernel: str, buffers: dict[str, moderngl.Buffer], count: int) -> None:
+    def _trace(self, kernel: str, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> None:
         program = self._library.compute(kernel)
         buffers = {**self.traversal_buffers, **buffers}
-        for first in range(0, count, _RAYS_PER_DISPATCH):
-            end = min(first + _RAYS_PER_DISPATCH, count)
-            program.run(end - first, buffers, {"first_ray": first, "end_ray": end})
+        if living.most <= _RAYS_PER_DISPATCH:
+            living.run(program, buffers, {"first_place": 0})
+            return
+        for first in range(0, living.most, _RAYS_PER_DISPATCH):
+            threads = min(_RAYS_PER_DISPATCH, living.most - first)
+            program.run(threads, {**buffers, "LivingPaths": living.buffer}, {"first_place": first})
 
     def _read_state(self) -> np.void:
         return self._state.read(STATE.dtype, 1)[0].copy()

@@ -9,6 +9,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from .emission import LIGHT_PARAMETERS
 from .importons import Importons
+from .living_paths import LivingPaths
 from .records import RAY
 from .stages import Stages
 
@@ -21,7 +22,6 @@ Record(
     specular_alpha="float",
     final_gather="uint",
 )
-Record("CountParameters", count="uint")
 
 
 class DirectLight:
@@ -34,6 +34,8 @@ class DirectLight:
         self._contributions = GrowingBuffer(context, "direct light")
         self._visibility = GrowingBuffer(context, "visibility")
         self._triangles = GrowingBuffer(context, "triangles of sampled lights")
+        self._living_rays = LivingPaths(context, library, "living shadow rays", "lower the resolution")
+        self._living_rays.require(pixels)
         self._rays.require(RAY.size * pixels)
         self._contributions.require(16 * pixels)
         self._visibility.require(4 * pixels)
@@ -45,27 +47,26 @@ class DirectLight:
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {buffer.name: buffer.size for buffer in self._buffers}
+        return {buffer.name: buffer.size for buffer in self._buffers} | self._living_rays.memory_bytes
 
     def run(
         self,
         stages: Stages,
         importons: Importons,
-        count: int,
         first_pixel: int,
         iteration: int,
         segment: int,
         found_radiances: moderngl.Buffer,
     ) -> None:
-        """Add the direct light of the resolved vertices of ``count`` camera paths to the band's radiance, or to what
+        """Add the direct light of the resolved vertices of the living camera paths to the band's radiance, or to what
         their gathering rays found.
 
         To be called before the paths scatter on.
         """
-        parameters = stages.emission.parameters(stages.settings.seed, iteration, count)
+        parameters = stages.emission.parameters(stages.settings.seed, iteration)
         stages.emission.use_maps()
-        self._sample.run(
-            count,
+        importons.living.run(
+            self._sample,
             {
                 **stages.emission.tree_buffers,
                 "Closures": importons.closures.buffer,
@@ -85,21 +86,22 @@ class DirectLight:
                 "final_gather": stages.settings.final_gather,
             },
         )
+        living = self._living_rays
+        living.take(importons.living, self._rays.buffer)
         stages.emission.emitters.tint_contributions(
-            stages.resolve, self._rays.buffer, self._triangles.buffer, self._contributions.buffer, count, iteration
+            stages.resolve, self._rays.buffer, self._triangles.buffer, self._contributions.buffer, living, iteration
         )
-        stages.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, count)
-        self._add.run(
-            count,
+        stages.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, living)
+        living.run(
+            self._add,
             {
                 "Visibility": self._visibility.buffer,
                 "Contributions": self._contributions.buffer,
                 "FoundRadiances": found_radiances,
                 "Radiances": importons.radiances.buffer,
             },
-            {"count": count},
         )
 
     def release(self) -> None:
-        for buffer in self._buffers:
+        for buffer in (*self._buffers, self._living_rays):
             buffer.release()

@@ -49,15 +49,14 @@ LIGHT_PARAMETERS = {
     **LIGHT_TREE_PARAMETERS,
     "seed": "uint",
     "iteration": "uint",
-    "count": "uint",
 }
 """Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_selection`` and
 ``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
 weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
 give, W/m^2."""
 
-Record("EmitParameters", **LIGHT_PARAMETERS, target_count="uint")
-Record("FalloffParameters", **LIGHT_PARAMETERS)
+Record("EmitParameters", **LIGHT_PARAMETERS, count="uint", target_count="uint")
+Record("FalloffParameters", **LIGHT_PARAMETERS, count="uint")
 
 
 def spot_share(cosine_cone: float, blend: float) -> float:
@@ -176,9 +175,9 @@ class Emission:
         self.environment.use()
         self.lamp_maps.use()
 
-    def parameters(self, seed: int, iteration: int, count: int) -> dict[str, object]:
+    def parameters(self, seed: int, iteration: int) -> dict[str, object]:
         """Values of LIGHT_PARAMETERS."""
-        return {**self._parameters, "seed": seed, "iteration": iteration, "count": count}
+        return {**self._parameters, "seed": seed, "iteration": iteration}
 
     def build(
         self,
@@ -331,7 +330,7 @@ class Emission:
                 "WorldRadiances": world_radiances,
                 "Targets": self._targets.buffer,
             },
-            {**self.parameters(seed, iteration, count), "target_count": self._target_count},
+            {**self.parameters(seed, iteration), "count": count, "target_count": self._target_count},
         )
 
     def fall_off(
@@ -347,7 +346,7 @@ class Emission:
         self._falloff_program.run(
             count,
             {**self.buffers, "Rays": rays, "Hits": hits, "PhotonPaths": photon_paths},
-            self.parameters(seed, iteration, count),
+            {**self.parameters(seed, iteration), "count": count},
         )
 
     def release(self) -> None:

@@ -15,10 +15,11 @@ from ..materials.tables import MaterialTables
 from ..scene.scene import Scene
 from .geometry import Geometry
 from .light_tree import triangle_leaves
+from .living_paths import LivingPaths
 from .records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY
 from .resolve import Resolve
 
-Record("EmittersParameters", count="uint", photons="uint")
+Record("EmittersParameters", photons="uint")
 
 _POINTS = 8
 """Places of a triangle, on either side in turn, where an emission that varies is asked for."""
@@ -45,6 +46,7 @@ class Emitters:
         self._rays = GrowingBuffer(context, "rays to emitters")
         self._hits = GrowingBuffer(context, "places on emitters")
         self._closures = GrowingBuffer(context, "closures of emitters")
+        self._asked = LivingPaths(context, library, "rays to emitters to resolve", "lower the resolution")
         self.count = 0
         self.power = np.zeros(3)
         self.leaves = LIGHT_NODE.zeros(0)
@@ -53,7 +55,8 @@ class Emitters:
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {buffer.name: buffer.size for buffer in (self.triangles, self._rays, self._hits, self._closures)}
+        buffers = self.triangles, self._rays, self._hits, self._closures
+        return {buffer.name: buffer.size for buffer in buffers} | self._asked.memory_bytes
 
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
@@ -127,7 +130,8 @@ class Emitters:
         self._rays.upload(rays)
         self._hits.upload(hits)
         self._closures.require(CLOSURE.size * count)
-        resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, count, 0, 0)
+        self._asked.fill(count)
+        resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, 0, 0)
         emission = self._closures.read(CLOSURE.dtype, count)["emission"]
         return np.where(np.isfinite(emission), emission, 0.0)
 
@@ -138,7 +142,7 @@ class Emitters:
         hits: moderngl.Buffer,
         closures: moderngl.Buffer,
         photon_paths: moderngl.Buffer,
-        count: int,
+        living: LivingPaths,
         iteration: int,
     ) -> None:
         """Give photons that leave emitters with varying emission the radiance of their place and direction.
@@ -147,10 +151,10 @@ class Emitters:
         """
         if not self._varying:
             return
-        self._rays.require(RAY.size * count)
-        self._locate(rays, rays, hits, count, photons=True)
-        resolve.run(self._rays.buffer, hits, closures, count, iteration, 0)
-        self._tint_photons.run(count, {"Closures": closures, "PhotonPaths": photon_paths}, {"count": count})
+        self._rays.require(RAY.size * living.most)
+        self._locate(rays, rays, hits, living, photons=True)
+        resolve.run(self._rays.buffer, hits, closures, self._asked, iteration, 0)
+        self._asked.run(self._tint_photons, {"Closures": closures, "PhotonPaths": photon_paths})
 
     def tint_contributions(
         self,
@@ -158,24 +162,24 @@ class Emitters:
         shadow_rays: moderngl.Buffer,
         light_triangles: moderngl.Buffer,
         contributions: moderngl.Buffer,
-        count: int,
+        living: LivingPaths,
         iteration: int,
     ) -> None:
         """Give next-event rays to emitters with varying emission the radiance of the place that they sampled."""
         if not self._varying:
             return
         for buffer, record in ((self._rays, RAY), (self._hits, HIT), (self._closures, CLOSURE)):
-            buffer.require(record.size * count)
-        self._locate(shadow_rays, light_triangles, self._hits.buffer, count, photons=False)
-        resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, count, iteration, 0)
-        self._tint_contributions.run(
-            count, {"Closures": self._closures.buffer, "Contributions": contributions}, {"count": count}
+            buffer.require(record.size * living.most)
+        self._locate(shadow_rays, light_triangles, self._hits.buffer, living, photons=False)
+        resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, iteration, 0)
+        self._asked.run(
+            self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions}
         )
 
-    def _locate(self, rays, light_triangles, hits, count: int, photons: bool) -> None:
-        """Rays that look at the emitters' places, and the places as hits."""
-        self._find.run(
-            count,
+    def _locate(self, rays, light_triangles, hits, living: LivingPaths, photons: bool) -> None:
+        """Rays that look at the emitters' places, and the places as hits; those that are to be asked are listed."""
+        living.run(
+            self._find,
             {
                 "Rays": rays,
                 "LightTriangles": light_triangles,
@@ -183,11 +187,12 @@ class Emitters:
                 "EmitterRays": self._rays.buffer,
                 "EmitterHits": hits,
             },
-            {"count": count, "photons": photons},
+            {"photons": photons},
         )
+        self._asked.take(living, self._rays.buffer)
 
     def release(self) -> None:
-        for buffer in (self.triangles, self._rays, self._hits, self._closures):
+        for buffer in (self.triangles, self._rays, self._hits, self._closures, self._asked):
             buffer.release()
 
 

@@ -11,7 +11,7 @@ from ..gl.records import Record
 from .importons import Importons
 from .splat_sums import SplatSums
 
-Record("SurfaceParameters", count="uint", first_pixel="uint", iteration="uint", segment="uint")
+Record("SurfaceParameters", first_pixel="uint", iteration="uint", segment="uint")
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
 
 
@@ -38,11 +38,11 @@ class Film:
         return {buffer.name: buffer.size for buffer in (self._radiance, self._surface, self._surface_counts)}
 
     def add_surface(
-        self, camera: moderngl.Buffer, importons: Importons, count: int, first_pixel: int, iteration: int, segment: int
+        self, camera: moderngl.Buffer, importons: Importons, first_pixel: int, iteration: int, segment: int
     ) -> None:
         """Add the first surfaces that the camera paths of a band have found in a segment."""
-        self._surface_program.run(
-            count,
+        importons.living.run(
+            self._surface_program,
             {
                 "Camera": camera,
                 "Closures": importons.closures.buffer,
@@ -51,7 +51,7 @@ class Film:
                 "Surfaces": self._surface.buffer,
                 "SurfaceCounts": self._surface_counts.buffer,
             },
-            {"count": count, "first_pixel": first_pixel, "iteration": iteration, "segment": segment},
+            {"first_pixel": first_pixel, "iteration": iteration, "segment": segment},
         )
 
     def add(self, radiances: moderngl.Buffer, sums: SplatSums, count: int, first_pixel: int, iteration: int) -> None:

@@ -10,6 +10,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..scene.settings import DirectLight
 from .emission import LIGHT_PARAMETERS
+from .living_paths import LivingPaths
 from .records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
 from .stages import Stages
 
@@ -44,6 +45,8 @@ class Importons:
         self.closures = GrowingBuffer(context, "camera closures", remedy)
         self.importons = GrowingBuffer(context, "importons", remedy)
         self.radiances = GrowingBuffer(context, "band radiance", remedy)
+        self.living = LivingPaths(context, library, "living camera paths", remedy)
+        self.living.require(pixels, to_keep=True)
         for buffer, size in (
             (self.rays, RAY.size),
             (self.hits, HIT.size),
@@ -58,23 +61,23 @@ class Importons:
     @property
     def memory_bytes(self) -> dict[str, int]:
         buffers = (self.rays, self.hits, self.paths, self.closures, self.importons, self.radiances)
-        return {buffer.name: buffer.size for buffer in buffers}
+        return {buffer.name: buffer.size for buffer in buffers} | self.living.memory_bytes
 
     def begin(self) -> None:
         """Forget the radiance of the band before."""
         self.radiances.buffer.write(self._opaque)
 
-    def trace(self, stages: Stages, count: int) -> None:
+    def trace(self, stages: Stages) -> None:
         """Find what the rays of the segment hit."""
-        stages.deep_cubemap.trace(self.rays.buffer, self.hits.buffer, count)
+        stages.deep_cubemap.trace(self.rays.buffer, self.hits.buffer, self.living)
 
-    def resolve(self, stages: Stages, count: int, iteration: int, segment: int) -> None:
+    def resolve(self, stages: Stages, iteration: int, segment: int) -> None:
         """Hits to closures."""
         stages.resolve.run(
             self.rays.buffer,
             self.hits.buffer,
             self.closures.buffer,
-            count,
+            self.living,
             iteration,
             segment,
             camera_paths=self.paths.buffer,
@@ -84,7 +87,6 @@ class Importons:
         self,
         stages: Stages,
         camera: moderngl.Buffer,
-        count: int,
         first_pixel: int,
         iteration: int,
         segment: int,
@@ -98,8 +100,8 @@ class Importons:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
         settings = stages.settings
         stages.emission.use_maps()
-        self._scatter.run(
-            count,
+        self.living.run(
+            self._scatter,
             {
                 **stages.emission.tree_buffers,
                 "Closures": self.closures.buffer,
@@ -113,7 +115,7 @@ class Importons:
                 "LitCatchers": lit_catchers,
             },
             {
-                **stages.emission.parameters(settings.seed, iteration, count),
+                **stages.emission.parameters(settings.seed, iteration),
                 "segment": segment,
                 "last_segment": segment == settings.camera_path_length - 1,
                 "first_pixel": first_pixel,
@@ -135,5 +137,5 @@ class Importons:
         return self.importons.read(IMPORTON.dtype, count)["radius"]
 
     def release(self) -> None:
-        for buffer in (self.rays, self.hits, self.paths, self.closures, self.importons, self.radiances):
+        for buffer in (self.rays, self.hits, self.paths, self.closures, self.importons, self.radiances, self.living):
             buffer.release()

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .bands import bands_of
+from .living_paths import LivingPaths
 from .photon_grid import importon_memory
 from .records import (
     CAMERA_PATH,
@@ -100,6 +101,7 @@ def expected_memory(width: int, height: int, photons: int, segments: int, raster
             "world radiances": 4 * photons,
             "emitted photons": PHOTON_PATH.size * photons,
             "flux sums": FLUX_SUMS.size * -(-photons // FLUX_GROUP),
+            "living photon paths": 2 * LivingPaths.size(photons),
         },
         "camera paths": {
             "camera rays": RAY.size * band,
@@ -108,12 +110,14 @@ def expected_memory(width: int, height: int, photons: int, segments: int, raster
             "camera closures": CLOSURE.size * band,
             "importons": IMPORTON.size * band,
             "band radiance": 16 * band,
+            "living camera paths": 2 * LivingPaths.size(band),
         },
         "direct light": {
             "shadow rays": RAY.size * band,
             "direct light": 16 * band,
             "visibility": 4 * band,
             "triangles of sampled lights": 4 * band,
+            "living shadow rays": LivingPaths.size(band),
         },
         "final gather": {"gathering vertices": GATHERING_VERTEX.size * band, "found radiance": 16 * band},
         "density estimation": {

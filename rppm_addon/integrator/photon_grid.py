@@ -23,7 +23,7 @@ _GRID_PARAMETERS = {
 }
 Record("GridParameters", count="uint", **_GRID_PARAMETERS)
 Record("AllocateParameters", count="uint")
-Record("GroupParameters", count="uint", buckets="uint", side="float", group_size="uint")
+Record("GroupParameters", buckets="uint", side="float", group_size="uint")
 Record(
     "GatherPhotonsParameters",
     most_rounds="uint",
@@ -151,19 +151,21 @@ class PhotonGrid:
 
     def _group(self, importons: TakingImportons) -> None:
         """List the importons that gather, those of a cell side by side."""
-        buckets = _buckets(importons.count)
+        buckets = _buckets(importons.living.most)
         cells = {"Buckets": self._importon_grid.buffer}
         parameters = {
-            "count": importons.count,
             "buckets": buckets,
             "side": 0.5 * self._parameters["wide_side"],
             "group_size": self._gather.local_size,
         }
         self._importon_grid.clear()
-        self._count_importons.run(importons.count, {"Importons": importons.importons, **cells}, parameters)
+        self._visits.buffer.write(np.array([0, 1, 1, 0], np.uint32).tobytes())
+        importons.living.run(self._count_importons, {"Importons": importons.importons, **cells}, parameters)
         self._allocate.run(buckets, cells, {"count": buckets})
-        self._place_importons.run(
-            importons.count, {"Importons": importons.importons, **cells, "Visits": self._visits.buffer}, parameters
+        importons.living.run(
+            self._place_importons,
+            {"Importons": importons.importons, **cells, "Visits": self._visits.buffer},
+            parameters,
         )
 
     def release(self) -> None:

@@ -8,6 +8,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from .living_paths import LivingPaths
 from .records import (
     CLOSURE,
     DEPARTURE,
@@ -23,16 +24,15 @@ from .stages import Stages
 
 Record(
     "ScatterPhotonsParameters",
-    count="uint",
     photon_count="uint",
     segment="uint",
-    last_segment="uint",
+    segments="uint",
     seed="uint",
     iteration="uint",
     specular_alpha="float",
     looks_back="uint",
 )
-Record("DepartParameters", count="uint", segment="uint")
+Record("DepartParameters", photon_count="uint", segment="uint")
 Record("BalanceParameters", photon_count="uint", segments="uint")
 
 
@@ -57,6 +57,7 @@ class Photons:
         self.world_radiances.require(4 * photon_count)
         self._emitted = GrowingBuffer(context, "emitted photons", remedy)
         self._sums = GrowingBuffer(context, "flux sums", remedy)
+        self._living = LivingPaths(context, library, "living photon paths", remedy)
         self.photons.require(PHOTON.size * photon_count * segments)
         for buffer, record in (
             (self._paths, PHOTON_PATH),
@@ -67,6 +68,7 @@ class Photons:
             (self._emitted, PHOTON_PATH),
         ):
             buffer.require(record.size * photon_count)
+        self._living.require(photon_count, to_keep=True)
         self._sums.require(FLUX_SUMS.size * -(-photon_count // FLUX_GROUP))
 
     @property
@@ -87,31 +89,34 @@ class Photons:
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {buffer.name: buffer.size for buffer in self._buffers}
+        return {buffer.name: buffer.size for buffer in self._buffers} | self._living.memory_bytes
 
     def run(self, stages: Stages, iteration: int) -> None:
-        """Emit the iteration's photons and trace them to the last segment."""
+        """Emit the iteration's photons and trace them to the last segment, or to that after which none lives."""
         settings, timers = stages.settings, stages.timers
+        self._living.fill(self.photon_count)
         for segment in range(self.segments):
             if segment == 0:
                 self._emit(stages, iteration)
                 self._context.moderngl.copy_buffer(self._emitted.buffer, self._paths.buffer)
             else:
                 with timers.stage("photon tracing"):
-                    stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self.photon_count)
+                    self._living.keep(self._rays.buffer)
+                    if self._living.known_empty:
+                        return
+                    stages.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self._living)
             with timers.stage("photon resolve"):
                 self._resolve(stages, iteration, segment, looks_back=False)
             # Nothing goes on from the last segment's hits.
             looks_back = stages.materials.any_depends_on_view and segment < self.segments - 1
             with timers.stage("photon scattering"):
-                self._scatter.run(
-                    self.photon_count,
+                self._living.run(
+                    self._scatter,
                     {**self._blocks, "Materials": stages.materials.buffers["Materials"]},
                     {
-                        "count": self.photon_count,
                         "photon_count": self.photon_count,
                         "segment": segment,
-                        "last_segment": segment == self.segments - 1,
+                        "segments": self.segments,
                         "seed": settings.seed,
                         "iteration": iteration,
                         "specular_alpha": settings.specular_roughness**2,
@@ -126,7 +131,7 @@ class Photons:
             self._rays.buffer,
             self._hits.buffer,
             self._closures.buffer,
-            self.photon_count,
+            self._living,
             iteration,
             segment,
             photon_paths=self._paths.buffer,
@@ -138,7 +143,8 @@ class Photons:
         with stages.timers.stage("photon resolve"):
             self._resolve(stages, iteration, segment, looks_back=True)
         with stages.timers.stage("photon scattering"):
-            self._depart.run(self.photon_count, self._blocks, {"count": self.photon_count, "segment": segment})
+            parameters = {"photon_count": self.photon_count, "segment": segment}
+            self._living.run(self._depart, self._blocks, parameters)
 
     def _emit(self, stages: Stages, iteration: int) -> None:
         """DirectPhotonHits: photons leave the lights and find their first hits."""
@@ -148,10 +154,10 @@ class Photons:
                 rays, paths, self.world_radiances.buffer, self.photon_count, stages.settings.seed, iteration
             )
             stages.emission.emitters.tint_photons(
-                stages.resolve, rays, hits, self._closures.buffer, paths, self.photon_count, iteration
+                stages.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration
             )
         with stages.timers.stage("photon tracing"):
-            stages.deep_cubemap.trace(rays, hits, self.photon_count)
+            stages.deep_cubemap.trace(rays, hits, self._living)
             if stages.emission.has_falloff:
                 stages.emission.fall_off(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
 
@@ -177,5 +183,5 @@ class Photons:
         return records.reshape(self.segments, self.photon_count)
 
     def release(self) -> None:
-        for buffer in self._buffers:
+        for buffer in (*self._buffers, self._living):
             buffer.release()

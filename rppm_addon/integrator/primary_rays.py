@@ -36,7 +36,7 @@ class PrimaryRays:
             # The iterations' points start with the first of the set.
             {"first_pixel": first_pixel, "seed": stages.settings.seed, "iteration": max(iteration - 1, 0)},
         )
-        importons.trace(stages, count)
+        importons.trace(stages)
 
     def release(self) -> None:
         self._camera.release()

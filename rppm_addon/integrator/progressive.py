@@ -284,6 +284,8 @@ class ProgressivePhotonMapper:
             self._direct_camera_hits(first_row, rows)
             yield
             for segment in range(self.scene.settings.camera_path_length):
+                if segment > 0 and not self._any_path_lives():
+                    break
                 self._trace_importons(segment)
                 yield
                 self._catch_shadows(segment)
@@ -465,7 +467,7 @@ class ProgressivePhotonMapper:
             footprints = []
             for view in overviews(self.scene.camera, columns, rows, self._bands[0][1]):
                 self._begin_band(view, 0, 0)
-                self._importons.resolve(self._stages, self._count, 0, 0)
+                self._importons.resolve(self._stages, 0, 0)
                 self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
                 footprints.append(self._importons.footprints(self._count))
             look = np.concatenate(footprints).reshape(rows, columns)
@@ -535,6 +537,7 @@ class ProgressivePhotonMapper:
         self._count = int(view["width"][0] * view["height"][0])
         self._rows = int(view["height"][0])
         self._first_pixel = first_row * self.film.width
+        self._importons.living.fill(self._count)
         self._gbuffer.run(self._stages, self._importons, view, self._first_pixel, iteration)
 
     def _direct_camera_hits(self, first_row: int, rows: int) -> None:
@@ -548,15 +551,21 @@ class ProgressivePhotonMapper:
                 self._final_gather.begin()
             self._begin_band(view, first_row, self.iteration)
 
+    def _any_path_lives(self) -> bool:
+        """List the camera paths that go on; False where it is known that there are none."""
+        with self.timers.stage("camera tracing"):
+            self._importons.living.keep(self._importons.rays.buffer)
+        return not self._importons.living.known_empty
+
     def _trace_importons(self, segment: int) -> None:
         if segment > 0:
             with self.timers.stage("camera tracing"):
-                self._importons.trace(self._stages, self._count)
+                self._importons.trace(self._stages)
         with self.timers.stage("camera resolve"):
-            self._importons.resolve(self._stages, self._count, self.iteration, segment)
+            self._importons.resolve(self._stages, self.iteration, segment)
         if self._enters_film:
             self.film.add_surface(
-                self._gbuffer.camera, self._importons, self._count, self._first_pixel, self.iterations_in_film, segment
+                self._gbuffer.camera, self._importons, self._first_pixel, self.iterations_in_film, segment
             )
 
     def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
@@ -564,7 +573,6 @@ class ProgressivePhotonMapper:
             self._importons.scatter(
                 self._stages,
                 self._gbuffer.camera,
-                self._count,
                 self._first_pixel,
                 iteration,
                 segment,
@@ -583,7 +591,6 @@ class ProgressivePhotonMapper:
             self._direct_light.run(
                 self._stages,
                 self._importons,
-                self._count,
                 self._first_pixel,
                 self.iteration,
                 segment,
@@ -594,14 +601,14 @@ class ProgressivePhotonMapper:
         if self._shadow_catcher.present:
             with self.timers.stage("shadow catcher"):
                 self._shadow_catcher.run(
-                    self._stages, self._importons, self._count, self._first_pixel, self.iteration, segment
+                    self._stages, self._importons, self._first_pixel, self.iteration, segment
                 )
 
     def _taking_importons(self, segment: int, raster: CameraRaster | None = None) -> TakingImportons:
         """Those of a segment, from which the gathering ray is the next."""
         return TakingImportons(
             self._importons.importons.buffer,
-            self._count,
+            self._importons.living,
             gathers=segment == 0 and self._gathers,
             by_ray=segment > 0 and self._gathers,
             most_scattered=max(self.scene.settings.camera_path_length - segment - 2, 0),

@@ -12,6 +12,19 @@ HIT = Record("Hit", triangle="uint", b1="float", b2="float", distance="float")
 """What any kind of visibility yields; triangle NO_TRIANGLE is a miss.
 The point is (1 - b1 - b2) v0 + b1 v1 + b2 v2."""
 
+LIVING_PATHS_HEADER = Record(
+    "LivingPathsHeader",
+    first="uint",
+    count="uint",
+    unused0="uint",
+    unused1="uint",
+    groups="uvec3",
+    unused2="uint",
+)
+"""How a list of paths begins (living_paths.py): their ``count``, and the ``groups`` of a dispatch over them. It is laid
+out as a range of shaders/resolve/ranges.glsl, ``first`` being the word where the numbers begin: a list stands for the
+order of the hits where one program resolves them all."""
+
 TRIANGLE_ATTRIBUTES = Record(
     "TriangleAttributes",
     normal0="uint",

@@ -14,6 +14,7 @@ from ..materials.tables import MaterialTables, first_line
 from ..scene.camera import Camera
 from ..scene.scene import Scene
 from .geometry import Geometry
+from .living_paths import LivingPaths
 from .records import CAMERA_PATH, PHOTON_PATH
 from .surface_attributes import SurfaceAttributes
 
@@ -21,7 +22,6 @@ Record(
     "ResolveParameters",
     world_to_camera="mat4",
     window="vec4",
-    count="uint",
     seed="uint",
     iteration="uint",
     segment="uint",
@@ -37,7 +37,6 @@ Record(
     looks_back="uint",
 )
 
-_NO_PROGRAM = 0xFFFFFFFF
 _NO_PATHS, _CAMERA, _PHOTONS = range(3)
 _RANGE_SIZE = 8
 _STAGE = "resolve/resolve.comp"
@@ -106,52 +105,55 @@ class Resolve:
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
         closures: moderngl.Buffer,
-        count: int,
+        living: LivingPaths,
         iteration: int,
         segment: int,
         camera_paths: moderngl.Buffer | None = None,
         photon_paths: moderngl.Buffer | None = None,
         looks_back: bool = False,
     ) -> None:
-        """Fill ``count`` closures; inactive rays and misses give closures without a triangle.
+        """Fill the closures of living paths; inactive rays and misses give closures without a triangle.
 
         The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
         are of no kind. looks_back: the same hits are seen once more, from where photons go; what chance decides is
         decided anew.
         """
-        self._order.require(4 * (_RANGE_SIZE * len(self._programs) + count))
         buffers = {
             **self._buffers,
             "Rays": rays,
             "Hits": hits,
             "Closures": closures,
-            "HitOrder": self._order.buffer,
             "PathFlags": camera_paths or photon_paths or rays,
         }
         parameters = {
             **self._parameters,
-            "count": count,
             "iteration": iteration,
             "segment": segment,
-            "program": _NO_PROGRAM,
             "looks_back": looks_back,
             "path_kind": _CAMERA if camera_paths else _PHOTONS if photon_paths else _NO_PATHS,
         }
 
-        def of(program: ComputeProgram) -> dict[str, moderngl.Buffer]:
-            return {name: buffers[name] for name in program.blocks}
-
-        if len(self._programs) == 1:
-            self._programs[0].run(count, of(self._programs[0]), parameters)
-            return
-        self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
-        self._count.run(count, of(self._count), {"count": count})
-        self._allocate.run(1, of(self._allocate), {"count": len(self._programs)})
-        self._order_hits.run(count, of(self._order_hits), {"count": count})
+        # A list of paths is laid out as the order of a single program's hits.
+        order = living.buffer if len(self._programs) == 1 else self._order_by_program(buffers, living)
         for number, program in enumerate(self._programs):
-            place = 4 * (_RANGE_SIZE * number + 4)
-            program.run_indirect(self._order.buffer, place, of(program), {**parameters, "program": number})
+            arguments = 4 * (_RANGE_SIZE * number + 4)
+            program.run_indirect(
+                order, arguments, _blocks_of(program, {**buffers, "HitOrder": order}), {**parameters, "program": number}
+            )
+
+    def _order_by_program(self, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> moderngl.Buffer:
+        self._order.require(4 * (_RANGE_SIZE * len(self._programs) + living.most))
+        self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
+        buffers = {**buffers, "HitOrder": self._order.buffer, "LivingPaths": living.buffer}
+        living.run(self._count, _blocks_of(self._count, buffers))
+        self._allocate.run(1, _blocks_of(self._allocate, buffers), {"count": len(self._programs)})
+        living.run(self._order_hits, _blocks_of(self._order_hits, buffers))
+        return self._order.buffer
 
     def release(self) -> None:
         self._order.release()
         self._surface_attributes.release()
+
+
+def _blocks_of(program: ComputeProgram, buffers: dict[str, moderngl.Buffer]) -> dict[str, moderngl.Buffer]:
+    return {name: buffers[name] for name in program.blocks}

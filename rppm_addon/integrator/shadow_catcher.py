@@ -33,12 +33,12 @@ class ShadowCatcher:
         return {buffer.name: buffer.size for buffer in (self._rays, self.lit)}
 
     def run(
-        self, stages: Stages, importons: Importons, count: int, first_pixel: int, iteration: int, segment: int
+        self, stages: Stages, importons: Importons, first_pixel: int, iteration: int, segment: int
     ) -> None:
-        """Fill ``lit`` for the resolved vertices of ``count`` camera paths, before they scatter on."""
+        """Fill ``lit`` for the resolved vertices of the living camera paths, before they scatter on."""
         stages.emission.use_maps()
-        self._program.run(
-            count,
+        importons.living.run(
+            self._program,
             {
                 **stages.emission.buffers,
                 "Closures": importons.closures.buffer,
@@ -46,12 +46,12 @@ class ShadowCatcher:
                 "ShadowRays": self._rays.buffer,
             },
             {
-                **stages.emission.parameters(stages.settings.seed, iteration, count),
+                **stages.emission.parameters(stages.settings.seed, iteration),
                 "segment": segment,
                 "first_pixel": first_pixel,
             },
         )
-        stages.deep_cubemap.occluded(self._rays.buffer, self.lit.buffer, count)
+        stages.deep_cubemap.occluded(self._rays.buffer, self.lit.buffer, importons.living)
 
     def release(self) -> None:
         self._rays.release()

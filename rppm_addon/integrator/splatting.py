@@ -128,10 +128,10 @@ class Splatting:
             "gathers": importons.gathers,
             **estimate,
         }
-        self._insert.run(
-            importons.count,
+        importons.living.run(
+            self._insert,
             {"Importons": importons.importons, "Heads": self._heads.buffer, "Core": self._core.buffer},
-            {**cube, "count": importons.count},
+            {**cube, "count": importons.living.most},
         )
         self._indirect_jobs.run(
             photons.count,

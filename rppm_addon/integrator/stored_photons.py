@@ -12,6 +12,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from .bandwidth import radius_by_ray
+from .living_paths import LivingPaths
 
 ESTIMATE_PARAMETERS = {
     "wide_radius": "float",
@@ -122,7 +123,8 @@ class TakingImportons:
     """The importons of a segment of a band's camera paths, one a pixel."""
 
     importons: moderngl.Buffer
-    count: int
+    living: LivingPaths
+    """The paths that came to this segment: what others have left in ``importons`` is of segments before."""
     gathers: bool
     """Whether the paths go on from there to gather: then the importons take no indirect photons."""
     by_ray: bool

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether each ray is free (1) or meets something (0).
 layout(local_size_x = 64) in;
-#include "common/invocation.glsl"
-#include <TraceRange>
-layout(std140, binding = 0) uniform Parameters { TraceRange parameters; };
+#include "common/living_paths.glsl"
+#include <TraceParameters>
+layout(std140, binding = 0) uniform Parameters { TraceParameters parameters; };
 #include "deep_cubemap/traverse.glsl"
 
 layout(std430, binding = 1) restrict readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) restrict writeonly buffer Visibility { uint visibility[]; };
 
 void main() {
-    uint index = parameters.first_ray + invocation_index();
-    if (index < parameters.end_ray) visibility[index] = deep_cubemap_occluded(rays[index]) ? 0u : 1u;
+    uint index = living_path_at(parameters.first_place + invocation_index());
+    if (index != NO_PATH) visibility[index] = deep_cubemap_occluded(rays[index]) ? 0u : 1u;
 }

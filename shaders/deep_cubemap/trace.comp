@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The nearest hit of each ray.
 layout(local_size_x = 64) in;
-#include "common/invocation.glsl"
-#include <TraceRange>
-layout(std140, binding = 0) uniform Parameters { TraceRange parameters; };
+#include "common/living_paths.glsl"
+#include <TraceParameters>
+layout(std140, binding = 0) uniform Parameters { TraceParameters parameters; };
 #include "deep_cubemap/traverse.glsl"
 
 layout(std430, binding = 1) restrict readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) restrict writeonly buffer Hits { Hit hits[]; };
 
 void main() {
-    uint index = parameters.first_ray + invocation_index();
-    if (index < parameters.end_ray) hits[index] = deep_cubemap_hit(rays[index]);
+    uint index = living_path_at(parameters.first_place + invocation_index());
+    if (index != NO_PATH) hits[index] = deep_cubemap_hit(rays[index]);
 }

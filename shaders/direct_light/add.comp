@@ -4,17 +4,15 @@
 
 layout(local_size_x = 64) in;
 
-#include <CountParameters>
-#include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+#include "common/living_paths.glsl"
 layout(std430, binding = 0) readonly buffer Visibility { uint visibility[]; };
 layout(std430, binding = 1) readonly buffer Contributions { vec4 contributions[]; };
 layout(std430, binding = 2) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 3) buffer FoundRadiances { vec4 found_radiances[]; };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     vec4 contribution = contributions[index];
     if (visibility[index] == 0u) return;
     if (contribution.w > 0.0) found_radiances[index].rgb += contribution.rgb;

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 #include <Ray>
 #include <DirectLightParameters>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -57,8 +57,8 @@ bool lit_from_behind(Closure closure) {
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     shadow_rays[index].maximum_distance = 0.0;
     contributions[index] = vec4(0.0);
     light_triangles[index] = NO_TRIANGLE;

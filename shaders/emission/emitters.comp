@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 #include <Hit>
 #include <EmittersParameters>
 #include "common/constants.glsl"
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 layout(std140, binding = 0) uniform Parameters { EmittersParameters parameters; };
 layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) readonly buffer LightTriangles { uint light_triangles[]; };
@@ -18,8 +18,8 @@ layout(std430, binding = 3) writeonly buffer EmitterRays { Ray emitter_rays[]; }
 layout(std430, binding = 4) writeonly buffer EmitterHits { Hit emitter_hits[]; };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     Ray ray = rays[index];
     bool photons = parameters.photons != 0u;
     uint triangle = photons ? ray.source_triangle : light_triangles[index];

@@ -5,16 +5,14 @@
 layout(local_size_x = 64) in;
 
 #include <Closure>
-#include <CountParameters>
 #include <PhotonPath>
 #include "common/constants.glsl"
-#include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+#include "common/living_paths.glsl"
 layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 1) buffer PhotonPaths { PhotonPath photon_paths[]; };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count || closures[index].triangle == NO_TRIANGLE) return;
+    uint index = living_path();
+    if (index == NO_PATH || closures[index].triangle == NO_TRIANGLE) return;
     photon_paths[index].flux *= closures[index].emission;
 }

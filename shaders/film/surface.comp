@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include <Closure>
 #include <Ray>
 #include <SurfaceParameters>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "common/geometry.glsl"
 #include "common/camera_path.glsl"
 #include "gbuffer/projections.glsl"
@@ -26,8 +26,8 @@ const float BACKGROUND_DEPTH = 1e10;  // as Cycles writes it
 const float MOSTLY_TRANSPARENT = 0.5;
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     uint pixel = parameters.first_pixel + index;
     if (parameters.segment == 0u && parameters.iteration == 1u) {
         surfaces[pixel] = vec4(vec3(0.0), BACKGROUND_DEPTH);

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include <Ray>
 #include <CameraView>
 #include <ScatterImportonsParameters>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -65,8 +65,8 @@ float environment_shadow_ray_pdf(vec3 direction) {
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     CameraPath path = camera_paths[index];
     Ray ray = rays[index];
     importons[index].radius = 0.0;

@@ -6,14 +6,14 @@ layout(local_size_x = 64) in;
 
 #include <GroupParameters>
 #include <Importon>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "photon_grid/cells.glsl"
 layout(std140, binding = 0) uniform Parameters { GroupParameters parameters; };
 layout(std430, binding = 0) readonly buffer Importons { Importon importons[]; };
 layout(std430, binding = 1) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count || !(importons[index].radius > 0.0)) return;
+    uint index = living_path();
+    if (index == NO_PATH || !(importons[index].radius > 0.0)) return;
     atomicAdd(buckets[bucket_of(cell_of(importons[index].position, parameters.side), parameters.buckets)].y, 1u);
 }

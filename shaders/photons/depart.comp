@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include <Ray>
 #include <PhotonPath>
 #include <DepartParameters>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "common/photon.glsl"
 #include "photons/parts.glsl"
 layout(std140, binding = 0) uniform Parameters { DepartParameters parameters; };
@@ -19,13 +19,13 @@ layout(std430, binding = 3) buffer Photons { Photon photons[]; };
 layout(std430, binding = 4) readonly buffer Departures { Departure departures[]; };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     vec3 flux = photon_paths[index].flux, viewer = -rays[index].direction;
     if (!(largest(flux) > 0.0)) return;
     Departure departure = departures[index];
     if (departure.part != PART_NONE) {
-        uint slot = parameters.segment * parameters.count + index;
+        uint slot = parameters.segment * parameters.photon_count + index;
         float ior = departure.part == PART_SHARP_TRANSMITTING ? 1.0 / departure.ior : 1.0;
         vec3 share = part_share(closures[index], departure.part, ior, viewer, photons[slot].direction);
         // What is too little to be compared stays as it is.

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #include <Ray>
 #include <PhotonPath>
 #include <ScatterPhotonsParameters>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/photon.glsl"
 #include "photons/parts.glsl"
@@ -98,13 +98,16 @@ void look_back(uint index, Closure closure, Scattering scattering, vec3 arrival,
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     uint slot = parameters.segment * parameters.photon_count + index;
     vec3 carried = photon_paths[index].flux;
     Ray ray = rays[index];
     rays[index].maximum_distance = 0.0;
     photon_paths[index].flux = vec3(0.0);
+    // Later segments' programs come to the paths that live by then only: what an earlier iteration left is cleared here.
+    if (parameters.segment == 0u)
+        for (uint later = 1u; later < parameters.segments; ++later) photons[later * parameters.photon_count + index].flags = 0u;
     if (!(largest(carried) > 0.0)) {
         photons[slot].flags = 0u;
         return;
@@ -129,7 +132,7 @@ void main() {
         stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) photon.flags |= PHOTON_STORED;
 
-    if (parameters.last_segment == 0u && largest(photon.flux) > 0.0) {
+    if (parameters.segment + 1u < parameters.segments && largest(photon.flux) > 0.0) {
         vec3 geometric = unpack_unit_vector(closure.geometric_normal);
         RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS, parameters.segment, index);
         Scattering scattering = scatter(closure, photon.flux, photon.direction, random);

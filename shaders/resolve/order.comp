@@ -8,10 +8,8 @@ layout(local_size_x = 64) in;
 #include <Hit>
 #include <Material>
 #include <TriangleAttributes>
-#include <CountParameters>
 #include "common/constants.glsl"
-#include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+#include "common/living_paths.glsl"
 layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
@@ -19,8 +17,8 @@ layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
 #include "resolve/ranges.glsl"
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     uint triangle = hits[index].triangle;
     if (!(rays[index].maximum_distance > 0.0) || triangle == NO_TRIANGLE) return;
     uint program = materials[attributes[triangle].material].program;

@@ -25,8 +25,6 @@ layout(std430, binding = 2) writeonly buffer Closures { Closure closures[]; };
 layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 13) readonly buffer PathFlags { uint path_words[]; };
 
-const uint NO_PROGRAM = 0xffffffffu;
-
 #include "materials/generated.glsl"
 
 // The kinds of rppm_addon/integrator/resolve.py.
@@ -39,19 +37,16 @@ uint path_flags(uint index) {
 }
 
 void main() {
-    uint index = invocation_index();
-    if (parameters.program == NO_PROGRAM) {
-        if (index >= parameters.count) return;
-        if (!(rays[index].maximum_distance > 0.0) || hits[index].triangle == NO_TRIANGLE) {
-            closures[index].triangle = NO_TRIANGLE;  // the rest of it is never read
-            return;
-        }
-    } else {
-        if (index >= range_length(parameters.program)) return;
-        index = hit_order[range_first(parameters.program) + index];
-    }
+    uint place = invocation_index();
+    if (place >= range_length(parameters.program)) return;
+    uint index = hit_order[range_first(parameters.program) + place];
     Ray ray = rays[index];
     Hit hit = hits[index];
+    // Where one program resolves all, misses are in its range.
+    if (!(ray.maximum_distance > 0.0) || hit.triangle == NO_TRIANGLE) {
+        closures[index].triangle = NO_TRIANGLE;  // the rest of it is never read
+        return;
+    }
     vec3 v0, v1, v2;
     triangle_points(hit.triangle, v0, v1, v2);
     vec3 b = vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2);

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <Ray>
 #include <ShadowCatcherParameters>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
 layout(std140, binding = 0) uniform Parameters { ShadowCatcherParameters parameters; };
@@ -19,8 +19,8 @@ layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 const int CANDIDATES = 64;
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     Ray none = Ray(vec3(0.0), NO_TRIANGLE, vec3(0.0, 0.0, 1.0), 0.0);
     shadow_rays[index] = none;
     Closure closure = closures[index];

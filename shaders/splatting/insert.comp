@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <Importon>
 #include <CubeParameters>
-#include "common/invocation.glsl"
+#include "common/living_paths.glsl"
 #include "splatting/cube.glsl"
 layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
 layout(std430, binding = 0) buffer Importons { Importon importons[]; };
@@ -15,8 +15,8 @@ layout(std430, binding = 1) buffer Heads { uint heads[]; };
 layout(std430, binding = 2) buffer Core { uint core_count; uint core_importons[]; };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count) return;
+    uint index = living_path();
+    if (index == NO_PATH) return;
     if (!(importons[index].radius > 0.0)) return;
     vec3 p = importons[index].position - parameters.centre;
     float core_radius = 2.0 * max(parameters.radius, parameters.wide_radius);

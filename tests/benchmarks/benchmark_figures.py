@@ -132,7 +132,7 @@ def placement(subject: Subject, clock: Clock, quick: bool) -> dict:
     try:
         for name, centre in _centres(subject, quick):
             build_seconds = clock.once(lambda: subject.build(cubemap, centre))  # noqa: B023 (called at once)
-            seconds, differences = subject.trace_times(clock, cubemap.trace, stride)
+            seconds, differences = subject.trace_times(clock, subject.traced_by(cubemap), stride)
             places.append(
                 {
                     "place": name,
@@ -195,7 +195,7 @@ def _build_and_trace(subject: Subject, clock: Clock, options: dict, cells: int) 
     try:
         subject.build(cubemap, resolution=cells)
         build_seconds = clock.once(lambda: subject.build(cubemap, resolution=cells))
-        seconds, differences = subject.trace_times(clock, cubemap.trace)
+        seconds, differences = subject.trace_times(clock, subject.traced_by(cubemap))
         return {
             "finest": cubemap.resolution,
             "rebuild_seconds": build_seconds,

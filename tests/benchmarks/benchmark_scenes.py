@@ -21,6 +21,7 @@ from ray_sets import different, photon_origins, record_rays, triangles
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.integrator.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.living_paths import LivingPaths
 from rppm_addon.integrator.placement import radius_about
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import HIT
@@ -80,6 +81,7 @@ class Subject:
         self.triangle_count = mapper.triangle_count
         self.automatic_centre = tuple(float(c) for c in mapper.centre)
         self._buffers: dict[int, dict] = {}
+        self._listed = LivingPaths(self.context, library, "rays to measure with", "take fewer")
 
     @property
     def geometry(self):
@@ -147,6 +149,16 @@ class Subject:
             differences[kind] = different(np.frombuffer(hits.read(), HIT.dtype), expected)
         return seconds, differences
 
+    def traced_by(self, cubemap: DeepCubemap) -> Callable:
+        """What trace_times takes, of a cubemap."""
+
+        def trace(rays, hits, count):
+            if self._listed.most != count:
+                self._listed.fill(count)
+            cubemap.trace(rays, hits, self._listed)
+
+        return trace
+
     def _ray_buffers(self, stride: int) -> dict:
         """Buffers of every ``stride``-th ray, and one for hits, by kind."""
         if stride not in self._buffers:
@@ -162,6 +174,7 @@ class Subject:
         for buffers in self._buffers.values():
             for buffer in itertools.chain.from_iterable(buffers.values()):
                 buffer.release()
+        self._listed.release()
         if "volumes" in self.__dict__:
             self.volumes.release()
 

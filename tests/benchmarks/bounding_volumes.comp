@@ -4,8 +4,8 @@
 layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/intersection.glsl"
-#include <TraceRange>
-layout(std140, binding = 0) uniform Parameters { TraceRange parameters; };
+#include <BoundingVolumesRange>
+layout(std140, binding = 0) uniform Parameters { BoundingVolumesRange parameters; };
 layout(std430, binding = 1) restrict readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 2) restrict writeonly buffer Hits { Hit hits[]; };
 layout(std430, binding = 3) restrict readonly buffer Triangles { vec4 triangle_vertices[]; };

@@ -6,6 +6,10 @@ import moderngl
 import numba
 import numpy as np
 
+from rppm_addon.gl.records import Record
+
+Record("BoundingVolumesRange", first_ray="uint", end_ray="uint")
+
 _BINS = 16
 _LEAF = 4
 

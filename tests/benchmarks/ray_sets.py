@@ -4,6 +4,7 @@
 import numpy as np
 
 from rppm_addon.integrator.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.living_paths import LivingPaths
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.records import HIT, NO_TRIANGLE, RAY
 
@@ -61,10 +62,12 @@ def triangles(mapper: ProgressivePhotonMapper) -> np.ndarray:
 def trace(mapper: ProgressivePhotonMapper, rays: np.ndarray) -> np.ndarray:
     gl = mapper.context.moderngl
     ray_buffer, hits = gl.buffer(rays.tobytes()), gl.buffer(reserve=HIT.size * len(rays))
-    mapper._deep_cubemap.trace(ray_buffer, hits, len(rays))
+    living = LivingPaths(mapper.context, mapper._library, "rays to measure with", "take fewer")
+    living.fill(len(rays))
+    mapper._deep_cubemap.trace(ray_buffer, hits, living)
     result = np.frombuffer(hits.read(), HIT.dtype)
-    ray_buffer.release()
-    hits.release()
+    for resource in (ray_buffer, hits, living):
+        resource.release()
     return result
 
 
@@ -97,10 +100,10 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
     taken = []
     plain = DeepCubemap.trace
 
-    def take(cubemap, rays, hits, number):
-        records = np.frombuffer(rays.read(RAY.size * number), RAY.dtype)
+    def take(cubemap, rays, hits, living):
+        records = np.frombuffer(rays.read(RAY.size * living.most), RAY.dtype)[np.sort(living.read())]
         taken.append(records[records["maximum_distance"] > 0.0])
-        plain(cubemap, rays, hits, number)
+        plain(cubemap, rays, hits, living)
 
     DeepCubemap.trace = take
     try:

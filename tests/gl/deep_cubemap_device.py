@@ -5,6 +5,7 @@ import numpy as np
 
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.living_paths import LivingPaths
 from rppm_addon.integrator.records import HIT, NO_TRIANGLE, RAY
 
 BRUTE_FORCE = Record("BruteForceParameters", first_ray="uint", end_ray="uint", triangle_count="uint")
@@ -31,6 +32,7 @@ class Scene:
         self.triangles = context.moderngl.buffer(vertices.tobytes())
         self.centre = np.asarray(centre, np.float32)
         self.cubemap = DeepCubemap(context, library, rasterize)
+        self._rays = LivingPaths(context, library, "rays of a test", "take fewer")
         self.build(resolution)
 
     def build(self, resolution: int) -> None:
@@ -40,11 +42,18 @@ class Scene:
 
     def trace(self, rays: np.ndarray) -> np.ndarray:
         """Hit records."""
-        return self._run(rays, HIT.dtype, self.cubemap.trace)
+        return self._run(rays, HIT.dtype, self._of_all(self.cubemap.trace))
 
     def occluded(self, rays: np.ndarray) -> np.ndarray:
         """1 where a ray is free, else 0."""
-        return self._run(rays, np.dtype(np.uint32), self.cubemap.occluded)
+        return self._run(rays, np.dtype(np.uint32), self._of_all(self.cubemap.occluded))
+
+    def _of_all(self, operation):
+        def run(ray_buffer, result_buffer, count):
+            self._rays.fill(count)
+            operation(ray_buffer, result_buffer, self._rays)
+
+        return run
 
     def brute_force(self, rays: np.ndarray) -> np.ndarray:
         """Hit records, by testing all triangles."""
@@ -74,6 +83,7 @@ class Scene:
 
     def release(self) -> None:
         self.cubemap.release()
+        self._rays.release()
         self.triangles.release()
 
     def __enter__(self) -> "Scene":

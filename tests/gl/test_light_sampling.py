@@ -16,7 +16,7 @@ from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Scene
 
 Record("SphericalTriangleParameters", count="uint", samples="uint")
-Record("LightSamplesParameters", **LIGHT_PARAMETERS, point="vec3", emitted="float")
+Record("LightSamplesParameters", **LIGHT_PARAMETERS, count="uint", point="vec3", emitted="float")
 FOLDER = Path(__file__).parent
 SAMPLES, PARTS = 1 << 14, 4
 
@@ -167,7 +167,7 @@ def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float =
     library.compute(str(FOLDER / "light_samples.comp")).run(
         count,
         {**mapper._emission.buffers, "Results": results},
-        {**mapper._emission.parameters(3, 1, count), "point": point, "emitted": emitted},
+        {**mapper._emission.parameters(3, 1), "count": count, "point": point, "emitted": emitted},
     )
     table = np.frombuffer(results.read(), np.float32).reshape(count, 3, 4).astype(np.float64)
     results.release()

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lists of the paths that still go on, so that each segment costs what its living paths cost."""
+
+from collections.abc import Mapping
+
+import moderngl
+import numpy as np
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import GROUPS_PER_ROW, ComputeProgram, ProgramLibrary
+from ..gl.records import Record
+from .records import LIVING_PATHS_HEADER
+
+Record("CountParameters", count="uint")
+
+_GROUPS = LIVING_PATHS_HEADER.offset("groups")
+_FIRST = LIVING_PATHS_HEADER.size // 4
+
+
+class LivingPaths:
+    """The numbers of living paths, with the arguments of the dispatches over them, on the device.
+
+    A list begins with all paths; each segment keeps those whose rays are to be traced. Programs over the paths of a
+    list include shaders/common/living_paths.glsl. The order of a list is nearly that of the numbers and changes no
+    picture. Paths that are not on the list keep what they left in their buffers: nothing may read it.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary, name: str, remedy: str) -> None:
+        self._context = context
+        self._fill = library.compute("living_paths/fill.comp")
+        self._keep = library.compute("living_paths/keep.comp")
+        self._list, self._other = (GrowingBuffer(context, name, remedy) for _ in range(2))
+        self.most = 0
+        """Paths that the list may have: as many as the list began with."""
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        return self._list.buffer
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        return {self._list.name: self._list.size + self._other.size}
+
+    @staticmethod
+    def size(paths: int) -> int:
+        """Bytes of a list of so many paths."""
+        return LIVING_PATHS_HEADER.size + 4 * paths
+
+    def require(self, paths: int, to_keep: bool = False) -> None:
+        """Make room for so many, and for ``keep`` to leave some of them out; what was listed is gone.
+
+        Raises DeviceError.
+        """
+        self._list.require(self.size(paths))
+        if to_keep:
+            self._other.require(self.size(paths))
+
+    def fill(self, paths: int) -> None:
+        """List the paths from 0 to below ``paths``."""
+        self.require(paths)
+        self.most = paths
+        groups = -(-paths // self._keep.local_size)
+        self._begin(self._list, paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
+        self._fill.run(paths, {"KeptPaths": self._list.buffer}, {"count": paths})
+
+    def keep(self, rays: moderngl.Buffer) -> None:
+        """Leave out the paths whose rays (RAY, by path) are inactive; room for that must have been required."""
+        self._keep_of(self, self._other, rays)
+        self._list, self._other = self._other, self._list
+
+    def take(self, paths: "LivingPaths", rays: moderngl.Buffer) -> None:
+        """List those of another list's paths whose rays (RAY, by path) are active."""
+        self.require(paths.most)
+        self.most = paths.most
+        self._keep_of(paths, self._list, rays)
+
+    def _keep_of(self, paths: "LivingPaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
+        self._begin(kept, 0, (0, 0, 1))
+        paths.run(self._keep, {"Rays": rays, "KeptPaths": kept.buffer})
+
+    @staticmethod
+    def _begin(paths: GrowingBuffer, count: int, groups: tuple[int, int, int]) -> None:
+        header = LIVING_PATHS_HEADER.zeros(1)
+        header["first"], header["count"], header["groups"] = _FIRST, count, groups
+        paths.write(header)
+
+    def run(
+        self, program: ComputeProgram, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None = None
+    ) -> None:
+        """Run a program for the paths of the list."""
+        program.run_indirect(self.buffer, _GROUPS, {**buffers, "LivingPaths": self.buffer}, parameters)
+
+    @property
+    def known_empty(self) -> bool:
+        """Whether nothing lives any more, where that is known at no cost.
+
+        A driver on the processor has always done what it was given. A GPU would have to be waited for, longer than
+        dispatches of no groups take it.
+        """
+        return self._context.is_software and self.read_count() == 0
+
+    def read_count(self) -> int:
+        """How many paths are listed. Waits for the device."""
+        return int(self._list.read(LIVING_PATHS_HEADER.dtype, 1)["count"][0])
+
+    def read(self) -> np.ndarray:
+        """(count,) uint32 numbers of the listed paths. Waits for the device."""
+        return self._list.read(np.uint32, self.read_count(), LIVING_PATHS_HEADER.size)
+
+    def release(self) -> None:
+        self._list.release()
+        self._other.release()

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Threads for the paths of a list (rppm_addon/integrator/living_paths.py), not for each that ever began.
+#include <LivingPathsHeader>
+#include "common/invocation.glsl"
+layout(std430, binding = 14) readonly buffer LivingPaths { LivingPathsHeader living; uint living_paths[]; };
+
+const uint NO_PATH = 0xffffffffu;  // more than any count of paths
+
+// The number of the path at a place of the list, or NO_PATH behind its end.
+uint living_path_at(uint place) { return place < living.count ? living_paths[place] : NO_PATH; }
+
+// The number of the path that is this thread's.
+uint living_path() { return living_path_at(invocation_index()); }

@@ -1,0 +1,16 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where paths begin, all of them are listed.
+
+layout(local_size_x = 64) in;
+
+#include <CountParameters>
+#include <LivingPathsHeader>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+layout(std430, binding = 0) buffer KeptPaths { LivingPathsHeader kept; uint kept_paths[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index < parameters.count) kept_paths[index] = index;
+}
