@@ -16,7 +16,7 @@ class GrowingBuffer:
     def __init__(self, context: Context, name: str, remedy: str = "simplify the scene") -> None:
         self.name = name
         self._context = context
-        self._remedy = remedy
+        self.remedy = remedy
         self.buffer: moderngl.Buffer = context.moderngl.buffer(reserve=_SMALLEST)
 
     @property
@@ -34,13 +34,13 @@ class GrowingBuffer:
         if size > limit:
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB but the device {self._context.information.name} "
-                f"allows {limit / 2**20:.0f} MiB in one buffer; {self._remedy}"
+                f"allows {limit / 2**20:.0f} MiB in one buffer; {self.remedy}"
             )
         available = self._context.available_memory
         if available is not None and size > available + self.buffer.size:
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB but the device {self._context.information.name} "
-                f"has {available / 2**20:.0f} MiB left; {self._remedy}"
+                f"has {available / 2**20:.0f} MiB left; {self.remedy}"
             )
         self.buffer.release()
         try:
@@ -48,7 +48,7 @@ class GrowingBuffer:
         except moderngl.Error as error:
             self.buffer = self._context.moderngl.buffer(reserve=_SMALLEST)
             raise DeviceError(
-                f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self._remedy}"
+                f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}"
             ) from error
         return True
 

@@ -172,9 +172,7 @@ class Emitters:
             buffer.require(record.size * living.most)
         self._locate(shadow_rays, light_triangles, self._hits.buffer, living, photons=False)
         resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, iteration, 0)
-        self._asked.run(
-            self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions}
-        )
+        self._asked.run(self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions})
 
     def _locate(self, rays, light_triangles, hits, living: LivingPaths, photons: bool) -> None:
         """Rays that look at the emitters' places, and the places as hits; those that are to be asked are listed."""

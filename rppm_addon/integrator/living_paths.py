@@ -30,17 +30,18 @@ class LivingPaths:
         self._context = context
         self._fill = library.compute("living_paths/fill.comp")
         self._keep = library.compute("living_paths/keep.comp")
-        self._list, self._other = (GrowingBuffer(context, name, remedy) for _ in range(2))
+        self._lists = [GrowingBuffer(context, name, remedy)]
+        """The list, and where there is to be ``keep``, room for the next one."""
         self.most = 0
         """Paths that the list may have: as many as the list began with."""
 
     @property
     def buffer(self) -> moderngl.Buffer:
-        return self._list.buffer
+        return self._lists[0].buffer
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {self._list.name: self._list.size + self._other.size}
+        return {self._lists[0].name: sum(paths.size for paths in self._lists)}
 
     @staticmethod
     def size(paths: int) -> int:
@@ -52,28 +53,30 @@ class LivingPaths:
 
         Raises DeviceError.
         """
-        self._list.require(self.size(paths))
-        if to_keep:
-            self._other.require(self.size(paths))
+        if to_keep and len(self._lists) == 1:
+            first = self._lists[0]
+            self._lists.append(GrowingBuffer(self._context, first.name, first.remedy))
+        for buffer in self._lists:
+            buffer.require(self.size(paths))
 
     def fill(self, paths: int) -> None:
         """List the paths from 0 to below ``paths``."""
         self.require(paths)
         self.most = paths
         groups = -(-paths // self._keep.local_size)
-        self._begin(self._list, paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
-        self._fill.run(paths, {"KeptPaths": self._list.buffer}, {"count": paths})
+        self._begin(self._lists[0], paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
+        self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
 
     def keep(self, rays: moderngl.Buffer) -> None:
         """Leave out the paths whose rays (RAY, by path) are inactive; room for that must have been required."""
-        self._keep_of(self, self._other, rays)
-        self._list, self._other = self._other, self._list
+        self._keep_of(self, self._lists[1], rays)
+        self._lists.reverse()
 
     def take(self, paths: "LivingPaths", rays: moderngl.Buffer) -> None:
         """List those of another list's paths whose rays (RAY, by path) are active."""
         self.require(paths.most)
         self.most = paths.most
-        self._keep_of(paths, self._list, rays)
+        self._keep_of(paths, self._lists[0], rays)
 
     def _keep_of(self, paths: "LivingPaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
         self._begin(kept, 0, (0, 0, 1))
@@ -102,12 +105,12 @@ class LivingPaths:
 
     def read_count(self) -> int:
         """How many paths are listed. Waits for the device."""
-        return int(self._list.read(LIVING_PATHS_HEADER.dtype, 1)["count"][0])
+        return int(self._lists[0].read(LIVING_PATHS_HEADER.dtype, 1)["count"][0])
 
     def read(self) -> np.ndarray:
         """(count,) uint32 numbers of the listed paths. Waits for the device."""
-        return self._list.read(np.uint32, self.read_count(), LIVING_PATHS_HEADER.size)
+        return self._lists[0].read(np.uint32, self.read_count(), LIVING_PATHS_HEADER.size)
 
     def release(self) -> None:
-        self._list.release()
-        self._other.release()
+        for buffer in self._lists:
+            buffer.release()

@@ -600,9 +600,7 @@ class ProgressivePhotonMapper:
     def _catch_shadows(self, segment: int) -> None:
         if self._shadow_catcher.present:
             with self.timers.stage("shadow catcher"):
-                self._shadow_catcher.run(
-                    self._stages, self._importons, self._first_pixel, self.iteration, segment
-                )
+                self._shadow_catcher.run(self._stages, self._importons, self._first_pixel, self.iteration, segment)
 
     def _taking_importons(self, segment: int, raster: CameraRaster | None = None) -> TakingImportons:
         """Those of a segment, from which the gathering ray is the next."""

@@ -32,9 +32,7 @@ class ShadowCatcher:
     def memory_bytes(self) -> dict[str, int]:
         return {buffer.name: buffer.size for buffer in (self._rays, self.lit)}
 
-    def run(
-        self, stages: Stages, importons: Importons, first_pixel: int, iteration: int, segment: int
-    ) -> None:
+    def run(self, stages: Stages, importons: Importons, first_pixel: int, iteration: int, segment: int) -> None:
         """Fill ``lit`` for the resolved vertices of the living camera paths, before they scatter on."""
         stages.emission.use_maps()
         importons.living.run(
