@@ -94,7 +94,6 @@ class Photons:
     def run(self, stages: Stages, iteration: int) -> None:
         """Emit the iteration's photons and trace them to the last segment, or to that after which none lives."""
         settings, timers = stages.settings, stages.timers
-        self._living.fill(self.photon_count)
         for segment in range(self.segments):
             if segment == 0:
                 self._emit(stages, iteration)
@@ -150,6 +149,7 @@ class Photons:
         """DirectPhotonHits: photons leave the lights and find their first hits."""
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with stages.timers.stage("emission"):
+            self._living.fill(self.photon_count)
             stages.emission.run(
                 rays, paths, self.world_radiances.buffer, self.photon_count, stages.settings.seed, iteration
             )
