@@ -56,7 +56,9 @@ def test_lists_hold_what_lives(context, library, count):
             np.testing.assert_array_equal(np.sort(listed.read()), np.nonzero(expected)[0])
             groups = -(-int(expected.sum()) // 64)
             assert header(listed)["groups"].tolist() == [groups, min(groups, 1), 1]
+    paths.keep(device_rays(context, alive))  # a dispatch of no groups
     assert not paths.read_count()
+    assert paths.known_empty == context.is_software
     paths.release()
     taken.release()
 
