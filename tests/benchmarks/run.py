@@ -80,7 +80,7 @@ def warm_up(subject: Subject, clock: Clock) -> None:
     for rasterize in ROUTES.values():
         cubemap = make_cubemap(subject, rasterize)
         subject.build(cubemap)
-        subject.trace_times(clock, cubemap.trace)
+        subject.trace_times(clock, subject.traced_by(cubemap))
         cubemap.release()
 
 

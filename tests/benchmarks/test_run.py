@@ -139,7 +139,7 @@ def test_path_lengths_reach_the_renderer(documents):
     (line,) = documents["path_lengths"]["scenes"]
     first, *others = line["points"]
     assert first["length"] == 1 and first["seconds"]["indirect splatting"] == 0  # there is no second segment
-    assert all(point["seconds"]["indirect splatting"] > 0 for point in others)
+    assert all(point["seconds"]["photon paths"] > first["seconds"]["photon paths"] for point in others)
 
 
 @pytest.mark.parametrize(("figure", "key"), [("photon_batches", "photons"), ("resolutions", "pixels")])
@@ -162,8 +162,8 @@ def test_both_radii_follow_the_factor(documents):
 
 def test_roulette_has_times_and_variances(documents):
     (line,) = documents["roulette"]["scenes"]
-    for stage in ("direct splatting", "indirect splatting"):
-        assert line["seconds_without"][stage] > 0 and line["seconds_with"][stage] > 0
+    # No camera path goes on from the grey walls: where that is known, nothing is splatted there.
+    assert line["seconds_without"]["direct splatting"] > 0 and line["seconds_with"]["direct splatting"] > 0
     assert line["relative_variance"] > 0 and line["iterations_at_equal_time"] >= 1
     ratio, error = line["variance_ratio"]["with"]
     assert ratio > 1 and error > 0  # roulette's own noise adds to it
