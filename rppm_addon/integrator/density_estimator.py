@@ -84,7 +84,7 @@ class DensityEstimator:
         Nothing is added, and what contributes is marked as it will be anyway.
         """
         photons = self._photons
-        if importons.gathers or min(photons.count, importons.count) < _FEWEST_TO_TRY:
+        if importons.gathers or min(photons.count, importons.living.read_count()) < _FEWEST_TO_TRY:
             return
         self._prepared = None
         with self.sums.left_alone():

@@ -30,7 +30,7 @@ STAGES = {
     "photon paths": ("photon tracing", "photon resolve", "photon scattering"),
     "camera paths": ("camera tracing", "camera resolve", "camera scattering"),
     "direct light": ("direct light",),
-    "splatting": ("direct splatting", "indirect splatting"),
+    "density estimation": ("direct splatting", "indirect splatting"),
 }
 
 
@@ -65,14 +65,14 @@ def measure(scene: Path, context: Context, library: ProgramLibrary, options: arg
                 whole = clock.once(mapper.iterate)
             seconds = mapper.timers.seconds
             parts = {part: sum(seconds.get(stage, 0.0) for stage in stages) for part, stages in STAGES.items()}
-            for part, value in (parts | {"without splatting": whole - parts["splatting"]}).items():
+            for part, value in (parts | {"iteration": whole}).items():
                 best[name, part] = min(best.get((name, part), value), value)
         films = [mapper.film.read_radiance() for mapper in mappers.values()]
         assert np.array_equal(*films), scene
     for mapper in mappers.values():
         mapper.release()
     cells = [scene.stem]
-    for part in ("photon paths", "camera paths", "direct light", "without splatting"):
+    for part in (*STAGES, "iteration"):
         before, after = best["all", part], best["living", part]
         cells.append(f"{1e3 * before:.0f} -> {1e3 * after:.0f} ({after / before:.2f})")
     return cells
@@ -87,8 +87,8 @@ def main() -> None:
     options = parser.parse_args()
     context = Context.create()
     library = ProgramLibrary(context)
-    print("| scene | photon paths | camera paths | direct light | all but splatting |")
-    print("|---|---:|---:|---:|---:|")
+    print("| scene |", " | ".join(STAGES), "| iteration |")
+    print("|---|" + "---:|" * (len(STAGES) + 1))
     for scene in options.scenes:
         print("|", " | ".join(measure(scene, context, library, options)), "|", flush=True)
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.gl.buffers import GrowingBuffer
+from rppm_addon.integrator.living_paths import LivingPaths
 from rppm_addon.integrator.photon_grid import PhotonGrid
 from rppm_addon.integrator.records import (
     GATHERED_BY_RAY,
@@ -48,12 +49,14 @@ class Device:
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
             buffers[2].buffer, len(photons), 1.0, radii, float(np.abs(photons["position"]).max()),
         )  # fmt: skip
-        taking = TakingImportons(buffers[1].buffer, len(importons), False, True, 0, None, np.zeros(3))
+        living = LivingPaths(self._context, self._library, "paths", "take fewer")
+        living.fill(len(importons))
+        taking = TakingImportons(buffers[1].buffer, living, False, True, 0, None, np.zeros(3))
         grid.prepare(stored)
         grid.splat(stored, taking, sums)
         contributed = buffers[0].read(PHOTON.dtype, len(photons))["contributed"] != 0
         result = contributed, sums.diffused_photons(len(importons)), sums.read(len(importons)).any(axis=(1, 2))
-        for part in (*buffers, listed, sums, grid):
+        for part in (*buffers, living, listed, sums, grid):
             part.release()
         return result
 
