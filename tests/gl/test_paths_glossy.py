@@ -115,4 +115,6 @@ def test_a_light_without_extent_is_found_by_rays(mapper, name):
 @pytest.mark.parametrize("name", CLASSES)
 def test_glossy_paths_are_gathered_once(mapper, monkeypatch, name, mode):
     case = gathering(CLASSES[name](mode), monkeypatch, name in FOUND)
+    if name == "LGDGE stored":
+        case.scene.settings.iterations *= 2  # two stored lobes in a row are noisy
     compare(mapper, f"{name} gathered {mode.value}", case)

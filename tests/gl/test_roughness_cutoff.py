@@ -59,12 +59,14 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene
     return scene
 
 
-def mean(renderer, *arguments) -> tuple[float, float]:
+def mean(renderer, *arguments, final_gather: bool = True) -> tuple[float, float]:
     """Mean radiance of a picture and its standard error, from the differences of neighbouring pixels.
 
     Splats make neighbours alike, so that the error is too small for pictures by photons.
     """
-    picture = renderer.render(glossy_floor(*arguments)).frame.combined[..., :3].mean(axis=2, dtype=np.float64)
+    scene = glossy_floor(*arguments)
+    scene.settings = scene.settings.with_values(final_gather=final_gather)
+    picture = renderer.render(scene).frame.combined[..., :3].mean(axis=2, dtype=np.float64)
     return float(picture.mean()), float(np.diff(picture, axis=1).std() / np.sqrt(2 * picture.size))
 
 
@@ -77,10 +79,11 @@ def assert_alike(first: tuple[float, float], second: tuple[float, float]) -> Non
 @pytest.mark.parametrize("roughness", [0.35, 0.6])
 def test_traced_and_stored_lobes_shine_alike(renderer, light, roughness):
     lobe = Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=roughness)
-    stored = mean(renderer, light, lobe, 0.0, DirectLight.RAYS)  # next-event rays alone
+    stored = mean(renderer, light, lobe, 0.0, DirectLight.RAYS, final_gather=False)  # shadow rays alone
     traced = mean(renderer, light, lobe, 1.0, DirectLight.RAYS)  # those and scattering together
     print(f"{light} roughness {roughness}: stored {stored} traced {traced} ratio {traced[0] / stored[0]:.4f}")
     assert_alike(traced, stored)
+    assert_alike(mean(renderer, light, lobe, 0.0, DirectLight.RAYS), stored)  # an environment by gathering rays too
     if light == "world":
         assert traced[1] < stored[1]  # what scattering is for: light from all around
 
