@@ -104,6 +104,7 @@ class SlicedRender:
                 self.keep()
             # Another one would end farther from the limit than this one has.
             if 0.0 < settings.time_limit <= self._elapsed + 0.5 * seconds_each:
+                self._take_snapshots(settings.time_limit)
                 return
 
     def _begin(self) -> Iterator[None]:
@@ -139,8 +140,9 @@ class SlicedRender:
         if self._on_progress is not None:
             self._on_progress(self.progress, self.frame)
 
-    def _take_snapshots(self) -> None:
-        while self._pending and self._elapsed >= self._pending[0]:
+    def _take_snapshots(self, until: float = 0.0) -> None:
+        """Those whose time has come, and those of a time up to which there will be no other picture."""
+        while self._pending and max(self._elapsed, until) >= self._pending[0]:
             mark = self._pending.pop(0)
             if self._on_snapshot is not None:
                 self._on_snapshot(mark, self.frame())

@@ -37,7 +37,13 @@ def test_the_iteration_nearest_to_the_limit_is_the_last(monkeypatch, limit, seco
     clock = Clock(seconds_each)
     monkeypatch.setattr(renderer, "time", clock)
     scene = SimpleNamespace(settings=RenderSettings(iterations=70, time_limit=float(limit)))
-    render = SlicedRender(SimpleNamespace(finish=lambda: None), clock, scene)
+    marks = []
+    render = SlicedRender(
+        SimpleNamespace(finish=lambda: None), clock, scene, snapshots=[1.0, 9.9, 10.0, 1e6],
+        on_snapshot=lambda mark, _: marks.append(mark),
+    )  # fmt: skip
+    monkeypatch.setattr(SlicedRender, "frame", lambda self: None)
     for _ in render.slices():
         pass
     assert render.iterations == iterations
+    assert marks == [1.0, 9.9, 10.0]  # also those of a time when the picture is done
