@@ -294,6 +294,7 @@ def test_drivers_that_fail(scene, renderer):
     assert picture(renderer, scene)[0].mean() > 0.1
 
 
+@pytest.mark.long
 def test_a_chain_of_five_hundred_nodes_is_rendered(scene, renderer):
     material = new_material()
     tree = material.node_tree

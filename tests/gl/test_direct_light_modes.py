@@ -22,7 +22,7 @@ EDGES = 3
 def all_kinds(mode: DirectLight) -> Scene:
     """A room with diffuse walls, a glass ball and a mirror ball, a back wall and a ceiling that are glossy too."""
     scene = scenes.room(
-        2 * SIZE, iterations=10, photons=16384, direct_light=mode, photon_path_length=5, camera_path_length=5,
+        2 * SIZE, iterations=5, photons=16384, direct_light=mode, photon_path_length=5, camera_path_length=5,
         radius_minimum=0.025, radius_maximum=0.025, filter_width=0.0, specular_roughness=CUT,
     )  # fmt: skip
     for index, roughness in ((1, TRACED), (2, STORED)):
