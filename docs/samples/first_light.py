@@ -248,7 +248,7 @@ def set_up_render(scene):
     scene.view_settings.look = "AgX - Medium High Contrast"
     color_world(scene, (0, 0, 0), 1.0)
     scene.rppm.iterations = 72
-    scene.rppm.time_limit = 150.0  # two slow cores still get a picture within three minutes
+    scene.rppm.time_limit = 50.0  # two slow cores get a picture within a minute
     scene.rppm.photons = 65536
     scene.rppm.radius_scale = 16.0
 
