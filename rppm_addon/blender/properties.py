@@ -121,6 +121,14 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         soft_max=50.0,
         subtype="PIXEL",
     )
+    adaptive_radius: BoolProperty(
+        name="Adaptive Radius",
+        description=(
+            "Begin with three times the radius for caustics, and come back to the initial one where photons are many: "
+            "less noise where they are few. Without effect where Minimum or Maximum is set"
+        ),
+        default=DEFAULTS.adaptive_radius,
+    )
     radius_minimum: FloatProperty(
         name="Minimum",
         description="Smallest radius in the first iteration, shrinking from there; 0 is automatic",

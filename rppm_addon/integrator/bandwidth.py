@@ -12,6 +12,9 @@ _REFERENCE_PIXELS = 1 << 20
 EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 4
 """Diffused photons in the wide radius: where the camera looks, and at the ends of gathering rays, which are many."""
 _MOST_CAUSTIC_RADII = 3.0
+EXPECTED_CAUSTIC_PHOTONS = 40
+"""Caustic photons that a pixel's disk of the first iteration holds, if it is wider than Eq. 3's."""
+_MOST_FACTOR = 3.0
 
 
 def shrinkage(iteration: int, alpha: float) -> float:
@@ -23,6 +26,12 @@ def shrinkage(iteration: int, alpha: float) -> float:
 def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
     """s_r of Eq. 3 for this frame: the setting is for 1 megapixel and follows the frame's side."""
     return settings.radius_scale * math.sqrt(camera.width * camera.height / _REFERENCE_PIXELS)
+
+
+def most_radius_factor(settings: RenderSettings) -> float:
+    """Times Eq. 3's radius, what all pixels begin with for caustics (caustic_radii.py)."""
+    exact = not settings.adaptive_radius or settings.radius_minimum > 0.0 or settings.radius_maximum > 0.0
+    return 1.0 if exact else _MOST_FACTOR
 
 
 def wide_radius(diffused_photons: int, expected: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:

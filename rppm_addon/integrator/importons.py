@@ -29,6 +29,7 @@ Record(
     radius_minimum="float",
     radius_maximum="float",
     radius_by_ray="float",
+    most_radius_factor="float",
     world_photon_flux="float",
 )
 
@@ -94,6 +95,8 @@ class Importons:
         shrinkage: float,
         limits: tuple[float, float],
         radius_by_ray: float,
+        most_radius_factor: float,
+        radius_factors: moderngl.Buffer,
         vertices: moderngl.Buffer,
         lit_catchers: moderngl.Buffer,
     ) -> None:
@@ -113,6 +116,7 @@ class Importons:
                 "Materials": stages.materials.buffers["Materials"],
                 "GatheringVertices": vertices,
                 "LitCatchers": lit_catchers,
+                "RadiusFactors": radius_factors,
             },
             {
                 **stages.emission.parameters(settings.seed, iteration),
@@ -128,6 +132,7 @@ class Importons:
                 "radius_minimum": limits[0],
                 "radius_maximum": limits[1],
                 "radius_by_ray": radius_by_ray,
+                "most_radius_factor": most_radius_factor,
                 "world_photon_flux": stages.emission.photon_flux,
             },
         )

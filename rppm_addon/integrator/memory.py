@@ -123,9 +123,14 @@ def expected_memory(width: int, height: int, photons: int, segments: int, raster
         "density estimation": {
             "stored photons": 8 + 4 * photons * segments,
             "gathered radiance": 48 * band,
-            "diffused photons": 4 * band,
+            "photon counts": 8 * band,
             **({"splat core list": 4 * (band + 1)} if rasterized else importon_memory(band)),
         },
-        "passes": {"film": 16 * pixels, "film surface": 16 * pixels, "film surface counts": 4 * pixels},
+        "passes": {
+            "film": 16 * pixels,
+            "film surface": 16 * pixels,
+            "film surface counts": 4 * pixels,
+            "radius factors": 4 * pixels,
+        },
     }
     return reckon_memory(groups, pixels, photons, segments)

@@ -35,7 +35,7 @@ Record(
 )
 
 _FINER_SIDES = (1.0, 1.0 / 3.0, 1.0 / 9.0)
-"""Caustic grids after the first, which is for the ends of gathering rays, by their radius as a part of r_max: importons
+"""Caustic grids after the first, which is for the ends of gathering rays, by their radius as a part of the largest elsewhere: importons
 near the camera, whose radius is that much smaller, look at fewer photons."""
 _CAUSTIC_GRIDS, _WIDE_GRIDS = 1 + len(_FINER_SIDES), 2
 _FEWEST_BUCKETS = 1 << 10
@@ -94,7 +94,7 @@ class PhotonGrid:
         radii, caustics = photons.radii, photons.caustic_count
         spacing = float(np.spacing(np.float32(photons.largest_coordinate)))
         self._rounding = max(_ROUNDING_STEPS * spacing, 1e-30)
-        caustic_radii = radii.by_ray, *(part * radii.narrow for part in _FINER_SIDES)
+        caustic_radii = radii.by_ray, *(part * radii.caustic for part in _FINER_SIDES)
         self._parameters = {
             "caustic_sides": [self._side(radius) for radius in caustic_radii],
             "wide_side": self._side(max(radii.by_ray, radii.wide)),

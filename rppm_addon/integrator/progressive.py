@@ -25,6 +25,7 @@ from .bandwidth import (
     EXPECTED_BY_RAY,
     EXPECTED_PHOTONS,
     fitted_wide_radius,
+    most_radius_factor,
     photons_found,
     radius_by_ray,
     radius_in_pixels,
@@ -34,6 +35,7 @@ from .bandwidth import (
     widest_radius,
 )
 from .camera_view import camera_view, is_rasterized
+from .caustic_radii import CausticRadii
 from .changes import Changes, changes_between, snapshot
 from .deep_cubemap import DeepCubemap
 from .density_estimator import DensityEstimator
@@ -200,6 +202,7 @@ class ProgressivePhotonMapper:
             settings, self._geometry, self._materials, self._emission, self._deep_cubemap, self._resolve, self.timers
         )
         self._radius_scale = radius_in_pixels(settings, camera)
+        self._most_radius_factor = most_radius_factor(settings)
         footprints = self._first_footprints()
         self._leaves_importon = footprints > 0
         self._limits = radius_limits(settings, footprints, self._geometry.radius)
@@ -222,6 +225,7 @@ class ProgressivePhotonMapper:
         self._final_gather = FinalGather(self.context, self._library, width * rows)
         self._shadow_catcher = ShadowCatcher(self.context, self._library, width * rows, self.scene)
         self.film = Film(self.context, self._library, width, height)
+        self._caustic_radii = CausticRadii(self.context, self._library, width * height)
         self._views = [
             self._photons,
             self._gbuffer,
@@ -231,6 +235,7 @@ class ProgressivePhotonMapper:
             self._final_gather,
             self._shadow_catcher,
             self.film,
+            self._caustic_radii,
         ]
         self._views_are_for = _views_for(self.scene)
 
@@ -291,7 +296,7 @@ class ProgressivePhotonMapper:
                 self._catch_shadows(segment)
                 self._add_direct_light(segment)
                 yield
-                self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits)
+                self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits, self._most_radius_factor)
                 # Photons are projected onto the camera's view only where it is a raster.
                 if segment == 0 and self._gbuffer.rasterizes:
                     self._direct_splatting()
@@ -303,7 +308,8 @@ class ProgressivePhotonMapper:
                     self._share_gathered_light()
                 self._update_film()
             if self._density_estimator.sums.counting:
-                diffused_photons.append(self._density_estimator.sums.diffused_photons(self._count))
+                diffused_photons.append(self._density_estimator.sums.photons_taken(self._count)[:, 0])
+                self._narrow_caustic_radii()
         if self.iteration <= LEARNING_ITERATIONS:
             with self.timers.stage("learning"):
                 self._tally(diffused_photons)
@@ -342,6 +348,7 @@ class ProgressivePhotonMapper:
             normal=normal,
             depth=depth,
             surface_counts=self.film.read_surface_counts(),
+            radius_factors=self._caustic_radii.read().reshape(normal.shape[:2]),
             tallies=self._emission.guide.read_tallies(),
             learnt=self._emission.guide.learnt,
         )
@@ -362,6 +369,7 @@ class ProgressivePhotonMapper:
         except ValueError as error:
             raise CheckpointError(f"the checkpoint is none of this scene's: {error}; begin anew") from error
         self.film.restore(state.radiance, state.normal, state.depth, state.surface_counts)
+        self._caustic_radii.restore(state.radius_factors)
         self._left_out, self.iteration = state.left_out, state.iteration
         self._wide_radius, self._diffused_photons_found = state.wide_radius, state.diffused_photons_found
 
@@ -414,7 +422,7 @@ class ProgressivePhotonMapper:
             "final gather": self._final_gather.memory_bytes,
             "shadow catcher": self._shadow_catcher.memory_bytes,
             "density estimation": self._density_estimator.memory_bytes,
-            "passes": self.film.memory_bytes,
+            "passes": self.film.memory_bytes | self._caustic_radii.memory_bytes,
         }
         settings = self.scene.settings
         return reckon_memory(groups, self.film.width * self.film.height, settings.photons, settings.photon_path_length)
@@ -468,7 +476,7 @@ class ProgressivePhotonMapper:
             for view in overviews(self.scene.camera, columns, rows, self._bands[0][1]):
                 self._begin_band(view, 0, 0)
                 self._importons.resolve(self._stages, 0, 0)
-                self._scatter_importons(0, 0, 1.0, (0.0, 1e30))
+                self._scatter_importons(0, 0, 1.0, (0.0, 1e30), 1.0)
                 footprints.append(self._importons.footprints(self._count))
             look = np.concatenate(footprints).reshape(rows, columns)
             if np.count_nonzero(look) >= FEWEST_HITS:
@@ -491,8 +499,9 @@ class ProgressivePhotonMapper:
                 listed.diffused_count, self._expected, self._geometry.bounds_low, self._geometry.bounds_high
             )
             self._wide_radius = min(spread, self._widest_radius)
+        radii = SplatRadii(*self.splat_radii, self._most_radius_factor)
         estimator.sums.count_in(
-            radiance_quantum(self._emission.photon_flux, max(self.splat_radii)),
+            radiance_quantum(self._emission.photon_flux, max(radii.caustic, radii.wide)),
             self._roulette_seed() if settings.splat_roulette else 0,
             learns_after(self.iteration),
         )
@@ -506,7 +515,7 @@ class ProgressivePhotonMapper:
             self._photons.world_radiances.buffer,
             settings.photons,
             self._emission.photon_flux,
-            SplatRadii(*self.splat_radii),
+            radii,
             float(np.max(np.abs(bounds))),
         )
         estimator.begin(settings.density_estimation, photons)
@@ -568,7 +577,7 @@ class ProgressivePhotonMapper:
                 self._gbuffer.camera, self._importons, self._first_pixel, self.iterations_in_film, segment
             )
 
-    def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float]) -> None:
+    def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float], most_radius_factor: float) -> None:
         with self.timers.stage("camera scattering"):
             self._importons.scatter(
                 self._stages,
@@ -580,6 +589,8 @@ class ProgressivePhotonMapper:
                 shrink,
                 limits,
                 radius_by_ray(limits[1], self._wide_radius) * shrink,
+                most_radius_factor,
+                self._caustic_radii.buffer,
                 self._final_gather.vertices.buffer,
                 self._shadow_catcher.lit.buffer,
             )
@@ -622,6 +633,18 @@ class ProgressivePhotonMapper:
     def _indirect_splatting(self, segment: int) -> None:
         with self.timers.stage("indirect splatting"):
             self._density_estimator.estimate(self._taking_importons(segment))
+
+    def _narrow_caustic_radii(self) -> None:
+        """Where the band's pixels took many photons."""
+        with self.timers.stage("learning"):
+            self._caustic_radii.narrow(
+                self._density_estimator.sums,
+                self._count,
+                self._first_pixel,
+                self.iteration,
+                self._most_radius_factor,
+                self._shrinkage,
+            )
 
     def _share_gathered_light(self) -> None:
         """What the gathering rays found, to the pixels that they left from and to those around."""

@@ -15,7 +15,7 @@ SUM_PARAMETERS = {"quanta": "float", "roulette": "uint", "counting": "uint"}
 """Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl or collect.glsl."""
 
 _PHOTON_QUANTA = 1 << 24
-_SUMS = 48
+_SUMS, _COUNTS = 48, 8
 
 
 def radiance_quantum(photon_flux: float, radius: float) -> float:
@@ -29,23 +29,23 @@ def radiance_quantum(photon_flux: float, radius: float) -> float:
 
 
 class SplatSums:
-    """The sums of a band's pixels (shaders/splat_sums/sums.glsl), and how many diffused photons each of them took."""
+    """The sums of a band's pixels (shaders/splat_sums/sums.glsl), and how many photons each of them took."""
 
     def __init__(self, context: Context, pixels: int) -> None:
         remedy = "lower the resolution"
         self._sums = GrowingBuffer(context, "gathered radiance", remedy)
-        self._diffused_photons = GrowingBuffer(context, "diffused photons", remedy)
+        self._photon_counts = GrowingBuffer(context, "photon counts", remedy)
         self._sums.require(_SUMS * pixels)
-        self._diffused_photons.require(4 * pixels)
+        self._photon_counts.require(_COUNTS * pixels)
         self.count_in(1.0, 0, False)
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {buffer.name: buffer.size for buffer in (self._sums, self._diffused_photons)}
+        return {buffer.name: buffer.size for buffer in (self._sums, self._photon_counts)}
 
     def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
         """Set what the sums count in, W/(m^2 sr), the seed of the roulette (0 keeps all pairs of a photon and a pixel),
-        and whether to count the diffused photons that pixels take."""
+        and whether to count the photons that pixels take."""
         self.quantum = quantum
         self.counting = counting
         self.parameters = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette, "counting": counting}
@@ -65,7 +65,7 @@ class SplatSums:
         """Forget the band before."""
         self._sums.clear()
         if self.counting:
-            self._diffused_photons.clear()
+            self._photon_counts.clear()
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -75,19 +75,27 @@ class SplatSums:
     @property
     def blocks(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of programs that add to the sums."""
-        return {"SplatSums": self._sums.buffer, "DiffusedPhotons": self._diffused_photons.buffer}
+        return {"SplatSums": self._sums.buffer, "PhotonCounts": self._photon_counts.buffer}
 
     def read(self, count: int) -> np.ndarray:
         """(count, 2, 3) uint64 quanta of the band's first pixels: what their importons took, what their rays found."""
         return self._sums.read(np.uint64, 6 * count).reshape(-1, 2, 3)
 
-    def diffused_photons(self, count: int) -> np.ndarray:
-        """(count,) how many diffused photons the importons of each of the band's pixels took, where they are counted.
+    @property
+    def photons_for_one(self) -> int:
+        """How many photons one that is counted stands for."""
+        return 2 if self.parameters["roulette"] else 1
 
-        Those that roulette leaves stand for two.
-        """
-        return self._diffused_photons.read(np.uint32, count) * (2 if self.parameters["roulette"] else 1)
+    @property
+    def photon_counts(self) -> moderngl.Buffer:
+        """Words at diffused_place and caustic_place (shaders/splat_sums/sums.glsl)."""
+        return self._photon_counts.buffer
+
+    def photons_taken(self, count: int) -> np.ndarray:
+        """(count, 2) how many photons the importons of each of the band's pixels took, where they are counted:
+        diffused ones, and caustic ones but for those at the ends of gathering rays."""
+        return self._photon_counts.read(np.uint32, 2 * count).reshape(-1, 2) * self.photons_for_one
 
     def release(self) -> None:
         self._sums.release()
-        self._diffused_photons.release()
+        self._photon_counts.release()

@@ -26,6 +26,8 @@ class RenderState:
     """(height, width) float32 metres, 1e10 where no iteration has found a surface."""
     surface_counts: np.ndarray
     """(height, width) uint32 iterations that the mean normal is of."""
+    radius_factors: np.ndarray
+    """(height, width) float32: times Eq. 3's radius, that for caustics of the iterations to come."""
     tallies: np.ndarray
     """(cells, 2) uint32 of the guide: photons that left through each cell, and those that were of use."""
     learnt: np.ndarray | None

@@ -64,14 +64,21 @@ class SplatRadii:
     """Largest radii of an iteration, metres."""
 
     narrow: float
-    """r_max: caustics where the camera's paths come to by specular surfaces."""
+    """r_max of Eq. 3."""
     wide: float
     """Photons that a diffuse surface has scattered; importons with a larger radius of their own keep that."""
+    most_factor: float = 1.0
+    """The most that the radii for caustics are times Eq. 3's (caustic_radii.py)."""
+
+    @property
+    def caustic(self) -> float:
+        """Caustics where the camera's paths come to by specular surfaces."""
+        return self.most_factor * self.narrow
 
     @property
     def by_ray(self) -> float:
-        """Caustics at the ends of gathering rays."""
-        return radius_by_ray(self.narrow, self.wide)
+        """Caustics there or at the ends of gathering rays."""
+        return max(self.caustic, radius_by_ray(self.narrow, self.wide))
 
 
 @dataclass(frozen=True)
@@ -138,7 +145,7 @@ class TakingImportons:
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
         """That the narrow radii of these importons do not exceed, metres."""
-        return photons.radii.by_ray if self.by_ray else photons.radii.narrow
+        return photons.radii.by_ray if self.by_ray else photons.radii.caustic
 
     def parameters(self, photons: StoredPhotons) -> dict[str, object]:
         """Values of ESTIMATE_PARAMETERS."""

@@ -48,6 +48,9 @@ class RenderSettings:
     """Eq. 2: the share of photons kept as the radius shrinks, in (0, 1)."""
     radius_scale: float = 10.0
     """s_r of Eq. 3: first radius in pixels of a 1 megapixel frame, scaled with the frame."""
+    adaptive_radius: bool = True
+    """Whether pixels begin with a wider radius for caustics than Eq. 3's and come back to it where photons are many;
+    not where r_min or r_max is given."""
     radius_minimum: float = 0.0
     """r_min of the first iteration; 0 is automatic."""
     radius_maximum: float = 0.0

@@ -2,7 +2,7 @@
 """Checkpoints of stills in OpenEXR files: the picture so far, and beside it all that it takes to go on bit for bit.
 
 The first part of a file is the film as any viewer shows it (before exposure), with the number of iterations that each
-pixel's normal is of; the second has what the guide of the photons learnt. Numbers are JSON in the attribute
+pixel's normal is of and the factor of its radius; the second has what the guide of the photons learnt. Numbers are JSON in the attribute
 ``rppm.checkpoint``. After the EXR's own end come a mark and the SHA-256 of all before it, so that a file that was cut
 short or damaged is known before it is parsed: OpenEXR reads pixels that are damaged without an error.
 """
@@ -27,7 +27,7 @@ from .continuation import Pause
 if TYPE_CHECKING:
     import OpenEXR
 
-FORMAT = 1
+FORMAT = 2
 _ATTRIBUTE = "rppm.checkpoint"
 _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
@@ -136,6 +136,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             layer("Normal.X", "Normal.Y", "Normal.Z"),
             layer("Depth.Z"),
             layer("Surfaces.V"),
+            layer("Radius Factor.V"),
             pairs("left", "useful"),
             pairs("learnt.left", "learnt.useful") if "learnt.left" in guide else None,
         )
@@ -147,7 +148,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
 def _film_channels(state: RenderState, deep_cubemap: np.ndarray | None) -> dict[str, np.ndarray]:
     channels = {name: state.radiance[..., index] for index, name in enumerate("RGBA")}
     channels |= {f"Normal.{axis}": state.normal[..., index] for index, axis in enumerate("XYZ")}
-    channels |= {"Depth.Z": state.depth, "Surfaces.V": state.surface_counts}
+    channels |= {"Depth.Z": state.depth, "Surfaces.V": state.surface_counts, "Radius Factor.V": state.radius_factors}
     if deep_cubemap is not None:
         channels |= {f"Deep Cubemap.{axis}": deep_cubemap[..., index] for index, axis in enumerate("XYZ")}
     return {name: np.ascontiguousarray(array[::-1]) for name, array in channels.items()}

@@ -26,6 +26,7 @@ layout(std430, binding = 12) readonly buffer LitCatchers { uint lit_catchers[]; 
 layout(std430, binding = 11) buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
 layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
 layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 15) readonly buffer RadiusFactors { float radius_factors[]; };
 
 Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
@@ -130,13 +131,14 @@ void main() {
     float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
     float radius = path.primary_radius * growth;
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
-    if (gathered) radius = max(radius, parameters.radius_by_ray);
+    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor : radius_factors[parameters.first_pixel + index];
+    float caustic_radius = gathered ? max(radius, parameters.radius_by_ray) : factor * radius;
 
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_IMPORTONS << 24u));
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u && !gathered;
-    importons[index] = make_importon(closure, path.throughput, viewer, radius, u_lobe.y,
+    importons[index] = make_importon(closure, path.throughput, viewer, caustic_radius, u_lobe.y,
                                      gathers ? GATHERS_BY_RAY : (gathered ? GATHERED_BY_RAY : GATHERS_ALL));
 
     if (parameters.last_segment != 0u) return;
@@ -201,7 +203,7 @@ void main() {
         path.flags &= ~PATH_CAUSTIC;
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
         gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, pack_unit_vector(normal),
-                                                    vec3(0.0), radius);
+                                                    vec3(0.0), caustic_radius);
         path.throughput = found_weight;
     }
     float side = dot(direction, geometric);

@@ -59,7 +59,7 @@ void main() {
     float narrow = importon.radius, wide = max(narrow, parameters.wide_radius), radius = narrow;
     Cells cells = cells_around(importon.position, narrow, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
-    Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u);
+    Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u);
     uint next = 0u, end = 0u, passed = visit.y, looked_at = visit.y, rounds = parameters.most_rounds;
     bool any = false;
     while (true) {

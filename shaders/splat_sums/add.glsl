@@ -5,7 +5,7 @@
 
 #include "splat_sums/sums.glsl"
 layout(std430, binding = 4) buffer SplatSums { uint sum_words[]; };
-layout(std430, binding = 5) buffer DiffusedPhotons { uint diffused_photons[]; };
+layout(std430, binding = 5) buffer PhotonCounts { uint photon_counts[]; };
 
 void add_quanta(uint place, float quanta) {
     uvec2 added = whole_quanta(quanta);
@@ -16,9 +16,12 @@ void add_quanta(uint place, float quanta) {
 // Threads that meet here write the same mark.
 void add_splat(uint importon, uint photon, vec3 radiance) {
     photons[photon].contributed = 1u;
-    uint place = first_word(importon, importons[importon].gathers == GATHERED_BY_RAY);
+    bool by_ray = importons[importon].gathers == GATHERED_BY_RAY;
+    uint place = first_word(importon, by_ray);
     add_quanta(place, radiance.r * parameters.quanta);
     add_quanta(place + 2u, radiance.g * parameters.quanta);
     add_quanta(place + 4u, radiance.b * parameters.quanta);
-    if (parameters.counting != 0u && (photons[photon].flags & PHOTON_DIFFUSED) != 0u) atomicAdd(diffused_photons[importon], 1u);
+    if (parameters.counting == 0u) return;
+    if ((photons[photon].flags & PHOTON_DIFFUSED) != 0u) atomicAdd(photon_counts[diffused_place(importon)], 1u);
+    else if (!by_ray) atomicAdd(photon_counts[caustic_place(importon)], 1u);
 }

@@ -4,9 +4,9 @@
 
 #include "splat_sums/sums.glsl"
 layout(std430, binding = 4) buffer SplatSums { uint sum_words[]; };
-layout(std430, binding = 5) buffer DiffusedPhotons { uint diffused_photons[]; };
+layout(std430, binding = 5) buffer PhotonCounts { uint photon_counts[]; };
 
-struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; };
+struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; uint caustic; };
 
 void add_words(inout uvec2 sum, uvec2 added) {
     sum.x += added.x;
@@ -18,6 +18,7 @@ void collect_splat(inout Collected collected, vec3 radiance, bool diffused) {
     add_words(collected.green, whole_quanta(radiance.g * parameters.quanta));
     add_words(collected.blue, whole_quanta(radiance.b * parameters.quanta));
     if (diffused) ++collected.diffused;
+    else ++collected.caustic;
 }
 
 void write_words(uint place, uvec2 added) {
@@ -32,5 +33,7 @@ void write_collected(uint importon, bool by_ray, Collected collected) {
     write_words(place, collected.red);
     write_words(place + 2u, collected.green);
     write_words(place + 4u, collected.blue);
-    if (parameters.counting != 0u && collected.diffused > 0u) diffused_photons[importon] += collected.diffused;
+    if (parameters.counting == 0u) return;
+    if (collected.diffused > 0u) photon_counts[diffused_place(importon)] += collected.diffused;
+    if (!by_ray && collected.caustic > 0u) photon_counts[caustic_place(importon)] += collected.caustic;
 }

@@ -138,16 +138,18 @@ SCENES = {
 
 
 def rendered(mapper, scene: Scene, route: DensityEstimation) -> list[np.ndarray]:
-    """The film, what the view found in each iteration, and which of its photons contributed."""
+    """The film, the radii, how many photons the last pixels took in each iteration, and which of its photons
+    contributed."""
     scene = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, density_estimation=route))
     mapper.build(scene)
     found = []
     for _ in range(ITERATIONS):
         mapper.iterate()
         photons = mapper.read_photons()
-        found += [np.array([np.nan if mapper._diffused_photons_found is None else mapper._diffused_photons_found])]
+        found += [mapper._density_estimator.sums.photons_taken(mapper._count)]
         found += [(photons["contributed"] != 0) & (photons["flags"] & PHOTON_STORED != 0)]
-    return [mapper.film.read_radiance(), *found]
+    state = mapper.state()
+    return [state.radiance, np.array([state.wide_radius]), state.radius_factors, *found]
 
 
 def assert_same_bits(first: list[np.ndarray], second: list[np.ndarray]) -> None:
@@ -165,7 +167,7 @@ def test_both_routes_give_the_same_bits(mapper, monkeypatch, name, rows):
     gathered = rendered(mapper, SCENES[name](), DensityEstimation.GRID)
     assert_same_bits(rasterized, gathered)
     if name != "dark":
-        assert rasterized[2].sum() > 50, "next to no photon was taken: the test shows nothing"
+        assert rasterized[4].sum() > 50, "next to no photon was taken: the test shows nothing"
 
 
 @pytest.fixture

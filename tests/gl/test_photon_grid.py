@@ -55,7 +55,7 @@ class Device:
         grid.prepare(stored)
         grid.splat(stored, taking, sums)
         contributed = buffers[0].read(PHOTON.dtype, len(photons))["contributed"] != 0
-        result = contributed, sums.diffused_photons(len(importons)), sums.read(len(importons)).any(axis=(1, 2))
+        result = contributed, sums.photons_taken(len(importons))[:, 0], sums.read(len(importons)).any(axis=(1, 2))
         for part in (*buffers, living, listed, sums, grid):
             part.release()
         return result

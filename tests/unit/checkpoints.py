@@ -23,14 +23,16 @@ def still_render(**values: object) -> StillRender:
 def pause(left_out: int = 0, iteration: int = 5, learnt: bool = True) -> Pause:
     """Numbers of no meaning, other ones for other iterations; some pixels have found no surface."""
     random = np.random.default_rng([left_out, iteration])
-    radiance, normal, depth = (random.random((HEIGHT, WIDTH, *more), np.float32) for more in ((4,), (3,), ()))
+    radiance, normal, depth, factors = (
+        random.random((HEIGHT, WIDTH, *more), np.float32) for more in ((4,), (3,), (), ())
+    )
     depth[random.random(depth.shape) < 0.4] = 1e10
     counts = random.integers(0, iteration - left_out + 1, depth.shape, np.uint32)
     normal[counts == 0] = 0.0
     tallies, learnt_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
     state = RenderState(
-        left_out, iteration, 0.1 + random.random(), 3.0 + random.random(), radiance, normal, depth, counts, tallies,
-        learnt_tallies if learnt else None,
+        left_out, iteration, 0.1 + random.random(), 3.0 + random.random(), radiance, normal, depth, counts, factors,
+        tallies, learnt_tallies if learnt else None,
     )  # fmt: skip
     return Pause(state, "a device", 0.25)
 

@@ -9,6 +9,7 @@ import pytest
 from rppm_addon.integrator.bandwidth import (
     EXPECTED_PHOTONS,
     fitted_wide_radius,
+    most_radius_factor,
     photons_found,
     radius_in_pixels,
     radius_limits,
@@ -40,6 +41,12 @@ def test_radius_follows_the_frame():
 
     assert pixels(1024, 1024) == pytest.approx(10)
     assert pixels(128, 128) == pytest.approx(1.25)
+
+
+def test_radii_that_the_user_gives_are_exact():
+    assert most_radius_factor(RenderSettings()) > 1.0
+    for exact in ({"adaptive_radius": False}, {"radius_minimum": 0.1}, {"radius_maximum": 0.1}):
+        assert most_radius_factor(RenderSettings(**exact)) == 1.0
 
 
 def test_limits_follow_the_view_and_the_user():

@@ -98,7 +98,7 @@ def test_what_is_no_checkpoint_is_refused(tmp_path):
     with pytest.raises(CheckpointError, match="cannot be read"):
         read_summary(path)
     whole = checkpoints.write_part(path, 0, 5).read_bytes()[: -checkpoint_file._TRAILER]
-    path.write_bytes(signed(whole.replace(b'"format": 1', b'"format": 9')))
+    path.write_bytes(signed(whole.replace(b'"format": 2', b'"format": 9')))
     with pytest.raises(CheckpointError, match="another version"):
         read_checkpoint(path)
     path.write_bytes(signed(whole.replace(b"Normal.X", b"Abnorm.X")))

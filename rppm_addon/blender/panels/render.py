@@ -28,6 +28,7 @@ class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
         scene = context.scene
         column = self.column()
         column.prop(scene.rppm, "radius_scale")
+        column.prop(scene.rppm, "adaptive_radius")
         column.prop(scene.rppm, "radius_minimum")
         column.prop(scene.rppm, "radius_maximum")
         column.prop(scene.rppm, "alpha")

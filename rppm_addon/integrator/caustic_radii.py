@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Radii for caustics that follow the photons, pixel by pixel.
+
+Where few photons come, Eq. 3's disk holds next to none, and the picture is noise until many iterations have passed.
+So pixels begin with a multiple of it, and come back to it as they are seen to take many. Factors only fall, by what
+earlier iterations took; Eq. 2 shrinks what remains, so the estimate stays consistent.
+"""
+
+import moderngl
+import numpy as np
+
+from ..gl.buffers import GrowingBuffer
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+from .bandwidth import EXPECTED_CAUSTIC_PHOTONS
+from .splat_sums import SplatSums
+
+Record(
+    "NarrowParameters", count="uint", first_pixel="uint", iteration="uint", most_factor="float", expected="float"
+)
+
+
+class CausticRadii:
+    """What Eq. 3's radius of each pixel of the film is multiplied by, from the second iteration on."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+        self._program = library.compute("caustic_radii/narrow.comp")
+        self._factors = GrowingBuffer(context, "radius factors", "lower the resolution")
+        self._factors.require(4 * pixels)
+        self._pixels = pixels
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        return {self._factors.name: self._factors.size}
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        return self._factors.buffer
+
+    def narrow(
+        self, sums: SplatSums, count: int, first_pixel: int, iteration: int, most_factor: float, shrinkage: float
+    ) -> None:
+        """Learn from the photons that a band's pixels took in an iteration, with radii shrunk by so much.
+
+        most_factor: what all pixels had in the first iteration.
+        """
+        self._program.run(
+            count,
+            {"PhotonCounts": sums.photon_counts, "RadiusFactors": self._factors.buffer},
+            {
+                "count": count,
+                "first_pixel": first_pixel,
+                "iteration": iteration,
+                "most_factor": most_factor,
+                "expected": EXPECTED_CAUSTIC_PHOTONS * shrinkage**2 / sums.photons_for_one,
+            },
+        )
+
+    def read(self) -> np.ndarray:
+        """(pixels,) float32 factors, once the first iteration has been."""
+        return self._factors.read(np.float32, self._pixels).copy()
+
+    def restore(self, factors: np.ndarray) -> None:
+        """Take what read gave."""
+        self._factors.upload(factors)
+
+    def release(self) -> None:
+        self._factors.release()

@@ -1,0 +1,22 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a pixel took more caustic photons than its disk should hold, the disk becomes smaller, down to Eq. 3's.
+
+layout(local_size_x = 64) in;
+
+#include <NarrowParameters>
+#include "common/invocation.glsl"
+#include "splat_sums/sums.glsl"
+layout(std140, binding = 0) uniform Parameters { NarrowParameters parameters; };
+layout(std430, binding = 0) readonly buffer PhotonCounts { uint photon_counts[]; };
+layout(std430, binding = 1) buffer RadiusFactors { float radius_factors[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint pixel = parameters.first_pixel + index;
+    float factor = parameters.iteration == 1u ? parameters.most_factor : radius_factors[pixel];
+    float taken = float(photon_counts[caustic_place(index)]);
+    if (taken > parameters.expected) factor = max(factor * sqrt(parameters.expected / taken), 1.0);
+    radius_factors[pixel] = factor;
+}
