@@ -12,7 +12,7 @@ _REFERENCE_PIXELS = 1 << 20
 EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 4
 """Diffused photons in the wide radius: where the camera looks, and at the ends of gathering rays, which are many."""
 _MOST_CAUSTIC_RADII = 3.0
-EXPECTED_CAUSTIC_PHOTONS = 40
+EXPECTED_CAUSTIC_PHOTONS = 30
 """Caustic photons that a pixel's disk of the first iteration holds, if it is wider than Eq. 3's."""
 _MOST_FACTOR = 3.0
 

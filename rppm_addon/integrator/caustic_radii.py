@@ -16,9 +16,7 @@ from ..gl.records import Record
 from .bandwidth import EXPECTED_CAUSTIC_PHOTONS
 from .splat_sums import SplatSums
 
-Record(
-    "NarrowParameters", count="uint", first_pixel="uint", iteration="uint", most_factor="float", expected="float"
-)
+Record("NarrowParameters", count="uint", first_pixel="uint", iteration="uint", most_factor="float", expected="float")
 
 
 class CausticRadii:

@@ -35,8 +35,9 @@ Record(
 )
 
 _FINER_SIDES = (1.0, 1.0 / 3.0, 1.0 / 9.0)
-"""Caustic grids after the first, which is for the ends of gathering rays, by their radius as a part of the largest elsewhere: importons
-near the camera, whose radius is that much smaller, look at fewer photons."""
+"""Caustic grids after the first, which is for the ends of gathering rays, by their radius as a part of the largest
+elsewhere: importons whose radius is that much smaller, since they are near the camera or take many photons, look at
+fewer."""
 _CAUSTIC_GRIDS, _WIDE_GRIDS = 1 + len(_FINER_SIDES), 2
 _FEWEST_BUCKETS = 1 << 10
 _HEADER, _BUCKET, _SORTED_PHOTON, _VISIT = 16, 8, 16, 8

@@ -296,7 +296,9 @@ class ProgressivePhotonMapper:
                 self._catch_shadows(segment)
                 self._add_direct_light(segment)
                 yield
-                self._scatter_importons(self.iteration, segment, self._shrinkage, self._limits, self._most_radius_factor)
+                self._scatter_importons(
+                    self.iteration, segment, self._shrinkage, self._limits, self._most_radius_factor
+                )
                 # Photons are projected onto the camera's view only where it is a raster.
                 if segment == 0 and self._gbuffer.rasterizes:
                     self._direct_splatting()
@@ -577,7 +579,9 @@ class ProgressivePhotonMapper:
                 self._gbuffer.camera, self._importons, self._first_pixel, self.iterations_in_film, segment
             )
 
-    def _scatter_importons(self, iteration: int, segment: int, shrink: float, limits: tuple[float, float], most_radius_factor: float) -> None:
+    def _scatter_importons(
+        self, iteration: int, segment: int, shrink: float, limits: tuple[float, float], most_radius_factor: float
+    ) -> None:
         with self.timers.stage("camera scattering"):
             self._importons.scatter(
                 self._stages,
