@@ -17,6 +17,7 @@ from rppm_addon.scene import DirectLight, Instance, Light, LightKind, World
 Record(
     "LightChoicesParameters",
     **LIGHT_PARAMETERS,
+    count="uint",
     point="vec3",
     normal="vec3",
     both_sides="uint",
@@ -73,7 +74,7 @@ def run(mapper, library, **parameters) -> np.ndarray:
     library.compute(SHADER).run(
         CHOICES,
         {**emission.tree_buffers, "Results": results},
-        {**emission.parameters(3, 1, CHOICES), **unset, **parameters},
+        {**emission.parameters(3, 1), "count": CHOICES, **unset, **parameters},
     )
     table = np.frombuffer(results.read(), np.float32).reshape(CHOICES, 4).copy()
     results.release()
