@@ -54,7 +54,8 @@ def _caustic_blocks(reference: np.ndarray, factor: float = 1.3) -> np.ndarray:
     return found
 
 
-@pytest.mark.parametrize("mode", ["RAYS", pytest.param("PHOTONS", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
 def test_caustic_of_a_glass_ball(renderer, mode):
     new_scene()
     _ball_over_floor()
@@ -64,7 +65,8 @@ def test_caustic_of_a_glass_ball(renderer, mode):
     compare(f"caustic_{mode.lower()}", result.pictures, reference, CAUSTIC, _caustic_blocks(reference))
 
 
-@pytest.mark.parametrize("mode", ["RAYS", pytest.param("PHOTONS", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
 def test_caustic_seen_through_glass(renderer, mode):
     """The ball's caustic lies behind a pane between it and the camera: specular, diffuse, specular."""
     new_scene()
