@@ -28,7 +28,7 @@ vec3 world_radiance_seen(vec3 direction) {
     return parameters.world_radiance * textureLod(environment_seen, direction_to_equirectangular(direction), 0.0).rgb;
 }
 
-// Gathering rays find it as well as shadow rays would, which it then needs none of.
+// Without textures: gathering rays then find it so well that no shadow rays are sent to it.
 bool environment_is_even() { return parameters.environment_width == 0u; }
 
 // The distribution lists the cumulated shares of the rows, then those of the cells within each row.

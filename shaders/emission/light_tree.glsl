@@ -80,7 +80,7 @@ float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep
 // environment_irradiance: what the environment counts for, W/m^2. u_deep takes over where u has been used up.
 LightChoice choose_light_at(LitPoint point, float environment_irradiance, float u, float u_deep) {
     uint kinds = 3u + parameters.sun_count;
-    float total = 0.0, shining = 0.0, chosen_importance = 0.0;
+    float total = 0.0, shining = 0.0;
     vec3 importances = vec3(tree_importance(0u, parameters.light_tree_leaves, point),
                             tree_importance(parameters.triangle_tree, parameters.triangle_tree_leaves, point), environment_irradiance);
     for (uint kind = 0u; kind < kinds; ++kind) {

@@ -106,12 +106,22 @@ def test_emission_that_varies_over_a_mesh(renderer, mode):
     compare(f"emission_varies_{mode.lower()}", result.pictures, reference, CONVERGED)
 
 
-# Blocks at the ball's sides are 3.9 % +- 0.1 % brighter than Cycles' (8 seeds), which the larger noise of three seeds
-# hid before.
-BESIDE_THE_BALL = Tolerance(block=0.045)
-
-
-def test_shadow_catchers_show_the_shadow_of_lights(renderer):
+@pytest.mark.parametrize(
+    "tolerance",
+    [
+        pytest.param(Tolerance(block=math.inf), id="mean"),
+        pytest.param(
+            CONVERGED,
+            id="blocks",
+            marks=pytest.mark.xfail(
+                strict=True,
+                raises=AssertionError,
+                reason="blocks at the ball's sides are 3.9 % +- 0.1 % brighter than Cycles'",
+            ),
+        ),
+    ],
+)
+def test_shadow_catchers_show_the_shadow_of_lights(renderer, tolerance):
     """Of a dark ball, which reflects next to nothing onto the floor."""
     new_scene(world=0.5)
     plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7))).is_shadow_catcher = True
@@ -119,8 +129,8 @@ def test_shadow_catchers_show_the_shadow_of_lights(renderer):
     light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
     camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), math.degrees(0.7))
     reference = render_cycles(samples=512)
-    result = render_rppm(renderer, direct_light="RAYS", **MODES["RAYS"])
-    compare("shadow_catcher", result.pictures, reference, BESIDE_THE_BALL)
+    result = render_rppm(renderer, seeds=8, direct_light="RAYS", **MODES["RAYS"])
+    compare("shadow_catcher", result.pictures, reference, tolerance)
 
 
 @pytest.mark.parametrize("lets_pass", [True, False])
