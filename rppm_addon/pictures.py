@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from .scene.errors import RppmError
+from .scene.passes import passes_named
 
 
 class PictureError(RppmError):
@@ -43,9 +44,6 @@ class Placement:
         }
 
 
-_AXES = {1: "Z", 3: "XYZ"}
-
-
 def write_exr(
     path: str | Path,
     combined: np.ndarray,
@@ -53,13 +51,13 @@ def write_exr(
     metadata: Mapping[str, object] | None = None,
     placement: Placement | None = None,
 ) -> None:
-    """Write a float32 EXR: ``combined`` as R, G, B, A, and each layer as Name.Z or Name.X, .Y, .Z.
+    """Write a float32 EXR: ``combined`` as R, G, B, A, and each layer by its pass's channels.
 
     Args:
         path: the file; its folder is made. The file is written beside and renamed, so that a
             reader never sees half of it.
         combined: (H, W, 4), scene-linear Rec.709, premultiplied alpha.
-        layers: (H, W) or (H, W, 3) arrays by layer name.
+        layers: (H, W) or (H, W, channels) arrays by the name of a pass (scene/passes.py).
         metadata: stored as text attributes ``rppm.NAME``.
         placement: where a cropped picture lies in its frame; None is the whole frame.
 
@@ -71,9 +69,8 @@ def write_exr(
     height, width = combined.shape[:2]
     place = placement or Placement(width, height)
     channels = dict(zip("RGBA", _planes(combined)))
-    for name, array in (layers or {}).items():
-        planes = _planes(array)
-        channels.update({f"{name}.{axis}": plane for axis, plane in zip(_AXES[len(planes)], planes)})
+    for entry in passes_named(tuple(layers or ())):
+        channels.update(zip(entry.layers, _planes(layers[entry.name]), strict=True))
     header = {
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
@@ -101,10 +98,10 @@ class ExrPicture:
         return np.stack([self.channels[name] for name in "RGBA"], axis=-1)
 
     def layer(self, name: str) -> np.ndarray:
-        """(H, W) of a layer with Z alone, else (H, W, 3)."""
-        if f"{name}.X" not in self.channels:
-            return self.channels[f"{name}.Z"]
-        return np.stack([self.channels[f"{name}.{axis}"] for axis in "XYZ"], axis=-1)
+        """(H, W) or (H, W, channels) of a pass. Raises KeyError where the file does not have it."""
+        (entry,) = passes_named((name,))
+        planes = [self.channels[layer] for layer in entry.layers]
+        return np.stack(planes, axis=-1) if len(planes) > 1 else planes[0]
 
 
 def read_exr(path: str | Path) -> ExrPicture:

@@ -3,8 +3,10 @@
 
 import bpy
 
+from ..scene.passes import COMBINED
 from . import viewport
-from .final import DEEP_CUBEMAP_PASS, render_final
+from .export.passes import passes_of_layer
+from .final import render_final
 
 
 class RppmRenderEngine(bpy.types.RenderEngine):
@@ -21,13 +23,9 @@ class RppmRenderEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)
 
     def update_render_passes(self, scene: bpy.types.Scene, renderlayer: bpy.types.ViewLayer) -> None:
-        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
-        if renderlayer.use_pass_z:
-            self.register_pass(scene, renderlayer, "Depth", 1, "Z", "VALUE")
-        if renderlayer.use_pass_normal:
-            self.register_pass(scene, renderlayer, "Normal", 3, "XYZ", "VECTOR")
-        if scene.rppm.deep_cubemap_pass:
-            self.register_pass(scene, renderlayer, DEEP_CUBEMAP_PASS, 3, "XYZ", "VECTOR")
+        self.register_pass(scene, renderlayer, COMBINED, 4, "RGBA", "COLOR")
+        for entry in passes_of_layer(renderlayer):
+            self.register_pass(scene, renderlayer, entry.name, len(entry.channels), entry.channels, entry.kind.value)
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:
         render_final(self, depsgraph)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..scene import Scene
 from ..scene.errors import RppmError, SceneError
+from ..scene.passes import COMBINED
 from ..session.observers import RenderObserver, current_observer
 from ..session.render_job import RenderJob
 from ..session.sessions import SessionKind
@@ -155,9 +156,6 @@ def _report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> Non
         engine.report({"WARNING"}, f"{more} more warnings of this kind are in the log")
 
 
-DEEP_CUBEMAP_PASS = "Deep Cubemap"
-
-
 class _FinalJob(RenderJob):
     """Shows a render in the engine's result and tells the observer."""
 
@@ -207,8 +205,7 @@ class _FinalJob(RenderJob):
         if self._result is None:
             width, height = self._scene.camera.resolution
             self._result = self._engine.begin_result(0, 0, width, height, layer=self._layer)
-        pictures = {"Combined": frame.combined, "Depth": frame.depth, "Normal": frame.normal}
-        pictures[DEEP_CUBEMAP_PASS] = frame.deep_cubemap
+        pictures = {COMBINED: frame.combined, **frame.passes}
         for render_pass in self._result.layers[0].passes:
             picture = pictures.get(render_pass.name)
             if picture is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scene.rppm and light.rppm; the scene's names and defaults are those of RenderSettings."""
+"""scene.rppm, view_layer.rppm and light.rppm; the scene's names and defaults are those of RenderSettings."""
 
 import functools
 
@@ -7,6 +7,7 @@ import bpy
 from bpy import props
 
 from ..scene import RenderSettings
+from ..scene.passes import PASSES
 
 
 def _edited(owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -236,14 +237,6 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         min=0,
         max=16384,
     )
-    deep_cubemap_pass: BoolProperty(
-        name="Deep Cubemap",
-        description=(
-            "A pass that shows what the camera's rays cost: cells looked at, triangles tested, and entries "
-            "listed in the cell that is hit, as X, Y and Z"
-        ),
-        default=DEFAULTS.deep_cubemap_pass,
-    )
     cubemap_centre_object: PointerProperty(
         name="Cubemap Centre",
         description=(
@@ -269,7 +262,17 @@ class RppmLightProperties(bpy.types.PropertyGroup):
     )
 
 
-_CLASSES = (RppmSceneProperties, RppmLightProperties)
+class RppmViewLayerProperties(bpy.types.PropertyGroup):
+    """Switches of the passes for which Blender's view layers have none."""
+
+    __annotations__ = {
+        entry.own_switch: BoolProperty(name=entry.name, description=entry.description)
+        for entry in PASSES
+        if entry.own_switch
+    }
+
+
+_CLASSES = (RppmSceneProperties, RppmLightProperties, RppmViewLayerProperties)
 
 
 def register() -> None:
@@ -277,9 +280,11 @@ def register() -> None:
         bpy.utils.register_class(cls)
     bpy.types.Scene.rppm = props.PointerProperty(type=RppmSceneProperties, name="RPPM")
     bpy.types.Light.rppm = props.PointerProperty(type=RppmLightProperties, name="RPPM")
+    bpy.types.ViewLayer.rppm = props.PointerProperty(type=RppmViewLayerProperties, name="RPPM")
 
 
 def unregister() -> None:
+    del bpy.types.ViewLayer.rppm
     del bpy.types.Light.rppm
     del bpy.types.Scene.rppm
     for cls in reversed(_CLASSES):

@@ -12,8 +12,9 @@ from ..pictures import standard_view, write_png
 from ..scene.errors import CheckpointError
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
 from ..session.continuation import Pause
+from ..session.merged_passes import MergedPasses
 from ..session.renderer import exposed
-from ..session.results import NOTHING_HIT, Frame
+from ..session.results import Frame
 from .checkpoints import refuse_differences
 from .recorder import picture_metadata, write_frame
 
@@ -74,24 +75,17 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
         ((read_summary(path), path) for path in paths), key=lambda part: (part[0].left_out, part[0].iteration)
     )
     _check(found, incomplete)
-    radiance, normal, counts, depth, deep_cubemap = 0.0, 0.0, 0, None, None
+    radiance, passes, inspections = 0.0, MergedPasses(), {}
     for summary, pause in _read_parts(found):
         state = pause.state
         radiance = radiance + state.radiance.astype(np.float64) * (summary.iteration - summary.left_out)
-        normal = normal + state.normal.astype(np.float64) * state.surface_counts[..., None]
-        counts = counts + state.surface_counts.astype(np.int64)
-        # The first iteration that finds a surface tells its depth.
-        depth = state.depth if depth is None else np.where(depth < NOTHING_HIT, depth, state.depth)
-        deep_cubemap = pause.deep_cubemap if deep_cubemap is None else deep_cubemap
+        passes.add(state.passes, state.pass_counts)
+        inspections = inspections or pause.inspections
     summaries = [summary for summary, _ in found]
     iterations = sum(summary.iteration - summary.left_out for summary in summaries)
     render = summaries[0].render
-    frame = Frame(
-        exposed((radiance / iterations).astype(np.float32), render.exposure),
-        depth,
-        (normal / np.maximum(counts, 1)[..., None]).astype(np.float32),
-        deep_cubemap,
-    )
+    combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
+    frame = Frame(combined, {**passes.result(), **inspections})
     return MergedStill(
         frame,
         render,

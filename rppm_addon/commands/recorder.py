@@ -76,6 +76,8 @@ class RenderRecorder(RenderObserver):
     def on_scene(self, scene: Scene) -> bool:
         self.scene_time = time.perf_counter()
         self.scene = scene
+        if "passes" not in self.request.settings:
+            scene.settings.passes = tuple(dict.fromkeys((*RenderSettings.passes, *scene.settings.passes)))
         scene.settings = apply_settings(scene.settings, self.request.settings)
         if self._keeper is not None:
             iterations = None if self.request.seconds is not None else scene.settings.iterations
@@ -200,7 +202,4 @@ def picture_metadata(
 
 def write_frame(path: Path, frame: "Frame", placement: Placement, metadata: Mapping[str, object]) -> None:
     """Write a frame's picture and passes as EXR. Raises PictureError."""
-    layers = {"Depth": frame.depth, "Normal": frame.normal}
-    if frame.deep_cubemap is not None:
-        layers["Deep Cubemap"] = frame.deep_cubemap
-    write_exr(path, frame.combined, layers, metadata, placement)
+    write_exr(path, frame.combined, frame.passes, metadata, placement)

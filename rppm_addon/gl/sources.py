@@ -5,6 +5,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from .constants import Constants
 from .records import Record
 
 SHADER_FOLDER = Path(__file__).resolve().parents[2] / "shaders"
@@ -65,11 +66,12 @@ def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[st
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include <Ray>`` inserts the struct of the
-    record of that name once. Defines go after #version; ``inserts`` are texts of files that are made
+    record, or the constants, of that name once. Defines go after #version; ``inserts`` are texts of files that are made
     at run time, by name. Raises ShaderError.
     """
     files: list[str] = []
-    seen_records: set[str] = set()
+    declared: dict[str, Record | Constants] = {**Record.registry, **Constants.registry}
+    seen: set[str] = set()
     lines: list[str] = []
 
     def read(name: str, includer: str) -> None:
@@ -89,11 +91,11 @@ def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[st
                 read(include.group(1), f"{name}:{line_number}")
                 lines.append(f"#line {line_number + 1} {number}")
             elif include:
-                record = include.group(2)
-                if record not in Record.registry:
-                    raise ShaderError(f"{name}:{line_number}: there is no record {record}")
-                lines.append("" if record in seen_records else Record.registry[record].glsl())
-                seen_records.add(record)
+                wanted = include.group(2)
+                if wanted not in declared:
+                    raise ShaderError(f"{name}:{line_number}: there is no record and there are no constants {wanted}")
+                lines.append("" if wanted in seen else declared[wanted].glsl())
+                seen.add(wanted)
             elif _VERSION.match(line):
                 lines.append(line)
                 lines.extend(f"#define {key} {value}" for key, value in (defines or {}).items())

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bytes on the device by group of buffers, and the PPM buffers against the paper's 32 R + 64 M L (section 5.1)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from ..scene.passes import passes_named
+from ..scene.settings import RenderSettings
 from .bands import bands_of
+from .film import passes_memory
 from .living_paths import LivingPaths
 from .photon_grid import importon_memory
 from .records import (
@@ -83,10 +86,18 @@ def reckon_memory(groups: Mapping[str, Mapping[str, int]], pixels: int, photons:
     return Memory(pixels, photons, segments, ppm, {group: sizes for group, sizes in working.items() if sizes})
 
 
-def expected_memory(width: int, height: int, photons: int, segments: int, rasterized: bool = False) -> Memory:
+def expected_memory(
+    width: int,
+    height: int,
+    photons: int,
+    segments: int,
+    rasterized: bool = False,
+    passes: Sequence[str] = RenderSettings.passes,
+) -> Memory:
     """The buffers whose size follows from the settings, known before anything is rendered.
 
     rasterized: whether photons are splatted by rasterization, not gathered from a grid.
+    passes: names of those that are rendered.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
     pixels, band = width * height, width * bands_of(width, height)[0][1]
@@ -128,8 +139,7 @@ def expected_memory(width: int, height: int, photons: int, segments: int, raster
         },
         "passes": {
             "film": 16 * pixels,
-            "film surface": 16 * pixels,
-            "film surface counts": 4 * pixels,
+            **passes_memory(pixels, passes_named(passes)),
             "radius factors": 4 * pixels,
         },
     }

@@ -17,6 +17,7 @@ from ..materials.tables import MaterialTables
 from ..scene.errors import CheckpointError
 from ..scene.garbage import collector_paused
 from ..scene.motion import MovingScene
+from ..scene.passes import passes_named
 from ..scene.scene import Scene
 from ..scene.settings import DensityEstimation
 from ..scene.settings import DirectLight as DirectLightMode
@@ -224,7 +225,7 @@ class ProgressivePhotonMapper:
         self._direct_light = DirectLight(self.context, self._library, width * rows)
         self._final_gather = FinalGather(self.context, self._library, width * rows)
         self._shadow_catcher = ShadowCatcher(self.context, self._library, width * rows, self.scene)
-        self.film = Film(self.context, self._library, width, height)
+        self.film = Film(self.context, self._library, width, height, passes_named(settings.passes))
         self._caustic_radii = CausticRadii(self.context, self._library, width * height)
         self._views = [
             self._photons,
@@ -340,17 +341,15 @@ class ProgressivePhotonMapper:
 
     def state(self) -> RenderState:
         """What iterations to come rest on; to be asked for between iterations."""
-        normal, depth = self.film.read_surface()
         return RenderState(
             left_out=self._left_out,
             iteration=self.iteration,
             wide_radius=self._wide_radius,
             diffused_photons_found=self._diffused_photons_found,
             radiance=self.film.read_radiance(),
-            normal=normal,
-            depth=depth,
-            surface_counts=self.film.read_surface_counts(),
-            radius_factors=self._caustic_radii.read().reshape(normal.shape[:2]),
+            passes=self.film.read_passes(),
+            pass_counts=self.film.read_pass_counts(),
+            radius_factors=self._caustic_radii.read().reshape(self.film.height, self.film.width),
             tallies=self._emission.guide.read_tallies(),
             learnt=self._emission.guide.learnt,
         )
@@ -370,7 +369,10 @@ class ProgressivePhotonMapper:
             self._emission.restore(state.tallies, state.learnt)
         except ValueError as error:
             raise CheckpointError(f"the checkpoint is none of this scene's: {error}; begin anew") from error
-        self.film.restore(state.radiance, state.normal, state.depth, state.surface_counts)
+        try:
+            self.film.restore(state.radiance, state.passes, state.pass_counts)
+        except KeyError as error:
+            raise CheckpointError(f"the checkpoint has no pass {error}; begin anew") from error
         self._caustic_radii.restore(state.radius_factors)
         self._left_out, self.iteration = state.left_out, state.iteration
         self._wide_radius, self._diffused_photons_found = state.wide_radius, state.diffused_photons_found
@@ -575,8 +577,13 @@ class ProgressivePhotonMapper:
         with self.timers.stage("camera resolve"):
             self._importons.resolve(self._stages, self.iteration, segment)
         if self._enters_film:
-            self.film.add_surface(
-                self._gbuffer.camera, self._importons, self._first_pixel, self.iterations_in_film, segment
+            self.film.add_passes(
+                self._gbuffer.camera,
+                self._geometry,
+                self._importons,
+                self._first_pixel,
+                self.iterations_in_film,
+                segment,
             )
 
     def _scatter_importons(
@@ -692,4 +699,5 @@ def _views_for(scene: Scene) -> tuple:
     """What the sizes and kinds of the camera's side depend on: scenes that agree in it take over the buffers."""
     camera, settings = scene.camera, scene.settings
     catchers = any(instance.shadow_catcher for instance in scene.instances)
-    return is_rasterized(camera), camera.resolution, settings.photons, settings.photon_path_length, catchers
+    sizes = camera.resolution, settings.photons, settings.photon_path_length
+    return is_rasterized(camera), *sizes, settings.passes, catchers

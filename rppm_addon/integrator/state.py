@@ -20,12 +20,11 @@ class RenderState:
     """What photons_found says of the last iteration, if the next one learns from it."""
     radiance: np.ndarray
     """(height, width, 4) float32 mean of radiance W/(m^2 sr) and alpha, row 0 at the bottom, before exposure."""
-    normal: np.ndarray
-    """(height, width, 3) float32 mean normals."""
-    depth: np.ndarray
-    """(height, width) float32 metres, 1e10 where no iteration has found a surface."""
-    surface_counts: np.ndarray
-    """(height, width) uint32 iterations that the mean normal is of."""
+    passes: dict[str, np.ndarray]
+    """(height, width) or (height, width, channels) float32 by name (scene/passes.py)."""
+    pass_counts: np.ndarray
+    """(height, width, 2) uint32: iterations that the passes' means are of; and those that found a surface. (0, 0, 2)
+    where there are no passes."""
     radius_factors: np.ndarray
     """(height, width) float32: times Eq. 3's radius, that for caustics of the iterations to come."""
     tallies: np.ndarray

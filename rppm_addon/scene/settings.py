@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 from .errors import SettingsError
+from .passes import passes_named
 
 CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
 """What a ray costs in the deep cubemap: cells looked at; triangles tested; entries in the cell of the hit, 0 where
@@ -73,8 +74,8 @@ class RenderSettings:
     """Width of the Blackman-Harris pixel filter in pixels, as Cycles counts it; 0 looks through
     pixel centres only."""
     film_transparent: bool = False
-    deep_cubemap_pass: bool = False
-    """Whether frames tell what the camera's rays cost in the deep cubemap (Frame.deep_cubemap)."""
+    passes: tuple[str, ...] = ("Depth", "Normal")
+    """Render passes beside Combined, by name (scene/passes.py)."""
 
     def validate(self) -> None:
         """Raise SettingsError naming the first setting that cannot be used, and its range."""
@@ -108,6 +109,7 @@ class RenderSettings:
         need("filter_width", math.isfinite(self.filter_width) and 0.0 <= self.filter_width <= 20.0, "0 to 20 pixels")
         need("iterations_per_frame", self.iterations_per_frame >= 1, "1 or more")
         need("seed", 0 <= self.seed < 1 << 31, "0 to 2147483647")
+        passes_named(self.passes)
         resolution = self.cubemap_resolution
         need(
             "cubemap_resolution",
@@ -129,6 +131,9 @@ class RenderSettings:
             try:
                 if kind is bool and isinstance(value, str):
                     converted[name] = {"true": True, "1": True, "false": False, "0": False}[value.lower()]
+                elif kind is tuple:
+                    names = value.split(",") if isinstance(value, str) else value
+                    converted[name] = tuple(text for item in names if (text := item.strip()))
                 elif issubclass(kind, enum.Enum):
                     converted[name] = value if isinstance(value, kind) else kind[str(value).upper()]
                 else:

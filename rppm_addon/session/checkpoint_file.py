@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checkpoints of stills in OpenEXR files: the picture so far, and beside it all that it takes to go on bit for bit.
 
-The first part of a file is the film as any viewer shows it (before exposure), with the number of iterations that each
-pixel's normal is of and the factor of its radius; the second has what the guide of the photons learnt. Numbers are JSON
-in the attribute ``rppm.checkpoint``. After the EXR's own end come a mark and the SHA-256 of all before it, so that a
-file that was cut short or damaged is known before it is parsed: OpenEXR reads pixels that are damaged without an error.
+The first part of a file is the film as any viewer shows it (before exposure), with the numbers of iterations that each
+pixel's passes are of and the factor of its radius; the second has what the guide of the photons learnt. Numbers are
+JSON in the attribute ``rppm.checkpoint``. After the EXR's own end come a mark and the SHA-256 of all before it, so
+that a file that was cut short or damaged is known before it is parsed: OpenEXR reads pixels that are damaged without
+an error.
 """
 
 import contextlib
@@ -12,7 +13,7 @@ import dataclasses
 import hashlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -22,16 +23,18 @@ import numpy as np
 from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.errors import CheckpointError
+from ..scene.passes import FILM_PASSES, passes_named
 from .continuation import Pause
 
 if TYPE_CHECKING:
     import OpenEXR
 
-FORMAT = 2
+FORMAT = 3
 _ATTRIBUTE = "rppm.checkpoint"
 _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
 _FILM, _GUIDE = "film", "guide"
+_COUNTS = ("Pass Counts.X", "Pass Counts.Y")
 _BLOCK = 1 << 20
 
 
@@ -84,7 +87,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         pause.radius_metres,
         seconds,
     )
-    height, width = state.depth.shape
+    height, width = state.radiance.shape[:2]
     common = {**render.placement.windows(width, height), "type": OpenEXR.scanlineimage}
     film = {
         **common,
@@ -97,7 +100,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         "dataWindow": ((0, 0), (len(state.tallies) - 1, 0)),
     }
     parts = [
-        OpenEXR.Part(film, _film_channels(state, pause.deep_cubemap), _FILM),
+        OpenEXR.Part(film, _film_channels(state, pause.inspections), _FILM),
         OpenEXR.Part(guide, _guide_channels(state), _GUIDE),
     ]
     with renamed_when_whole(path) as temporary:
@@ -127,30 +130,32 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
         def pairs(*names: str) -> np.ndarray:
             return np.stack([guide[name].reshape(-1) for name in names], axis=-1)
 
+        passes = passes_named(summary.render.settings["passes"])
         state = RenderState(
             summary.left_out,
             summary.iteration,
             summary.wide_radius,
             summary.diffused_photons_found,
             layer(*"RGBA"),
-            layer("Normal.X", "Normal.Y", "Normal.Z"),
-            layer("Depth.Z"),
-            layer("Surfaces.V"),
+            {entry.name: layer(*entry.layers) for entry in passes if entry in FILM_PASSES},
+            layer(*_COUNTS) if _COUNTS[0] in film else np.zeros((0, 0, 2), np.uint32),
             layer("Radius Factor.V"),
             pairs("left", "useful"),
             pairs("learnt.left", "learnt.useful") if "learnt.left" in guide else None,
         )
-        costs = [f"Deep Cubemap.{axis}" for axis in "XYZ"]
-        deep_cubemap = layer(*costs) if costs[0] in film else None
-        return summary, Pause(state, summary.device, summary.radius_metres, deep_cubemap)
+        inspections = {entry.name: layer(*entry.layers) for entry in passes if entry not in FILM_PASSES}
+        return summary, Pause(state, summary.device, summary.radius_metres, inspections)
 
 
-def _film_channels(state: RenderState, deep_cubemap: np.ndarray | None) -> dict[str, np.ndarray]:
+def _film_channels(state: RenderState, inspections: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     channels = {name: state.radiance[..., index] for index, name in enumerate("RGBA")}
-    channels |= {f"Normal.{axis}": state.normal[..., index] for index, axis in enumerate("XYZ")}
-    channels |= {"Depth.Z": state.depth, "Surfaces.V": state.surface_counts, "Radius Factor.V": state.radius_factors}
-    if deep_cubemap is not None:
-        channels |= {f"Deep Cubemap.{axis}": deep_cubemap[..., index] for index, axis in enumerate("XYZ")}
+    channels["Radius Factor.V"] = state.radius_factors
+    passes = {**state.passes, **inspections}
+    for entry in passes_named(tuple(passes)):
+        values = np.atleast_3d(passes[entry.name])
+        channels |= {name: values[..., index] for index, name in enumerate(entry.layers)}
+    if state.pass_counts.size:
+        channels |= {name: state.pass_counts[..., index] for index, name in enumerate(_COUNTS)}
     return {name: np.ascontiguousarray(array[::-1]) for name, array in channels.items()}
 
 

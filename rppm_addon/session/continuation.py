@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,8 +19,8 @@ class Pause:
     """Its label: another one, or another driver, computes the same picture, but not bit for bit."""
     radius_metres: float
     """r_max of the last iteration."""
-    deep_cubemap: np.ndarray | None = None
-    """Frame.deep_cubemap."""
+    inspections: dict[str, np.ndarray] = field(default_factory=dict)
+    """Passes that are computed once, as Frame.passes has them."""
 
 
 @dataclass

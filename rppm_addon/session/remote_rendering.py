@@ -4,11 +4,13 @@
 import queue
 import threading
 import time
+from collections.abc import Mapping
 
 from ..scene import errors
 from ..scene.scene import Scene
 from .client import RendererProcess
 from .client_session import RenderSession
+from .protocol import ProtocolError
 from .render_job import POLL_SECONDS, RenderJob
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
 from .sessions import SessionKind
@@ -94,15 +96,22 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
             if job.on_progress(Progress(**content["progress"])):
                 session.want_picture()
         elif event == "picture":
-            job.on_frame(Progress(**content["progress"]), Frame(*content["arrays"]))
+            job.on_frame(Progress(**content["progress"]), _frame(content))
         elif event == "snapshot":
-            job.on_snapshot(content["seconds"], Frame(*content["arrays"]))
+            job.on_snapshot(content["seconds"], _frame(content))
         elif event == "result":
-            return RenderResult(
-                Frame(*content["arrays"]), RenderStatistics(**content["statistics"]), content["stopped"]
-            )
+            return RenderResult(_frame(content), RenderStatistics(**content["statistics"]), content["stopped"])
         elif event == "failed":
             raise _error(process, content["error"], content["text"])
+
+
+def _frame(content: Mapping) -> Frame:
+    """The frame that came with a message. Raises ProtocolError when arrays and names do not fit each other."""
+    combined, *passes = content["arrays"]
+    try:
+        return Frame(combined, dict(zip(content["passes"], passes, strict=True)))
+    except (KeyError, ValueError, TypeError) as error:
+        raise ProtocolError(f"a frame cannot be read ({error})") from error
 
 
 def _error(process: RendererProcess, name: str, text: str) -> errors.RppmError:

@@ -3,7 +3,7 @@
 
 import logging
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ..gl.programs import ProgramLibrary
 from ..integrator.film import Film
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
+from ..scene.passes import DEEP_CUBEMAP
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
@@ -35,10 +36,9 @@ def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
     return radiance
 
 
-def read_frame(film: Film, exposure: float, deep_cubemap: np.ndarray | None = None) -> Frame:
-    """The film's current picture and passes."""
-    normal, depth = film.read_surface()
-    return Frame(read_combined(film, exposure), depth, normal, deep_cubemap)
+def read_frame(film: Film, exposure: float, inspections: Mapping[str, np.ndarray] | None = None) -> Frame:
+    """The film's current picture and passes; ``inspections`` are those that it does not keep."""
+    return Frame(read_combined(film, exposure), {**film.read_passes(), **(inspections or {})})
 
 
 class SlicedRender:
@@ -66,7 +66,8 @@ class SlicedRender:
         self._on_snapshot = on_snapshot
         self._continuation = continuation or Continuation()
         self._start = self._kept = time.perf_counter()
-        self._inspection: np.ndarray | None = None
+        self._inspections: dict[str, np.ndarray] = {}
+        """Passes that are computed once."""
         self._found = 0
         """Iterations that were there before this render."""
         self.iterations = 0
@@ -84,9 +85,10 @@ class SlicedRender:
         mapper, settings = self._mapper, self._scene.settings
         mapper.timers.reset()
         # The pass pictures the deep cubemap: there the centre is not free.
-        mapper.update(self._scene, stray=0.0 if settings.deep_cubemap_pass else STRAY)
-        if settings.deep_cubemap_pass:
-            self._inspection = mapper.inspect_deep_cubemap()[..., :3]
+        inspected = DEEP_CUBEMAP.name in settings.passes
+        mapper.update(self._scene, stray=0.0 if inspected else STRAY)
+        if inspected:
+            self._inspections = {DEEP_CUBEMAP.name: mapper.inspect_deep_cubemap()[..., :3]}
         yield from self._begin()
         self._report()
         while self.iterations < settings.iterations:
@@ -129,7 +131,7 @@ class SlicedRender:
         if self._continuation.keep is not None and self.between_iterations and self.iterations > 0:
             mapper = self._mapper
             device = self._context.information.label
-            self._continuation.keep(Pause(mapper.state(), device, mapper.splat_radii[0], self._inspection))
+            self._continuation.keep(Pause(mapper.state(), device, mapper.splat_radii[0], self._inspections))
         self._kept = time.perf_counter()
 
     @property
@@ -155,7 +157,7 @@ class SlicedRender:
 
     def frame(self) -> Frame:
         """The picture so far."""
-        return read_frame(self._mapper.film, self._scene.exposure, self._inspection)
+        return read_frame(self._mapper.film, self._scene.exposure, self._inspections)
 
     def result(self, stopped: bool) -> RenderResult:
         """The picture and the figures; ``stopped`` says whether slices() was left before its end."""

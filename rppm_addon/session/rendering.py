@@ -12,7 +12,7 @@ from ..scene.errors import RppmError
 from ..scene.scene import Scene
 from .arrays import pack
 from .renderer import SlicedRender, log
-from .results import Frame, frame_arrays
+from .results import Frame
 from .shared_memory import SharedBlock
 
 
@@ -103,10 +103,10 @@ class Rendering:
             self._send_frame("picture", render.frame(), progress=dataclasses.asdict(render.progress))
 
     def _send_frame(self, kind: str, frame: Frame, **content: object) -> None:
-        description, block = pack(frame_arrays(frame))
+        description, block = pack([frame.combined, *frame.passes.values()])
         if block is not None:
             self._blocks.append(block)
-        self._send(kind, arrays=description, **content)
+        self._send(kind, arrays=description, passes=list(frame.passes), **content)
 
     def _end(self) -> None:
         result = self._render.result(self._stopping)

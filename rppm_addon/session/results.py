@@ -6,10 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..scene.passes import RenderPass, passes_named
 from ..scene.scene import Scene
-
-NOTHING_HIT = 1e10
-"""Depth where nothing is hit, as Cycles writes it."""
 
 
 @dataclass
@@ -18,13 +16,8 @@ class Frame:
 
     combined: np.ndarray
     """(height, width, 4) float32 scene-linear Rec.709, premultiplied alpha."""
-    depth: np.ndarray
-    """(height, width) float32, metres along the view axis; NOTHING_HIT where nothing is."""
-    normal: np.ndarray
-    """(height, width, 3) float32 world-space shading normals; 0 where nothing is hit."""
-    deep_cubemap: np.ndarray | None = None
-    """(height, width, 3) float32: steps, triangle tests and list (scene.settings.CUBEMAP_COSTS); None
-    unless the setting deep_cubemap_pass asks for it."""
+    passes: dict[str, np.ndarray] = field(default_factory=dict)
+    """(height, width) or (height, width, channels) float32 by name (scene/passes.py): those that the settings name."""
 
 
 @dataclass
@@ -83,16 +76,12 @@ class RenderResult:
 def empty_result(scene: Scene, device: str) -> RenderResult:
     """What a render gives that was stopped before there was anything to see."""
     width, height = scene.camera.resolution
-    frame = Frame(
-        np.zeros((height, width, 4), np.float32),
-        np.full((height, width), NOTHING_HIT, np.float32),
-        np.zeros((height, width, 3), np.float32),
-        np.zeros((height, width, 3), np.float32) if scene.settings.deep_cubemap_pass else None,
-    )
+    passes = {entry.name: _nothing(entry, height, width) for entry in passes_named(scene.settings.passes)}
+    frame = Frame(np.zeros((height, width, 4), np.float32), passes)
     statistics = RenderStatistics(0, 0, 0.0, 0.0, device, scene.triangle_count, 0.0, warnings=list(scene.warnings))
     return RenderResult(frame, statistics, stopped=True)
 
 
-def frame_arrays(frame: Frame) -> list[np.ndarray]:
-    """The pictures that a frame has, in the order of its fields, so that Frame(*frame_arrays(frame)) is the same."""
-    return [frame.combined, frame.depth, frame.normal, *([] if frame.deep_cubemap is None else [frame.deep_cubemap])]
+def _nothing(entry: RenderPass, height: int, width: int) -> np.ndarray:
+    shape = (height, width, len(entry.channels)) if len(entry.channels) > 1 else (height, width)
+    return np.full(shape, entry.nothing, np.float32)

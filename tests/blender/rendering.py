@@ -26,7 +26,8 @@ def picture(renderer, scene) -> tuple[np.ndarray, list[str], Scene]:
     exported = export(scene)
     result = renderer.render(exported)
     combined = result.frame.combined
-    assert np.isfinite(combined).all() and np.isfinite(result.frame.normal).all()
+    assert np.isfinite(combined).all()
+    assert all(np.isfinite(values).all() for values in result.frame.passes.values())
     assert (combined[..., :3] >= 0.0).all()
     for warning in result.statistics.warnings:
         assert "cannot be read" not in warning and "driver does not compile" not in warning, warning

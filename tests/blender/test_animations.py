@@ -88,8 +88,10 @@ def fresh_picture(scene: Scene, device) -> Frame:
 
 
 def assert_same(frame: Frame, alone: Frame, what: str) -> None:
-    for name in ("combined", "depth", "normal"):
-        np.testing.assert_array_equal(getattr(frame, name), getattr(alone, name), f"{name} of {what}")
+    np.testing.assert_array_equal(frame.combined, alone.combined, what)
+    assert list(frame.passes) == list(alone.passes)
+    for name, values in frame.passes.items():
+        np.testing.assert_array_equal(values, alone.passes[name], f"{name} of {what}")
 
 
 each_animation = pytest.mark.parametrize("animation", ANIMATIONS, ids=lambda animation: animation.__name__)
@@ -126,7 +128,7 @@ def test_renders_of_other_sizes_are_those_of_fresh_renderers(animated, device, t
         for number in FRAMES:
             animated.frame_set(number)
             bpy.ops.render.render()
-    assert [frame.depth.shape for frame in seen.frames] == [(32 * share // 100,) * 2 for share in SHARES]
+    assert [frame.combined.shape[:2] for frame in seen.frames] == [(32 * share // 100,) * 2 for share in SHARES]
     for number, frame in zip(FRAMES, seen.frames, strict=True):
         assert_same(frame, fresh_picture(fresh_scene(number, monkeypatch), device), f"frame {number}")
 
@@ -136,7 +138,7 @@ def test_an_animation_cannot_change_its_size(animated):
     bpy.app.handlers.frame_change_pre.append(resize)
     with observing(Frames()) as seen:
         bpy.ops.render.render(animation=True)
-    assert [frame.depth.shape for frame in seen.frames] == [(32, 32)]
+    assert [frame.combined.shape[:2] for frame in seen.frames] == [(32, 32)]
     assert len(seen.errors) == len(FRAMES) - 1 and all("one at a time" in text for text in seen.errors)
 
 

@@ -61,7 +61,7 @@ def test_only_the_passes_asked_for(lit, tmp_path):
 
 def test_the_deep_cubemap_pass(lit, tmp_path):
     """Steps, triangle tests and listed triangles of the ray through each pixel."""
-    lit.rppm.deep_cubemap_pass = True
+    lit.view_layers[0].rppm.use_pass_deep_cubemap = True
     costs = render_exr(lit, tmp_path)["ViewLayer.Deep Cubemap"]
     assert costs.shape == (32, 32, 3) and np.all(costs >= 0) and np.all(costs == np.floor(costs))
     assert np.all(costs[16, 16] >= 1)  # sees the surface

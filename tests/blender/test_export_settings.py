@@ -10,7 +10,7 @@ from blender_scenes import add_light, export
 from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.scene import DensityEstimation, DirectLight, RenderSettings
 
-ELSEWHERE = {"film_transparent"}  # a property that Blender itself has
+ELSEWHERE = {"film_transparent", "passes"}  # properties that Blender itself has
 # what makes the seed another one, an object of Blender's, exported as a point, and what viewports have apart
 BESIDES = {"animate_seed", "cubemap_centre_object", "viewport_iterations", "viewport_photons", "viewport_paused"}
 
@@ -20,7 +20,7 @@ def test_properties_are_the_settings_with_their_defaults(scene):
     properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
     assert properties == (names - ELSEWHERE) | BESIDES
     found, expected = export(scene).settings, RenderSettings()
-    for name in names:
+    for name in names - {"passes"}:
         assert getattr(found, name) == pytest.approx(getattr(expected, name)) if name == "alpha" else True
         if isinstance(getattr(expected, name), float):
             assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-6)
@@ -55,14 +55,16 @@ def test_a_viewport_has_settings_of_its_own(scene):
     # A viewport at rest sees as many photons as a final render.
     assert settings.iterations * settings.photons == default.iterations * default.photons
     assert settings.photons < default.photons
-    scene.rppm.time_limit, scene.rppm.deep_cubemap_pass, scene.rppm.alpha = 5.0, True, 0.5
+    scene.rppm.time_limit, scene.rppm.alpha = 5.0, 0.5
     scene.rppm.viewport_iterations, scene.rppm.viewport_photons = 3, 77
-    viewport, final = export_settings(scene, viewport=True), export_settings(scene)
+    layer = scene.view_layers[0]
+    layer.rppm.use_pass_deep_cubemap = layer.use_pass_z = True
+    viewport, final = export_settings(scene, layer, viewport=True), export_settings(scene, layer)
     assert (viewport.iterations, viewport.photons, viewport.time_limit) == (3, 77, 0.0)
-    assert not viewport.deep_cubemap_pass
+    assert viewport.passes == () and {"Depth", "Deep Cubemap"} <= set(final.passes)
     assert (final.iterations, final.photons, final.time_limit) == (default.iterations, default.photons, 5.0)
     differing = {f.name for f in dataclasses.fields(final) if getattr(final, f.name) != getattr(viewport, f.name)}
-    assert differing == {"iterations", "photons", "time_limit", "deep_cubemap_pass"}
+    assert differing == {"iterations", "photons", "time_limit", "passes"}
 
 
 def test_what_scripts_and_presets_set_is_exported(scene):

@@ -163,6 +163,8 @@ def test_expected_memory(scene):
     scene.render.border_min_x, scene.render.border_max_x = 0.0, 0.5
     scene.render.border_min_y, scene.render.border_max_y = 0.0, 1.0
     scene.rppm.photons, scene.rppm.photon_path_length = 5000, 3
+    layer = bpy.context.view_layer
+    layer.use_pass_z = layer.use_pass_normal = True  # as those of the report
     expected = expected_memory(16, 32, 5000, 3)
     labels = drawn(panel, context_of(scene)).labels
     assert labels[-1] == bytes_text(expected.total_bytes) and "known once it was rendered" in labels

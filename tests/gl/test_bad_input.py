@@ -15,7 +15,7 @@ def small_room(**settings):
 
 def picture(renderer, scene):
     frame = renderer.render(scene).frame
-    for array in (frame.combined, frame.depth, frame.normal):
+    for array in (frame.combined, *frame.passes.values()):
         assert np.isfinite(array).all()
     return frame
 
@@ -62,8 +62,8 @@ def test_crop_is_a_part_of_the_whole(renderer):
     scene = small_room(filter_width=0.0)
     scene.camera.crop = (3, 5, 12, 9)
     part = picture(renderer, scene)
-    np.testing.assert_allclose(part.depth, whole.depth[5:9, 3:12], rtol=1e-4)
-    np.testing.assert_allclose(part.normal, whole.normal[5:9, 3:12], atol=2e-3)
+    np.testing.assert_allclose(part.passes["Depth"], whole.passes["Depth"][5:9, 3:12], rtol=1e-4)
+    np.testing.assert_allclose(part.passes["Normal"], whole.passes["Normal"][5:9, 3:12], atol=2e-3)
 
 
 def test_broken_geometry_leaves_the_rest(renderer):
@@ -92,7 +92,7 @@ def test_an_empty_scene_shows_the_world(renderer):
     scene = Scene(camera, world=World(np.array([0.1, 0.2, 0.3])), settings=small_room().settings)
     frame = picture(renderer, scene)
     np.testing.assert_allclose(frame.combined, np.broadcast_to([0.1, 0.2, 0.3, 1.0], (8, 8, 4)), rtol=1e-5)
-    assert (frame.depth == np.float32(1e10)).all()
+    assert (frame.passes["Depth"] == np.float32(1e10)).all()
     scene.settings.film_transparent = True
     assert (picture(renderer, scene).combined == 0).all()
 

@@ -296,8 +296,8 @@ def test_a_lens_of_no_size_gives_the_raster_picture(renderer, name, orthographic
     same = np.isclose(traced.combined, raster.combined, rtol=2e-3, atol=2e-3).all(-1)
     assert same.mean() > 0.97
     np.testing.assert_allclose(traced.combined.mean((0, 1)), raster.combined.mean((0, 1)), rtol=5e-3)
-    np.testing.assert_allclose(traced.depth[same], raster.depth[same], rtol=1e-3)
-    assert np.isclose(traced.normal, raster.normal, atol=2e-3).all(-1).mean() > 0.97
+    np.testing.assert_allclose(traced.passes["Depth"][same], raster.passes["Depth"][same], rtol=1e-3)
+    assert np.isclose(traced.passes["Normal"], raster.passes["Normal"], atol=2e-3).all(-1).mean() > 0.97
 
 
 def ball_room(camera, **settings):
@@ -313,9 +313,9 @@ def test_depth_of_a_panorama_is_the_distance(renderer):
     camera = Camera(scenes.looking((0, 0, 0), (1, 0, 0)), (0.0, 1.0, 0.0, 1.0), WIDTH, HEIGHT)
     camera.panorama = PANORAMAS["equirectangular"]
     frame = renderer.render(ball_room(camera, iterations=1, photons=64, filter_width=0.0)).frame
-    assert (frame.depth <= 2.0 + 1e-5).all() and (frame.depth > 1.9).all()
+    assert (frame.passes["Depth"] <= 2.0 + 1e-5).all() and (frame.passes["Depth"] > 1.9).all()
     directions = world_directions(camera, panorama_direction(camera.panorama, *frame_coordinates()))
-    assert ((frame.normal * directions).sum(-1) < -0.95).all()
+    assert ((frame.passes["Normal"] * directions).sum(-1) < -0.95).all()
 
 
 def test_outside_of_a_fisheye_is_black(renderer):
@@ -325,8 +325,8 @@ def test_outside_of_a_fisheye_is_black(renderer):
     frame = renderer.render(scene).frame
     x, y = frame_coordinates(width=16, height=16)
     outside = np.hypot(2 * x - 1, 2 * y - 1) > 1
-    assert outside.any() and (frame.combined[outside, :3] == 0).all() and (frame.depth[outside] == 1e10).all()
-    assert (frame.depth[~outside] < 3).all() and (frame.normal[outside] == 0).all()
+    assert outside.any() and (frame.combined[outside, :3] == 0).all() and (frame.passes["Depth"][outside] == 1e10).all()
+    assert (frame.passes["Depth"][~outside] < 3).all() and (frame.passes["Normal"][outside] == 0).all()
 
 
 def test_records_agree_with_the_shader():

@@ -52,7 +52,7 @@ def test_the_pass_comes_with_the_frame_if_asked_for(renderer):
     scene = looking_down([SQUARE])
     scene.world.radiance = np.ones(3)
     scene.settings.iterations, scene.settings.photons = 1, 16
-    assert renderer.render(scene).frame.deep_cubemap is None
-    scene.settings.deep_cubemap_pass = True
-    found = renderer.render(scene).frame.deep_cubemap
+    assert "Deep Cubemap" not in renderer.render(scene).frame.passes
+    scene.settings.passes = ("Deep Cubemap",)
+    found = renderer.render(scene).frame.passes["Deep Cubemap"]
     np.testing.assert_array_equal(found, renderer.inspect(scene)[0][..., :3])

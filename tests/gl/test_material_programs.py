@@ -172,7 +172,7 @@ def test_bump_turns_the_normal_by_the_slope_of_its_height(mapper):
     scene.instances, floor.materials = [floor], [len(scene.materials) - 1]
     mapper.build(scene)
     mapper.iterate()
-    normals, depth = mapper.film.read_surface()
+    depth, normals = mapper.film.read_passes().values()
     seen = (normals[..., 2] > 0.99) & (depth < 1e9)
     found = 2.0 * mapper.film.read_radiance()[seen][:, :3] - 1.0
     assert seen.sum() > 10

@@ -91,7 +91,7 @@ CHANGES = (
 def pictures(mapper: ProgressivePhotonMapper) -> list[np.ndarray]:
     for _ in range(3):
         mapper.iterate()
-    return [mapper.film.read_radiance(), *mapper.film.read_surface()]
+    return [mapper.film.read_radiance(), *mapper.film.read_passes().values()]
 
 
 @pytest.mark.parametrize("change", CHANGES)

@@ -30,7 +30,7 @@ def busy_room(direct_light: DirectLight, seed: int = 3) -> Scene:
 
 def arrays(renderer: Renderer, scene: Scene) -> list[np.ndarray]:
     frame = renderer.render(scene).frame
-    return [frame.combined, frame.depth, frame.normal]
+    return [frame.combined, *frame.passes.values()]
 
 
 @pytest.mark.parametrize("direct_light", DirectLight)

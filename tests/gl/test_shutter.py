@@ -63,7 +63,7 @@ def pictures(mapper: ProgressivePhotonMapper, scene: Scene, iterations: int) -> 
     mapper.update(scene)
     for _ in range(iterations):
         mapper.iterate()
-    return [mapper.film.read_radiance(), *mapper.film.read_surface()]
+    return [mapper.film.read_radiance(), *mapper.film.read_passes().values()]
 
 
 def test_what_stays_where_it_is_gives_the_picture_without_a_shutter(mapper, other_mapper):
@@ -151,7 +151,7 @@ def test_an_iteration_shows_the_scene_of_its_moment(mapper, other_mapper):
         at = MovingScene(scene).at(scene.shutter.time_of(moment(iteration, 5)))
         np.testing.assert_array_equal(mapper.scene.instances[2].matrix, at.instances[2].matrix)
     times = [moment(iteration, 5) for iteration in range(1, 4)]
-    depth = mapper.film.read_surface()[1][10:14, 10:14]
+    depth = mapper.film.read_passes()["Depth"][10:14, 10:14]
     expected = 3.6 + 1.0 - (np.array(times) - 0.5)
     assert expected.min() - 1e-4 <= depth.min() and depth.max() <= expected.max() + 1e-4
 

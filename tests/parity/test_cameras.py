@@ -231,9 +231,9 @@ def test_passes_of_panoramas(renderer, name, transparent):
     frame = renderer.render(scene).frame
     seen = expected["depth"] < 100.0
     assert seen.any() and not seen.all()
-    same = np.isclose(frame.depth, expected["depth"], rtol=1e-3)
+    same = np.isclose(frame.passes["Depth"], expected["depth"], rtol=1e-3)
     assert same.mean() > 0.98, "more than edges differ"
-    assert (np.abs(frame.normal - expected["normal"]).max(axis=-1) < 0.02).mean() > 0.98
+    assert (np.abs(frame.passes["Normal"] - expected["normal"]).max(axis=-1) < 0.02).mean() > 0.98
     assert (np.abs(frame.combined[..., 3] - expected["alpha"]) < 1e-3).mean() > 0.98
 
 

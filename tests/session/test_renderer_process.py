@@ -233,15 +233,17 @@ class Job(RenderJob):
         self.told.append(("snapshot", seconds))
 
 
-@pytest.mark.parametrize("deep_cubemap_pass", [False, True])
-def test_a_render_in_the_process_is_the_same_picture(start, deep_cubemap_pass):
+@pytest.mark.parametrize("passes", [(), ("Depth", "Normal", "Deep Cubemap")])
+def test_a_render_in_the_process_is_the_same_picture(start, passes):
     scene = scene_of(4, size=48)
-    scene.settings.deep_cubemap_pass = deep_cubemap_pass
+    scene.settings.passes = passes
     job = Job(snapshots=(0.0, 0.001))
     result = render(start(), scene, job, SessionKind.FINAL)
     frame = expected(scene)
-    for name in ("combined", "depth", "normal", "deep_cubemap"):
-        np.testing.assert_array_equal(getattr(result.frame, name), getattr(frame, name))
+    np.testing.assert_array_equal(result.frame.combined, frame.combined)
+    assert set(result.frame.passes) == set(frame.passes) == set(passes)
+    for name in passes:
+        np.testing.assert_array_equal(result.frame.passes[name], frame.passes[name])
     assert not result.stopped and result.statistics.iterations == 4
     assert result.statistics.flux_watts["emitted"] > 0.0
     assert job.told[0] == "start" and [told[1] for told in job.told if told[0] == "progress"] == [0, 1, 2, 3, 4]

@@ -14,7 +14,7 @@ HEIGHT, WIDTH, CELLS = 6, 9, 500
 def still_render(**values: object) -> StillRender:
     """Pixels 3 to 12 and 2 to 8 of a frame of 16x10."""
     scene = {"camera": "aa", "meshes": "bb", "lights": "cc"}
-    settings = {"photons": 100, "alpha": 0.7, "seed": 0, "direct_light": "RAYS"}
+    settings = {"photons": 100, "alpha": 0.7, "seed": 0, "direct_light": "RAYS", "passes": ["Depth", "Normal"]}
     return StillRender(
         **{"scene": scene, "settings": settings, "exposure": 2.0, "placement": Placement(16, 10, 3, 2)} | values
     )
@@ -28,10 +28,12 @@ def pause(left_out: int = 0, iteration: int = 5, learnt: bool = True) -> Pause:
     )
     depth[random.random(depth.shape) < 0.4] = 1e10
     counts = random.integers(0, iteration - left_out + 1, depth.shape, np.uint32)
-    normal[counts == 0] = 0.0
+    normal[counts == 0], depth[counts == 0] = 0.0, 1e10
+    counts = np.stack([counts, np.where(depth < 1e10, counts, 0)], axis=-1)
+    passes = {"Depth": depth, "Normal": normal}
     tallies, learnt_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
     state = RenderState(
-        left_out, iteration, 0.1 + random.random(), 3.0 + random.random(), radiance, normal, depth, counts, factors,
+        left_out, iteration, 0.1 + random.random(), 3.0 + random.random(), radiance, passes, counts, factors,
         tallies, learnt_tallies if learnt else None,
     )  # fmt: skip
     return Pause(state, "a device", 0.25)

@@ -29,11 +29,12 @@ def test_the_mean_over_all_iterations(part):
     mean = sum(state.radiance.astype(np.float64) * state.iterations_in_film for state in states) / 9
     np.testing.assert_allclose(merged.frame.combined[..., :3], 2.0 * mean[..., :3], rtol=1e-6)
     np.testing.assert_allclose(merged.frame.combined[..., 3], mean[..., 3], rtol=1e-6)
-    for y, x in np.ndindex(merged.frame.depth.shape):
-        found = [state.depth[y, x] for state in states if state.depth[y, x] < 1e10]
-        assert merged.frame.depth[y, x] == (found[0] if found else np.float32(1e10))
-        normals = [state.normal[y, x] for state in states for _ in range(state.surface_counts[y, x])]
-        np.testing.assert_allclose(merged.frame.normal[y, x], np.mean(normals, 0) if normals else 0.0, atol=1e-6)
+    for y, x in np.ndindex(merged.frame.passes["Depth"].shape):
+        found = [state.passes["Depth"][y, x] for state in states if state.passes["Depth"][y, x] < 1e10]
+        assert merged.frame.passes["Depth"][y, x] == (found[0] if found else np.float32(1e10))
+        normals = [state.passes["Normal"][y, x] for state in states for _ in range(state.pass_counts[y, x, 0])]
+        mean = np.mean(normals, 0) if normals else 0.0
+        np.testing.assert_allclose(merged.frame.passes["Normal"][y, x], mean, atol=1e-6)
 
 
 def test_iterations_that_are_missing(part):

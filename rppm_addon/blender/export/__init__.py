@@ -57,7 +57,7 @@ def export_scene(
     context = ExportContext(report)
     context.read_from(depsgraph)
     scene = Scene(camera=export_camera(source, depsgraph, report))
-    scene.settings = export_settings(source)
+    scene.settings = export_settings(source, depsgraph.view_layer)
     if engine is not None and engine.is_preview:
         scene.settings = preview_settings(scene.settings)
     scene.settings.validate()

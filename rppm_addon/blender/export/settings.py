@@ -7,14 +7,20 @@ import bpy
 import numpy as np
 
 from ...scene import DensityEstimation, DirectLight, RenderSettings
+from .passes import passes_of_layer
 
 
-def export_settings(scene: bpy.types.Scene, viewport: bool = False) -> RenderSettings:
+def export_settings(
+    scene: bpy.types.Scene, layer: bpy.types.ViewLayer | None = None, viewport: bool = False
+) -> RenderSettings:
     """The settings of scene.rppm, or the defaults where the extension is not registered.
 
+    layer: whose passes are rendered; without one there are none.
     viewport: those of a viewport, which has iterations and photons of its own, no time limit and no passes.
     """
-    settings = RenderSettings(film_transparent=scene.render.film_transparent)
+    settings = RenderSettings(film_transparent=scene.render.film_transparent, passes=())
+    if layer is not None and not viewport:
+        settings.passes = tuple(entry.name for entry in passes_of_layer(layer))
     stored = getattr(scene, "rppm", None)
     if stored is not None:
         for field in dataclasses.fields(settings):
@@ -27,7 +33,7 @@ def export_settings(scene: bpy.types.Scene, viewport: bool = False) -> RenderSet
         if viewport:
             settings.iterations, settings.photons = stored.viewport_iterations, stored.viewport_photons
     if viewport:
-        settings.time_limit, settings.deep_cubemap_pass = 0.0, False
+        settings.time_limit = 0.0
     return settings
 
 

@@ -128,7 +128,7 @@ class SceneSync:
             unchanged, moved = ({}, {}) if any(asked) else self._known(edits)
             self._placed = self._objects.export(depsgraph, shown, unchanged, moved)
         world, suns = self._world
-        settings = export_settings(source, self._viewport)
+        settings = export_settings(source, depsgraph.view_layer, self._viewport)
         settings.validate()
         new = Scene(
             camera=camera,

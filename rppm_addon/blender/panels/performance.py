@@ -21,7 +21,7 @@ class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
         column = self.column()
         reports = reports_of(scene.session_uid)
         last = reports.finals[0] if reports.finals else None
-        memory = memory_reading(export_settings(scene), *_region(scene.render), last)
+        memory = memory_reading(export_settings(scene, context.view_layer), *_region(scene.render), last)
         photons = memory.by_settings.ppm.get("photons", 0)
         reading(column, "Photons", bytes_text(photons))
         reading(column, "Picture and Paths", bytes_text(memory.by_settings.total_bytes - photons))

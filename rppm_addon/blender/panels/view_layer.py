@@ -3,6 +3,8 @@
 
 import bpy
 
+from ...scene.passes import PASSES
+from ..export.passes import switch_of
 from .base import RppmPanel
 
 
@@ -13,9 +15,8 @@ class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
         column.prop(context.view_layer, "use_pass_combined")
-        column.prop(context.view_layer, "use_pass_z")
-        column.prop(context.view_layer, "use_pass_normal")
-        column.prop(context.scene.rppm, "deep_cubemap_pass")
+        for entry in PASSES:
+            column.prop(*switch_of(context.view_layer, entry))
 
 
 CLASSES = (RPPM_PT_passes,)

@@ -29,9 +29,9 @@ def test_depth_and_normal_of_the_first_solid_surface(renderer, share, passed):
     frame = renderer.render(behind_a_pane(see_through(share))).frame
     x = (np.arange(16) + 0.5) / 16 * 0.4 - 0.2
     floor_depth = np.broadcast_to(3 / (1 + 0.5 * x), (16, 16))  # the plane z = x / 2
-    np.testing.assert_allclose(frame.depth, floor_depth if passed else 2.0, rtol=1e-4)
+    np.testing.assert_allclose(frame.passes["Depth"], floor_depth if passed else 2.0, rtol=1e-4)
     normal = np.array([-0.5, 0, 1]) / np.sqrt(1.25) if passed else np.array([0, 0, 1.0])
-    np.testing.assert_allclose(frame.normal.mean((0, 1)), normal, atol=0.02)
+    np.testing.assert_allclose(frame.passes["Normal"].mean((0, 1)), normal, atol=0.02)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7, 1.0])

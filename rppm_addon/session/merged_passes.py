@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Passes of a picture whose iterations were rendered in parts."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..scene.passes import Accumulation, passes_named
+
+
+class MergedPasses:
+    """What a film would hold that had seen the iterations of all parts, which are added in their order."""
+
+    def __init__(self) -> None:
+        self._sums: dict[str, np.ndarray] = {}
+        self._counts = np.zeros((0, 0, 2), np.int64)
+
+    def add(self, passes: Mapping[str, np.ndarray], counts: np.ndarray) -> None:
+        """Add a part: RenderState.passes and RenderState.pass_counts."""
+        if not self._counts.size:
+            self._counts = np.zeros(counts.shape, np.int64)
+        for entry in passes_named(tuple(passes)):
+            values = passes[entry.name]
+            depth = values.ndim - 2
+            found_before, found_here = (
+                found.reshape(*found.shape, *[1] * depth) for found in (self._counts[..., 1] > 0, counts[..., 0])
+            )
+            if entry.accumulation is Accumulation.MEAN:
+                self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * found_here
+            else:
+                before = self._sums.get(entry.name, values)
+                self._sums[entry.name] = np.where(found_before, before, values)
+        self._counts = self._counts + counts
+
+    def result(self) -> dict[str, np.ndarray]:
+        """The passes, float32, as Frame.passes has them."""
+        found = {}
+        for entry in passes_named(tuple(self._sums)):
+            values = self._sums[entry.name]
+            if entry.accumulation is Accumulation.MEAN:
+                counts = np.maximum(self._counts[..., 0], 1)
+                values = values / counts.reshape(*counts.shape, *[1] * (values.ndim - 2))
+            found[entry.name] = values.astype(np.float32)
+        return found

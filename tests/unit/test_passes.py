@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pass table, and what follows from it without a device."""
+
+import numpy as np
+import pytest
+
+from rppm_addon.integrator.film import passes_memory
+from rppm_addon.integrator.memory import expected_memory
+from rppm_addon.pictures import read_exr, write_exr
+from rppm_addon.scene import RenderSettings
+from rppm_addon.scene.errors import SettingsError
+from rppm_addon.scene.passes import FILM_PASSES, PASSES, Accumulation, passes_named
+from rppm_addon.session.merged_passes import MergedPasses
+
+
+def random_values(entry, shape, random):
+    values = random.random((*shape, len(entry.channels)), np.float32)
+    return values if len(entry.channels) > 1 else values[..., 0]
+
+
+def test_names_are_found_in_the_order_of_the_table():
+    names = [entry.name for entry in PASSES]
+    assert [entry.name for entry in passes_named(names[::-1])] == names
+    assert len({entry.identifier for entry in PASSES}) == len(names)
+
+
+def test_a_name_that_is_none_is_refused_with_those_that_are():
+    settings = RenderSettings().with_values(passes="Depth, Nothing")
+    assert settings.passes == ("Depth", "Nothing")
+    with pytest.raises(SettingsError, match="no pass Nothing; the passes are .*Normal"):
+        settings.validate()
+
+
+def test_every_pass_goes_through_an_exr(tmp_path):
+    random = np.random.default_rng(3)
+    values = {entry.name: random_values(entry, (4, 6), random) for entry in PASSES}
+    write_exr(tmp_path / "all.exr", random.random((4, 6, 4), np.float32), values)
+    picture = read_exr(tmp_path / "all.exr")
+    for name, expected in values.items():
+        np.testing.assert_array_equal(picture.layer(name), expected, name)
+
+
+def test_merged_parts_are_the_whole():
+    """Seven iterations of three pixels: one sees a surface always, one from the third on, one never."""
+    random = np.random.default_rng(5)
+    found = np.array([[True] * 7, [False] * 2 + [True] * 5, [False] * 7]).T.reshape(7, 1, 3)
+    iterations = {entry.name: random_values(entry, (7, 1, 3), random) for entry in FILM_PASSES}
+
+    def part(first, end):
+        counts = np.stack([np.full((1, 3), end - first), found[first:end].sum(0)], axis=-1).astype(np.uint32)
+        passes = {}
+        for entry in FILM_PASSES:
+            values = iterations[entry.name][first:end]
+            seen = found[first:end].reshape(end - first, 1, 3, *[1] * (values.ndim - 3))
+            if entry.accumulation is Accumulation.MEAN:
+                passes[entry.name] = np.where(seen, values, 0.0).mean(0).astype(np.float32)
+            else:
+                first_seen = np.take_along_axis(values, seen.argmax(0)[None], axis=0)[0]
+                passes[entry.name] = np.where(seen.any(0), first_seen, np.float32(entry.nothing))
+        return passes, counts
+
+    merged = MergedPasses()
+    for ends in ((0, 2), (2, 6), (6, 7)):
+        merged.add(*part(*ends))
+    whole, _ = part(0, 7)
+    assert merged.result().keys() == whole.keys()
+    for name, values in merged.result().items():
+        np.testing.assert_allclose(values, whole[name], rtol=1e-6, err_msg=name)
+
+
+def test_passes_that_are_off_take_no_memory():
+    assert passes_memory(100, ()) == {}
+    channels = sum(len(entry.channels) for entry in FILM_PASSES)
+    assert passes_memory(100, PASSES) == {"pass values": 400 * channels, "pass counts": 800}
+    without, beside = (expected_memory(16, 16, 64, 2, passes=names).total_bytes for names in ((), ("Depth",)))
+    assert beside - without == 256 * (4 + 8)
