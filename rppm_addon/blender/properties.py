@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scene.rppm, view_layer.rppm and light.rppm; the scene's names and defaults are those of RenderSettings."""
+"""scene.rppm, view_layer.rppm, light.rppm and a viewport's shading.rppm.
+
+The scene's names and defaults are those of RenderSettings.
+"""
 
 import functools
 
@@ -7,7 +10,7 @@ import bpy
 from bpy import props
 
 from ..scene import RenderSettings
-from ..scene.passes import PASSES
+from ..scene.passes import COMBINED, FILM_PASSES, PASSES
 
 
 def _edited(owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -272,7 +275,18 @@ class RppmViewLayerProperties(bpy.types.PropertyGroup):
     }
 
 
-_CLASSES = (RppmSceneProperties, RppmLightProperties, RppmViewLayerProperties)
+class RppmShadingProperties(bpy.types.PropertyGroup):
+    """What a rendered viewport shows."""
+
+    render_pass: EnumProperty(
+        name="Render Pass",
+        description="The pass that the viewport shows",
+        items=[(COMBINED, COMBINED, "")] + [(entry.name, entry.name, "") for entry in FILM_PASSES],
+        default=COMBINED,
+    )
+
+
+_CLASSES = (RppmSceneProperties, RppmLightProperties, RppmViewLayerProperties, RppmShadingProperties)
 
 
 def register() -> None:
@@ -280,11 +294,13 @@ def register() -> None:
         bpy.utils.register_class(cls)
     bpy.types.Scene.rppm = props.PointerProperty(type=RppmSceneProperties, name="RPPM")
     bpy.types.Light.rppm = props.PointerProperty(type=RppmLightProperties, name="RPPM")
+    bpy.types.View3DShading.rppm = props.PointerProperty(type=RppmShadingProperties, name="RPPM")
     bpy.types.ViewLayer.rppm = props.PointerProperty(type=RppmViewLayerProperties, name="RPPM")
 
 
 def unregister() -> None:
     del bpy.types.ViewLayer.rppm
+    del bpy.types.View3DShading.rppm
     del bpy.types.Light.rppm
     del bpy.types.Scene.rppm
     for cls in reversed(_CLASSES):

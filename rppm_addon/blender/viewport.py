@@ -8,7 +8,7 @@ from dataclasses import replace
 import bpy
 from bpy.app.handlers import persistent
 
-from ..scene import Camera, Scene
+from ..scene import Camera, RenderSettings, Scene
 from ..scene.errors import RppmError
 from ..scene.sharing import share
 from ..session.client import ProcessState
@@ -60,7 +60,7 @@ class Viewport:
             self._fail(f"RPPM failed unexpectedly ({type(error).__name__}: {error}); see the system console")
             return
         self._error = ""
-        self._show(context, scene)
+        self._show(context, replace(scene, settings=_settings(context, depsgraph)))
 
     def draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Draw the newest frame, and follow the view."""
@@ -82,10 +82,10 @@ class Viewport:
 
     def _follow(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Take what Blender calls no update: the view, and changed settings of ours."""
-        source = depsgraph.scene_eval
-        settings = export_settings(source, viewport=True)
+        settings = _settings(context, depsgraph)
         settings.validate()
-        members = {"camera": export_view(context, depsgraph), "settings": settings, "exposure": export_exposure(source)}
+        exposure = export_exposure(depsgraph.scene_eval)
+        members = {"camera": export_view(context, depsgraph), "settings": settings, "exposure": exposure}
         self._show(context, replace(self._sync.scene, **members))
 
     def _show(self, context: bpy.types.Context, scene: Scene) -> None:
@@ -154,6 +154,12 @@ class Viewport:
     def close(self) -> None:
         """Render this no more."""
         self._session.close()
+
+
+def _settings(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> RenderSettings:
+    """Those of the viewport, with the pass that it shows."""
+    shown = context.space_data.shading.rppm.render_pass
+    return export_settings(depsgraph.scene_eval, viewport=True, shown_pass=shown)
 
 
 def _picture_by_picture(scene: Scene) -> Scene:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
+from ..integrator.film import Film
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..scene.errors import RppmError
 from ..scene.scene import Scene
@@ -33,6 +34,20 @@ FRAME_SECONDS = 1.0 / 60.0
 
 Send = Callable[..., None]
 """send(kind, **content): a message to Blender about this session."""
+
+
+def shown_picture(film: Film, scene: Scene) -> np.ndarray:
+    """(height, width, 4) float32: Combined, or the one pass of the scene's settings as colors, a value as gray."""
+    if not film.passes:
+        return read_combined(film, scene.exposure)
+    (values,) = film.read_passes().values()
+    planes = np.atleast_3d(values)
+    shown = np.zeros((*planes.shape[:2], 4), np.float32)
+    shown[..., : planes.shape[2]] = planes
+    if planes.shape[2] == 1:
+        shown[..., :3] = planes
+    shown[..., 3] = 1.0
+    return shown
 
 
 class Viewing:
@@ -134,7 +149,7 @@ class Viewing:
 
     def _give_out(self, scene: Scene, generation: int) -> None:
         """Write the picture so far to a slot."""
-        combined = read_combined(self._mapper.film, scene.exposure)
+        combined = shown_picture(self._mapper.film, scene)
         # Done here, where no window waits for it.
         np.nan_to_num(combined, copy=False, nan=0.0, posinf=BRIGHTEST, neginf=0.0)
         np.minimum(combined, BRIGHTEST, out=combined)

@@ -7,19 +7,26 @@ import bpy
 import numpy as np
 
 from ...scene import DensityEstimation, DirectLight, RenderSettings
+from ...scene.passes import COMBINED
 from .passes import passes_of_layer
 
 
 def export_settings(
-    scene: bpy.types.Scene, layer: bpy.types.ViewLayer | None = None, viewport: bool = False
+    scene: bpy.types.Scene,
+    layer: bpy.types.ViewLayer | None = None,
+    viewport: bool = False,
+    shown_pass: str = COMBINED,
 ) -> RenderSettings:
     """The settings of scene.rppm, or the defaults where the extension is not registered.
 
     layer: whose passes are rendered; without one there are none.
-    viewport: those of a viewport, which has iterations and photons of its own, no time limit and no passes.
+    viewport: those of a viewport, which has iterations and photons of its own, no time limit, and no pass but the one
+    that it shows.
     """
     settings = RenderSettings(film_transparent=scene.render.film_transparent, passes=())
-    if layer is not None and not viewport:
+    if viewport:
+        settings.passes = () if shown_pass == COMBINED else (shown_pass,)
+    elif layer is not None:
         settings.passes = tuple(entry.name for entry in passes_of_layer(layer))
     stored = getattr(scene, "rppm", None)
     if stored is not None:

@@ -16,6 +16,7 @@ from . import (
     simplify,
     view_layer,
     viewport_header,
+    viewport_shading,
     warnings,
 )
 
@@ -33,6 +34,7 @@ CLASSES = (
     *view_layer.CLASSES,
     *data.CLASSES,
     *shading.CLASSES,
+    *viewport_shading.CLASSES,
 )
 """In the order in which their tabs show them."""
 

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the shading popover of a rendered viewport has beside Blender's own."""
+
+import bpy
+
+from .base import ENGINE
+
+
+class RPPM_PT_shading_render_pass(bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "HEADER"
+    bl_label = "Render Pass"
+    bl_parent_id = "VIEW3D_PT_shading"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.engine == ENGINE and context.space_data.shading.type == "RENDERED"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.prop(context.space_data.shading.rppm, "render_pass", text="")
+
+
+CLASSES = (RPPM_PT_shading_render_pass,)
