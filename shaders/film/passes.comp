@@ -70,6 +70,11 @@ float view_depth(vec3 position) {
     return camera.projection <= PROJECTION_ORTHOGRAPHIC ? dot(offset, camera.forward) : length(offset);
 }
 
+vec2 uv_at(Hit at) {
+    TriangleAttributes corners = attributes[at.triangle];
+    return (1.0 - at.b1 - at.b2) * corners.uv0 + at.b1 * corners.uv1 + at.b2 * corners.uv2;
+}
+
 void main() {
     index = living_path();
     if (index == NO_PATH) return;
