@@ -72,6 +72,8 @@ class RenderPass:
 PASSES = (
     RenderPass("Depth", "Z", PassKind.VALUE, Accumulation.FIRST, "use_pass_z", NOTHING_HIT),
     RenderPass("Normal", "XYZ", PassKind.VECTOR, Accumulation.MEAN, "use_pass_normal"),
+    RenderPass("Position", "XYZ", PassKind.VECTOR, Accumulation.FIRST, "use_pass_position"),
+    RenderPass("UV", "UVA", PassKind.VECTOR, Accumulation.MEAN, "use_pass_uv"),
     RenderPass(
         "Deep Cubemap",
         "XYZ",

@@ -70,9 +70,11 @@ float view_depth(vec3 position) {
     return camera.projection <= PROJECTION_ORTHOGRAPHIC ? dot(offset, camera.forward) : length(offset);
 }
 
-vec2 uv_at(Hit at) {
+// Of the UV map in use, and 1; all 0 on meshes without one.
+vec3 uv_at(Hit at) {
     TriangleAttributes corners = attributes[at.triangle];
-    return (1.0 - at.b1 - at.b2) * corners.uv0 + at.b1 * corners.uv1 + at.b2 * corners.uv2;
+    vec2 uv = (1.0 - at.b1 - at.b2) * corners.uv0 + at.b1 * corners.uv1 + at.b2 * corners.uv2;
+    return vec3(uv, corners.uv0 == corners.uv1 && corners.uv1 == corners.uv2 ? 0.0 : 1.0);
 }
 
 void main() {
@@ -92,4 +94,6 @@ void main() {
 
     write_pass(PASS_DEPTH, view_depth(closures[index].position));
     write_pass(PASS_NORMAL, unpack_unit_vector(closures[index].shading_normal));
+    write_pass(PASS_POSITION, closures[index].position);
+    write_pass(PASS_UV, uv_at(hits[index]));
 }
