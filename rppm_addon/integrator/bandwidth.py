@@ -9,8 +9,9 @@ from ..scene.camera import Camera
 from ..scene.settings import RenderSettings
 
 _REFERENCE_PIXELS = 1 << 20
-EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 4
-"""Diffused photons in the wide radius: where the camera looks, and at the ends of gathering rays, which are many."""
+EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 16
+"""Diffused photons in the wide radius: where the camera looks, and at the ends of gathering rays, where nobody sees
+how wide it is."""
 _MOST_CAUSTIC_RADII = 3.0
 EXPECTED_CAUSTIC_PHOTONS = 30
 """Caustic photons that a pixel's disk of the first iteration holds, if it is wider than Eq. 3's."""
@@ -54,10 +55,21 @@ def photons_found(counts: np.ndarray) -> float:
     return max(float(np.median(counts)), 0.5 * float(np.mean(counts))) if len(counts) else 0.0
 
 
-def fitted_wide_radius(radius: float, expected: int, found: float) -> float:
-    """The radius, metres, with which half of the view would find ``expected`` photons or more.
+def photons_found_by_ray(counts: np.ndarray) -> float:
+    """Photons that half of the gathering rays find or more, of those that find any, from counts by pixel, (n,).
 
-    Infinite if none are found. ``found`` is what photons_found says of ``radius``.
+    Most rays may lead out of the scene, or to where no such light is: no radius would let them find photons, and the
+    others would pay for it.
+    """
+    lit = counts[counts > 0]
+    return float(np.median(lit)) if len(lit) else 0.0
+
+
+def fitted_wide_radius(radius: float, expected: int, found: float) -> float:
+    """The radius, metres, with which half of the view, or of the lit ends of gathering rays, would find ``expected``
+    photons or more.
+
+    Infinite if none are found. ``found`` is what photons_found or photons_found_by_ray says of ``radius``.
     """
     return radius * math.sqrt(expected / found) if found > 0 else math.inf
 

@@ -28,6 +28,7 @@ from .bandwidth import (
     fitted_wide_radius,
     most_radius_factor,
     photons_found,
+    photons_found_by_ray,
     radius_by_ray,
     radius_in_pixels,
     radius_limits,
@@ -101,7 +102,7 @@ class ProgressivePhotonMapper:
         self._views_are_for: tuple | None = None
         self._wide_radius = 0.0
         self._diffused_photons_found: float | None = None
-        """What photons_found says of the last iteration, if they were counted."""
+        """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
 
     def build(self, scene: Scene) -> None:
         """Init(): take a scene, allocate its buffers and build the deep cubemap.
@@ -529,9 +530,9 @@ class ProgressivePhotonMapper:
         self._emission.tally(self._photons.photons.buffer, self._photons.segments)
         self._diffused_photons_found = None
         if diffused_photons:
-            self._diffused_photons_found = photons_found(
-                np.concatenate(diffused_photons)[at_pixels(self._leaves_importon, self.film.width, self.film.height)]
-            )
+            counts = np.concatenate(diffused_photons)
+            counts = counts[at_pixels(self._leaves_importon, self.film.width, self.film.height)]
+            self._diffused_photons_found = photons_found_by_ray(counts) if self._gathers else photons_found(counts)
 
     def _learn(self) -> None:
         """From the iterations before: where photons are of use, and how many diffused ones pixels find."""

@@ -17,7 +17,7 @@ class RenderState:
     wide_radius: float
     """Of the first iteration, metres: what diffused photons are spread over."""
     diffused_photons_found: float | None
-    """What photons_found says of the last iteration, if the next one learns from it."""
+    """What photons_found, or photons_found_by_ray, says of the last iteration, if the next one learns from it."""
     radiance: np.ndarray
     """(height, width, 4) float32 mean of radiance W/(m^2 sr) and alpha, row 0 at the bottom, before exposure."""
     passes: dict[str, np.ndarray]

@@ -25,7 +25,7 @@ def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
     """Caustics, light scattered between walls, glossy paths, a pane that some camera paths end on, and a second lamp
     whose photons are of less use."""
     scene = scenes.room(
-        16, direct_light=direct_light, photons=512, camera_path_length=4, photon_path_length=4, radius_scale=100.0,
+        16, direct_light=direct_light, photons=4096, camera_path_length=4, photon_path_length=4, radius_scale=100.0,
         splat_roulette=True,
     )  # fmt: skip
     rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)

@@ -11,6 +11,7 @@ from rppm_addon.integrator.bandwidth import (
     fitted_wide_radius,
     most_radius_factor,
     photons_found,
+    photons_found_by_ray,
     radius_in_pixels,
     radius_limits,
     shrinkage,
@@ -74,6 +75,12 @@ def test_fitted_radius_would_find_the_expected_photons():
     fitted = fitted_wide_radius(0.2, EXPECTED_PHOTONS, photons_found(sparse))
     assert fitted == pytest.approx(0.2 * math.sqrt(2 * EXPECTED_PHOTONS / 0.2), rel=0.05)
     assert fitted_wide_radius(0.2, EXPECTED_PHOTONS, photons_found(np.zeros(9))) == math.inf
+
+
+def test_rays_that_find_nothing_do_not_widen_the_radius_of_those_that_do():
+    counts = np.random.default_rng(6).poisson(200, 4000) * (np.arange(4000) % 50 == 0)
+    assert photons_found_by_ray(counts) == pytest.approx(200, rel=0.02)
+    assert photons_found_by_ray(np.zeros(9)) == 0
 
 
 def test_widest_radius_follows_scene_and_view():
