@@ -67,6 +67,12 @@ class LivingPaths:
         self._begin(self._lists[0], paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
         self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
 
+    def begin(self, most: int) -> None:
+        """List none, for a program to list up to so many (shaders/living_paths/kept.glsl)."""
+        self.require(most)
+        self.most = most
+        self._begin(self._lists[0], 0, (0, 0, 1))
+
     def keep(self, rays: moderngl.Buffer) -> None:
         """Leave out the paths whose rays (RAY, by path) are inactive; room for that must have been required."""
         self._keep_of(self, self._lists[1], rays)

@@ -2,13 +2,12 @@
 // Light sources: samples of them from a point, and what a ray sees of them.
 // Needs the members scene_centre, scene_radius and mesh_selection of the parameters.
 
-#include <Light>
 #include <EmissiveTriangle>
+#include "emission/light_table.glsl"
 #include "emission/environment.glsl"
 #include "emission/lamp_maps.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
-layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
 layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]; };
@@ -46,17 +45,6 @@ float distance_factor(Light light, float distance) {
 
 vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
-}
-
-// Lights hold consecutive ranges of the photons.
-uint light_of(uint photon) {
-    uint low = 0u, high = parameters.light_count - 1u;
-    while (low < high) {
-        uint middle = (low + high + 1u) / 2u;
-        if (lights[middle].first_photon <= photon) low = middle;
-        else high = middle - 1u;
-    }
-    return low;
 }
 
 // By its selection probability.

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The lights, and whose photons are whose. Needs the member light_count of the parameters.
+
+#include <Light>
+layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
+
+// Lights hold consecutive ranges of the photons.
+uint light_of(uint photon) {
+    uint low = 0u, high = parameters.light_count - 1u;
+    while (low < high) {
+        uint middle = (low + high + 1u) / 2u;
+        if (lights[middle].first_photon <= photon) low = middle;
+        else high = middle - 1u;
+    }
+    return low;
+}
