@@ -196,6 +196,16 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         ],
         default=DEFAULTS.density_estimation.name,
     )
+    first_photon_hits: EnumProperty(
+        name="First Photon Hits",
+        description="How it is found where photons from lamps and suns hit first: any way gives the same picture",
+        items=[
+            ("AUTOMATIC", "Automatic", "Trace the first iterations, then try both and take the faster one", 0),
+            ("RASTERIZED", "Rasterized", "Rasterize what lamps and suns see, as the paper does", 1),
+            ("TRACED", "Traced", "Trace rays through the deep cubemap", 2),
+        ],
+        default=DEFAULTS.first_photon_hits.name,
+    )
     filter_width: FloatProperty(
         name="Filter Width",
         description="Width of the Blackman-Harris pixel filter; 0 looks through the middle of pixels only",

@@ -21,6 +21,7 @@ from .environment import Environment
 from .geometry import Geometry
 from .guide import Guide
 from .lamp_maps import LampMaps
+from .light_gbuffer import LightGBuffer
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
 from .resolve import Resolve
@@ -274,6 +275,10 @@ class Emission:
             "world_light": int(np.argmax(table["kind"] == WORLD)),
             **self._light_tree.parameters,
         }
+
+    def rasterize_views(self, gbuffer: LightGBuffer, geometry: Geometry) -> bool:
+        """Have what the lights see rasterized; whether any of them has a view. Raises DeviceError."""
+        return gbuffer.build(self._table, geometry.centre, self._parameters["scene_radius"], geometry) > 0
 
     def begin(self) -> None:
         """Forget what photons were good for, as before the first iteration."""

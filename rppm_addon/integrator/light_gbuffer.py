@@ -60,8 +60,8 @@ _COUNTS = Record("LightGBufferCounts", jobs="uint", triangles="uint", unused0="u
 MOST_LIGHTS = 16
 """Those with the most photons have views; photons of the others are traced."""
 
-_FINEST_SIDE, _MOST_TEXELS = 1024, 1 << 21
-"""Texels along a view's side, fewer where many views share these."""
+_COARSEST_SIDE, _FINEST_SIDE, _TEXELS = 128, 512, 1 << 19
+"""Texels along a view's side, and of all views where these allow it."""
 _PICTURE_SIDE = 4096
 _JOB_SIZE = 16
 _JOBS_PER_DRAW = 1 << 16
@@ -121,7 +121,8 @@ def light_views(light: np.void, scene_centre: np.ndarray, scene_radius: float) -
 
 def views_side(views: int) -> int:
     """Texels along each view's side, a power of two."""
-    return min(_FINEST_SIDE, 1 << (math.isqrt(_MOST_TEXELS // views).bit_length() - 1))
+    side = 1 << (max(math.isqrt(_TEXELS // views), 1).bit_length() - 1)
+    return min(max(side, _COARSEST_SIDE), _FINEST_SIDE)
 
 
 class LightGBuffer:

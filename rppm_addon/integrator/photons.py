@@ -8,6 +8,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from .first_hits import FirstHits
 from .living_paths import LivingPaths
 from .records import (
     CLOSURE,
@@ -58,6 +59,7 @@ class Photons:
         self._emitted = GrowingBuffer(context, "emitted photons", remedy)
         self._sums = GrowingBuffer(context, "flux sums", remedy)
         self._living = LivingPaths(context, library, "living photon paths", remedy)
+        self.first_hits = FirstHits(context, library)
         self.photons.require(PHOTON.size * photon_count * segments)
         for buffer, record in (
             (self._paths, PHOTON_PATH),
@@ -89,7 +91,8 @@ class Photons:
 
     @property
     def memory_bytes(self) -> dict[str, int]:
-        return {buffer.name: buffer.size for buffer in self._buffers} | self._living.memory_bytes
+        buffers = {buffer.name: buffer.size for buffer in self._buffers}
+        return buffers | self._living.memory_bytes | self.first_hits.memory_bytes
 
     def run(self, stages: Stages, iteration: int) -> None:
         """Emit the iteration's photons and trace them to the last segment, or to that after which none lives."""
@@ -157,7 +160,7 @@ class Photons:
                 stages.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration
             )
         with stages.timers.stage("photon tracing"):
-            stages.deep_cubemap.trace(rays, hits, self._living)
+            self.first_hits.find(stages, rays, hits, self._living)
             if stages.emission.has_falloff:
                 stages.emission.fall_off(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)
 
@@ -183,5 +186,5 @@ class Photons:
         return records.reshape(self.segments, self.photon_count)
 
     def release(self) -> None:
-        for buffer in (*self._buffers, self._living):
+        for buffer in (*self._buffers, self._living, self.first_hits):
             buffer.release()

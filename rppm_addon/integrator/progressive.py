@@ -19,7 +19,7 @@ from ..scene.garbage import collector_paused
 from ..scene.motion import MovingScene
 from ..scene.passes import passes_named
 from ..scene.scene import Scene
-from ..scene.settings import DensityEstimation
+from ..scene.settings import DensityEstimation, FirstPhotonHits
 from ..scene.settings import DirectLight as DirectLightMode
 from .bands import bands_of
 from .bandwidth import (
@@ -157,6 +157,8 @@ class ProgressivePhotonMapper:
                 self._resolve.build(scene, self._geometry, self._materials)
         self._resolve.look_from(scene.camera, scene.settings.seed)
         if changes.geometry or changes.materials or changes.lights:
+            if self._views:
+                self._photons.first_hits.forget()
             with self._hearing("emission"):
                 self._emission.build(
                     scene,
@@ -409,6 +411,11 @@ class ProgressivePhotonMapper:
     def density_estimation(self) -> DensityEstimation:
         """The route that photons and importons find each other by."""
         return self._density_estimator.route
+
+    @property
+    def first_photon_hits(self) -> FirstPhotonHits:
+        """The route by which the last iteration's photons found their first hits."""
+        return self._photons.first_hits.route
 
     @property
     def triangle_count(self) -> int:

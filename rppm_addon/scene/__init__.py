@@ -9,7 +9,7 @@ from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, Ra
 from .motion import CameraMovement, Deformation, Movement, MovingScene, Shutter
 from .node_graphs import Link, NodeGraph, ShaderNode
 from .scene import Scene
-from .settings import DensityEstimation, DirectLight, RenderSettings
+from .settings import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "Deformation",
     "DensityEstimation",
     "DirectLight",
+    "FirstPhotonHits",
     "Image",
     "Instance",
     "Light",

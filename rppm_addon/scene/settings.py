@@ -32,6 +32,17 @@ class DensityEstimation(enum.Enum):
     """Photons are gathered from hashed grids."""
 
 
+class FirstPhotonHits(enum.Enum):
+    """How the first hits of photons are found: the same ones, at different speed."""
+
+    AUTOMATIC = "AUTOMATIC"
+    """Traced at first, then whichever is faster, found by trying both."""
+    RASTERIZED = "RASTERIZED"
+    """Lamps and suns rasterize what they see, as in the paper."""
+    TRACED = "TRACED"
+    """Through the deep cubemap, like all later segments."""
+
+
 @dataclass
 class RenderSettings:
     """Settings of the photon mapper. Lengths in metres, times in seconds."""
@@ -65,6 +76,7 @@ class RenderSettings:
     splat_roulette: bool = False
     """Whether half of the splats are left out and the others count twice (paper section 4.2, Fig. 5)."""
     density_estimation: DensityEstimation = DensityEstimation.AUTOMATIC
+    first_photon_hits: FirstPhotonHits = FirstPhotonHits.AUTOMATIC
     iterations_per_frame: int = 1
     """N_ipf: iterations between two pictures shown."""
     seed: int = 0

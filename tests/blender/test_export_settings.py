@@ -8,7 +8,7 @@ import pytest
 from blender_scenes import add_light, export
 
 from rppm_addon.blender.export.settings import export_settings
-from rppm_addon.scene import DensityEstimation, DirectLight, RenderSettings
+from rppm_addon.scene import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
 
 ELSEWHERE = {"film_transparent", "passes"}  # properties that Blender itself has
 # what makes the seed another one, an object of Blender's, exported as a point, and what viewports have apart
@@ -80,6 +80,8 @@ def test_what_scripts_and_presets_set_is_exported(scene):
     assert export(scene).settings.direct_light is DirectLight.PHOTONS
     scene.rppm.density_estimation = "RASTERIZED"
     assert export(scene).settings.density_estimation is DensityEstimation.RASTERIZED
+    scene.rppm.first_photon_hits = "TRACED"
+    assert export(scene).settings.first_photon_hits is FirstPhotonHits.TRACED
     scene.rppm.cubemap_centre_object = lamp
     assert export(scene).cubemap_centre == pytest.approx([0.0, 0.0, 3.0])
     lamp.data.rppm.photon_share = 3.0

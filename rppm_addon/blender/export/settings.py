@@ -6,7 +6,7 @@ import dataclasses
 import bpy
 import numpy as np
 
-from ...scene import DensityEstimation, DirectLight, RenderSettings
+from ...scene import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
 from ...scene.passes import COMBINED
 from .passes import passes_of_layer
 
@@ -35,6 +35,7 @@ def export_settings(
                 setattr(settings, field.name, getattr(stored, field.name))
         settings.direct_light = DirectLight[stored.direct_light]
         settings.density_estimation = DensityEstimation[stored.density_estimation]
+        settings.first_photon_hits = FirstPhotonHits[stored.first_photon_hits]
         if stored.animate_seed:
             settings.seed = seed_of_frame(stored.seed, scene.frame_current)
         if viewport:

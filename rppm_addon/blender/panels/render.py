@@ -77,6 +77,7 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         row.prop(settings, "seed")
         row.prop(settings, "animate_seed", text="", icon="TIME")
         column.prop(settings, "density_estimation")
+        column.prop(settings, "first_photon_hits")
         column.prop(settings, "splat_roulette")
 
 
