@@ -62,6 +62,8 @@ MOST_LIGHTS = 16
 
 _COARSEST_SIDE, _FINEST_SIDE, _TEXELS = 128, 512, 1 << 19
 """Texels along a view's side, and of all views where these allow it."""
+_MOST_TESTS = 1 << 24
+"""Views times triangles: beyond this only the first light has views."""
 _PICTURE_SIDE = 4096
 _JOB_SIZE = 16
 _JOBS_PER_DRAW = 1 << 16
@@ -162,6 +164,8 @@ class LightGBuffer:
         ranges, found, count = np.zeros((len(lights), 2), np.uint32), [LIGHT_VIEW.zeros(0)], 0
         for index in np.argsort(-lights["photon_count"].astype(np.int64), kind="stable")[:MOST_LIGHTS]:
             views = light_views(lights[index], scene_centre, scene_radius)
+            if count and (count + len(views)) * geometry.triangle_count > _MOST_TESTS:
+                break
             ranges[index] = count, len(views)
             found.append(views)
             count += len(views)
@@ -192,7 +196,7 @@ class LightGBuffer:
             "LightTexels": self._texels.buffer,
             "Triangles": geometry.triangles.buffer,
         }
-        jobs = self._find_jobs(views * geometry.triangle_count, 2 * geometry.triangle_count, blocks)
+        jobs = self._find_jobs(views * geometry.triangle_count, 5 * geometry.triangle_count // 4, blocks)
         blocks["LightJobs"] = self._jobs.buffer
         self._draw(self._nearest, jobs, blocks)
         self._draw(self._count, jobs, blocks)

@@ -159,7 +159,7 @@ class Photons:
             stages.emission.emitters.tint_photons(
                 stages.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration
             )
-        with stages.timers.stage("photon tracing"):
+        with stages.timers.stage("first photon hits"):
             self.first_hits.find(stages, rays, hits, self._living)
             if stages.emission.has_falloff:
                 stages.emission.fall_off(rays, hits, paths, self.photon_count, stages.settings.seed, iteration)

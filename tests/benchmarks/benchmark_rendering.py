@@ -14,7 +14,9 @@ from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DensityEstimation, RenderSettings
 
 STAGES = {
-    "photon paths": ("emission", "photon tracing", "photon resolve", "photon scattering", "photon list"),
+    "photon paths": (
+        "emission", "first photon hits", "photon tracing", "photon resolve", "photon scattering", "photon list",
+    ),  # fmt: skip
     "camera's first hits": ("gbuffer",),
     "camera paths": ("camera tracing", "camera resolve", "camera scattering"),
     "direct light": ("direct light",),

@@ -27,7 +27,7 @@ from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E
 from rppm_addon.scene import load_scene  # noqa: E402
 
 STAGES = {
-    "photon paths": ("photon tracing", "photon resolve", "photon scattering"),
+    "photon paths": ("first photon hits", "photon tracing", "photon resolve", "photon scattering"),
     "camera paths": ("camera tracing", "camera resolve", "camera scattering"),
     "direct light": ("direct light",),
     "density estimation": ("direct splatting", "indirect splatting"),

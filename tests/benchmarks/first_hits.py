@@ -1,0 +1,116 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures both routes to photons' first hits, in turns, and checks that they give the same bits.
+
+Takes scenes that `rppm export` wrote; without any, a box with a glass and a mirror sphere. Point lamps, a spot and suns
+take the place of the strongest light, each alone. Prints a table.
+"""
+
+import argparse
+import dataclasses
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks"):  # the checkout, installed or not
+    if str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))
+
+import numpy as np  # noqa: E402
+import scenes  # noqa: E402
+from benchmark_machine import Clock  # noqa: E402
+
+from rppm_addon.commands.saved_scene import camera_at_resolution  # noqa: E402
+from rppm_addon.gl.context import Context  # noqa: E402
+from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
+from rppm_addon.scene import FirstPhotonHits, LightKind, Scene, load_scene  # noqa: E402
+
+ROUTES = FirstPhotonHits.RASTERIZED, FirstPhotonHits.TRACED
+STAGES = "emission", "first photon hits"
+LAMPS = {
+    "point": {"kind": LightKind.POINT, "radius": 0.0},
+    "point, radius 0.5 % of the scene's": {"kind": LightKind.POINT},
+    "spot": {"kind": LightKind.SPOT, "radius": 0.0, "spot_angle": 1.6, "spot_blend": 0.2},
+    "sun, parallel": {"kind": LightKind.SUN, "sun_angle": 0.0},
+    "sun, 0.53 degrees": {"kind": LightKind.SUN, "sun_angle": 0.00925},
+}
+_LEARNING = 5
+"""Iterations that are not counted: photons go where they are of use from the sixth on as from the second on."""
+
+
+def with_lamp(scene: Scene, name: str) -> Scene:
+    values = {"strength": np.full(3, 10.0), "graph": None} | LAMPS[name]
+    if "radius" not in values:
+        corners = [
+            scene.meshes[item.mesh].positions @ item.matrix[:3, :3].T + item.matrix[:3, 3] for item in scene.instances
+        ]
+        values["radius"] = 0.005 * 0.5 * float(np.linalg.norm(np.ptp(np.concatenate(corners), axis=0)))
+    strongest = max(scene.lights, key=lambda light: float(np.mean(light.strength)))
+    return dataclasses.replace(scene, lights=[dataclasses.replace(strongest, **values)])
+
+
+def measure(context: Context, library: ProgramLibrary, clock: Clock, scene: Scene, iterations: int) -> np.ndarray:
+    """(routes, 4): the least seconds of emission with first hits, of an iteration, seconds of the iteration in which
+    light G-buffers are made beyond that, and MiB of photon paths."""
+    mappers: list[ProgressivePhotonMapper] = []
+    figures: list[list[tuple[float, float]]] = [[], []]
+    anew = []
+    for route in ROUTES:
+        mapper = ProgressivePhotonMapper(context, library)
+        mapper.timers.clock = clock.now
+        mapper.build(dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, first_photon_hits=route)))
+        for _ in range(_LEARNING):
+            mapper.iterate()
+        mappers.append(mapper)
+
+    def stages(mapper: ProgressivePhotonMapper) -> tuple[float, float]:
+        mapper.timers.reset()
+        total = clock.once(mapper.iterate)
+        return sum(mapper.timers.seconds[stage] for stage in STAGES), total
+
+    for _ in range(iterations):
+        for mapper, seconds in zip(mappers, figures, strict=True):
+            seconds.append(stages(mapper))
+    least = np.min(figures, axis=1)
+    for mapper, (seconds, _) in zip(mappers, least, strict=True):
+        mapper._photons.first_hits.forget()
+        anew.append(max(stages(mapper)[0] - seconds, 0.0))
+    films = [mapper.film.read_radiance().view(np.uint32) for mapper in mappers]
+    if not np.array_equal(*films):
+        raise SystemExit("the two routes give different pictures")
+    mebibytes = [sum(mapper.memory.working["photon paths"].values()) / 2**20 for mapper in mappers]
+    for mapper in mappers:
+        mapper.release()
+    return np.column_stack([least, anew, mebibytes])
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", type=Path, nargs="*", metavar="SCENE.npz")
+    parser.add_argument("--size", type=int, default=256, metavar="N", help="pixels a side (256)")
+    parser.add_argument("--photons", type=int, default=65536, metavar="N", help="an iteration (65536)")
+    parser.add_argument("--iterations", type=int, default=4, metavar="N", help="iterations that are timed (4)")
+    options = parser.parse_args(arguments)
+    context = Context.create()
+    library, clock = ProgramLibrary(context), Clock(context)
+    print(f"{context.information.name}; {clock.description}\n")
+    print("| scene | lamp | emission and first hits, ms: traced | rasterized | ratio |", end=" ")
+    print("iteration, ms: traced | rasterized | ratio | making them, ms | memory, MiB |\n|---|---|" + 8 * "---:|")
+    for path in options.scenes or [None]:
+        scene = scenes.room(options.size) if path is None else load_scene(path)
+        camera = camera_at_resolution(dataclasses.replace(scene.camera, crop=None), options.size, options.size)
+        settings = dataclasses.replace(scene.settings, photons=options.photons)
+        scene = dataclasses.replace(scene, camera=camera, settings=settings)
+        for lamp in LAMPS:
+            rasterized, traced = measure(context, library, clock, with_lamp(scene, lamp), options.iterations)
+            cells = [f"{1e3 * b:.3g} | {1e3 * a:.3g} | {a / b:.2f}" for a, b in zip(rasterized[:2], traced[:2])]
+            cells += [f"{1e3 * rasterized[2]:.3g}", f"{rasterized[3] - traced[3]:.1f}"]
+            name = "box with spheres" if path is None else path.stem
+            print(f"| {name} | {lamp} |", " | ".join(cells), "|", flush=True)
+    context.release()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
