@@ -180,6 +180,19 @@ def camera(at: Sequence[float], towards: Sequence[float], angle: float = 40.0) -
 
 def render_cycles(samples: int, seeds: int = 2) -> np.ndarray:
     """(seeds, height, width, 3) float64 scene-linear pictures, row 0 at the bottom."""
+    return _cycles_pictures(samples, seeds)[..., :3]
+
+
+def render_cycles_over(background: float, samples: int, seeds: int = 2) -> np.ndarray:
+    """render_cycles with a transparent film, laid over an even background of some radiance."""
+    bpy.context.scene.render.film_transparent = True
+    pictures = _cycles_pictures(samples, seeds)
+    bpy.context.scene.render.film_transparent = False
+    return pictures[..., :3] + background * (1.0 - pictures[..., 3:])
+
+
+def _cycles_pictures(samples: int, seeds: int) -> np.ndarray:
+    """(seeds, height, width, 4) float64, premultiplied by alpha."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.samples = samples
@@ -191,7 +204,7 @@ def render_cycles(samples: int, seeds: int = 2) -> np.ndarray:
             bpy.ops.render.render(write_still=True)
             channels = OpenEXR.File(scene.render.filepath, separate_channels=True).channels()
             layer = next(name for name in channels if name.endswith("Combined.R")).removesuffix("R")
-            pictures.append(np.stack([channels[layer + c].pixels for c in "RGB"], axis=-1)[::-1].astype(np.float64))
+            pictures.append(np.stack([channels[layer + c].pixels for c in "RGBA"], axis=-1)[::-1].astype(np.float64))
     return np.array(pictures)
 
 

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from .comparison import CONVERGED, Tolerance, compare
+from .comparison import CONVERGED, compare
 from .scenes import (
     DIFFUSE,
     GLOSSY,
@@ -17,6 +17,7 @@ from .scenes import (
     place,
     plane,
     render_cycles,
+    render_cycles_over,
     render_rppm,
 )
 
@@ -106,31 +107,22 @@ def test_emission_that_varies_over_a_mesh(renderer, mode):
     compare(f"emission_varies_{mode.lower()}", result.pictures, reference, CONVERGED)
 
 
-@pytest.mark.parametrize(
-    "tolerance",
-    [
-        pytest.param(Tolerance(block=math.inf), id="mean"),
-        pytest.param(
-            CONVERGED,
-            id="blocks",
-            marks=pytest.mark.xfail(
-                strict=True,
-                raises=AssertionError,
-                reason="blocks at the ball's sides are 3.9 % +- 0.1 % brighter than Cycles'",
-            ),
-        ),
-    ],
-)
-def test_shadow_catchers_show_the_shadow_of_lights(renderer, tolerance):
-    """Of a dark ball, which reflects next to nothing onto the floor."""
-    new_scene(world=0.5)
+def test_shadow_catchers_show_the_shadow_of_lights(renderer):
+    """Of a dark ball, which reflects next to nothing onto the floor.
+
+    Cycles' film is transparent, and its alpha lays the picture over the world. With an opaque film, Cycles weights
+    the world behind a catcher by what objects in front leave of the pixel, and by the same a second time: an edge that
+    covers half of a pixel shows a quarter of the world, 4 % of a block here.
+    """
+    world = 0.5
+    new_scene(world=world)
     plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7))).is_shadow_catcher = True
     ball(0.5, material(DIFFUSE, Color=(0.02, 0.02, 0.02)), place(at=(0.0, 0.0, 0.6)), segments=32)
     light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
     camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), math.degrees(0.7))
-    reference = render_cycles(samples=512)
+    reference = render_cycles_over(world, samples=512)
     result = render_rppm(renderer, seeds=8, direct_light="RAYS", **MODES["RAYS"])
-    compare("shadow_catcher", result.pictures, reference, tolerance)
+    compare("shadow_catcher", result.pictures, reference, CONVERGED)
 
 
 @pytest.mark.parametrize("lets_pass", [True, False])
