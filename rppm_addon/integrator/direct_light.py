@@ -21,6 +21,7 @@ Record(
     last_segment="uint",
     specular_alpha="float",
     final_gather="uint",
+    gathers_again_below="float",
 )
 
 
@@ -56,6 +57,7 @@ class DirectLight:
         first_pixel: int,
         iteration: int,
         segment: int,
+        gathers_again_below: float,
         found_radiances: moderngl.Buffer,
     ) -> None:
         """Add the direct light of the resolved vertices of the living camera paths to the band's radiance, or to what
@@ -84,6 +86,7 @@ class DirectLight:
                 "first_pixel": first_pixel,
                 "specular_alpha": stages.settings.specular_roughness**2,
                 "final_gather": stages.settings.final_gather,
+                "gathers_again_below": gathers_again_below,
             },
         )
         living = self._living_rays

@@ -30,6 +30,7 @@ Record(
     radius_maximum="float",
     radius_by_ray="float",
     most_radius_factor="float",
+    gathers_again_below="float",
     world_photon_flux="float",
 )
 
@@ -96,6 +97,7 @@ class Importons:
         limits: tuple[float, float],
         radius_by_ray: float,
         most_radius_factor: float,
+        gathers_again_below: float,
         radius_factors: moderngl.Buffer,
         vertices: moderngl.Buffer,
         lit_catchers: moderngl.Buffer,
@@ -133,6 +135,7 @@ class Importons:
                 "radius_maximum": limits[1],
                 "radius_by_ray": radius_by_ray,
                 "most_radius_factor": most_radius_factor,
+                "gathers_again_below": gathers_again_below,
                 "world_photon_flux": stages.emission.photon_flux,
             },
         )

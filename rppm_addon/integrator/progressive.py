@@ -66,6 +66,8 @@ from .stored_photons import CameraRaster, SplatRadii, StoredPhotons, TakingImpor
 log = logging.getLogger(__name__)
 
 _MOST_CORE_TRIANGLES = 64
+CORNER_RADII = 2.0
+"""A gathering ray of at most so many wide radii ends in a corner."""
 _NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
@@ -478,6 +480,11 @@ class ProgressivePhotonMapper:
         return self._photons.read()
 
     @property
+    def _gathers_again_below(self) -> float:
+        """Metres; a gathering ray shorter than this does not end the search."""
+        return CORNER_RADII * self._wide_radius * self._shrinkage
+
+    @property
     def _shrinkage(self) -> float:
         return shrinkage(max(self.iteration, 1), self.scene.settings.alpha)
 
@@ -609,6 +616,7 @@ class ProgressivePhotonMapper:
                 limits,
                 radius_by_ray(limits[1], self._wide_radius) * shrink,
                 most_radius_factor,
+                self._gathers_again_below,
                 self._caustic_radii.buffer,
                 self._final_gather.vertices.buffer,
                 self._shadow_catcher.lit.buffer,
@@ -624,6 +632,7 @@ class ProgressivePhotonMapper:
                 self._first_pixel,
                 self.iteration,
                 segment,
+                self._gathers_again_below,
                 self._final_gather.radiances.buffer,
             )
 

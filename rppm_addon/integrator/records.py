@@ -176,10 +176,10 @@ IMPORTON = Record(
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
-``next`` links lists of the splat cubemap; ``gathers`` is one of the values below."""
+``next`` links lists of the splat cubemap; ``gathers`` holds the bits below."""
 
-GATHERS_ALL, GATHERS_BY_RAY, GATHERED_BY_RAY = range(3)
-"""What importons gather, as in shaders/common/gathering.glsl."""
+GATHERS_BY_RAY, GATHERED_BY_RAY = 1, 2
+"""Bits of what importons gather, as in shaders/common/gathering.glsl."""
 
 GATHERING_VERTEX = Record(
     "GatheringVertex",
@@ -193,7 +193,7 @@ GATHERING_VERTEX = Record(
 """Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
 the importon's, metres, and so is ``shared_radius``, but for 0 where what the ray finds is not shared; less than 0
 marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
-sharp surfaces, but for the photons' share."""
+sharp surfaces, but for the photons' share, or from a second such vertex, of which ``radius`` then is."""
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
 """Kinds of lights, as in shaders/emission/lights.glsl."""

@@ -3,7 +3,13 @@
 
 // Flags of camera paths. STRAIGHT: nothing but transparency so far; SURFACE_FOUND: the passes have their
 // surface; GATHERED: it has left a surface that stores photons, for light that others send there; CAUSTIC: since
-// then, something has scattered it or taken a share of direct light. The others tell of the last event that was not
-// straight on.
+// then, something has scattered it or taken a share of direct light; GATHERED_AGAIN: it has left a second such surface.
+// The others tell of the last event that was not straight on.
 const uint PATH_STRAIGHT = 1u, PATH_SURFACE_FOUND = 2u, PATH_GATHERED = 4u, PATH_DIFFUSE = 8u, PATH_TRANSMITTED = 16u,
-           PATH_SINGULAR = 32u, PATH_CAUSTIC = 64u;
+           PATH_SINGULAR = 32u, PATH_CAUSTIC = 64u, PATH_GATHERED_AGAIN = 128u;
+
+// Whether a path whose ray came to a surface sets out to gather, from there or again: in corners, within some distance of
+// where the ray began, the disk in which photons count reaches beyond the surface, to where there are none.
+bool path_gathers(uint flags, float ray_length, float again_below) {
+    return (flags & PATH_GATHERED) == 0u || ((flags & PATH_CAUSTIC) == 0u && ray_length < again_below);
+}

@@ -49,7 +49,7 @@ float caustic_share(uint photon_number, float radius) {
 // What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which an
 // importon takes photons of its kind. offset: from importon to photon.
 bool within_reach(uint gathers, float narrow, vec3 offset, uint photon_flags, float wide_radius) {
-    if (gathers == GATHERS_BY_RAY && (photon_flags & PHOTON_INDIRECT) != 0u) return false;
+    if ((gathers & GATHERS_BY_RAY) != 0u && (photon_flags & PHOTON_INDIRECT) != 0u) return false;
     float radius = photon_radius(photon_flags, narrow, wide_radius);
     return dot(offset, offset) < radius * radius && narrow > 0.0;
 }
@@ -71,6 +71,6 @@ bool density_estimate(Importon importon, Photon photon, uint photon_number, floa
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     float geometric_cosine = abs(dot(photon_normal, photon.direction));
     radiance = evaluate_importon(importon, photon.direction, alignment > 0.0, geometric_cosine) * photon.flux * kernel;
-    if (importon.gathers == GATHERS_BY_RAY && (photon.flags & PHOTON_DIRECT) == 0u) radiance *= caustic_share(photon_number, importon.radius);
+    if ((importon.gathers & GATHERS_BY_RAY) != 0u && (photon.flags & PHOTON_DIRECT) == 0u) radiance *= caustic_share(photon_number, importon.radius);
     return largest(radiance) > 0.0;
 }

@@ -69,7 +69,8 @@ void main() {
     vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices), scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
-    bool gathers = parameters.final_gather != 0u && !gathered && parameters.last_segment == 0u;
+    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
+                && path_gathers(camera_paths[index].flags, closure.distance, parameters.gathers_again_below);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
     LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure)), environment_irradiance, u.x, u.y);

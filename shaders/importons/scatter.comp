@@ -84,7 +84,9 @@ void main() {
         if ((path.flags & PATH_CAUSTIC) == 0u) {
             if (parameters.next_event == 0u) return;
             float weight = scattered_share(path.scatter_density, environment_shadow_ray_pdf(ray.direction));
-            radiances[index].rgb += gathering_vertices[index].weight * path.throughput * world * weight;
+            vec3 arrived = path.throughput * world * weight;
+            if ((path.flags & PATH_GATHERED_AGAIN) != 0u) gathering_vertices[index].found = arrived;
+            else radiances[index].rgb += gathering_vertices[index].weight * arrived;
             return;
         }
         float photons = world_photon_share(largest(world), parameters.world_photon_flux, gathering_vertices[index].radius);
@@ -137,9 +139,10 @@ void main() {
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_IMPORTONS << 24u));
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
-    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u && !gathered;
+    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
+                && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
     importons[index] = make_importon(closure, path.throughput, viewer, caustic_radius, u_lobe.y,
-                                     gathers ? GATHERS_BY_RAY : (gathered ? GATHERED_BY_RAY : GATHERS_ALL));
+                                     (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u));
 
     if (parameters.last_segment != 0u) return;
     vec4 shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, false);
@@ -159,7 +162,7 @@ void main() {
     path.scatter_density = 0.0;
     bool sets_out = u < gathering;
     if (sets_out) {
-        path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED;
+        path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED | (gathered ? PATH_GATHERED_AGAIN : 0u);
         shares = gathering_shares;
     } else u -= gathering;
     bool diffuse = sets_out && u < shares.x;
@@ -199,8 +202,11 @@ void main() {
     }
     if (diffuse) path.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_DIFFUSE;
     path.throughput *= weight * (total / (probability * survival));
-    if (sets_out) {
-        path.flags &= ~PATH_CAUSTIC;
+    if (sets_out) path.flags &= ~PATH_CAUSTIC;
+    if (sets_out && gathered) {
+        gathering_vertices[index].radius = caustic_radius;
+        path.throughput *= found_weight;
+    } else if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
         gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, pack_unit_vector(normal),
                                                     vec3(0.0), caustic_radius);

@@ -53,7 +53,7 @@ void main() {
     Importon importon = importons[visit.x];
     // Corners of caustic cells, then of those of diffused photons, then of those of indirect ones.
     uint corner = parameters.caustics != 0u ? 0u : CORNERS;
-    uint corners = importon.gathers != GATHERS_BY_RAY && wide_in_use[1] != 0u ? 3u * CORNERS
+    uint corners = (importon.gathers & GATHERS_BY_RAY) == 0u && wide_in_use[1] != 0u ? 3u * CORNERS
                  : wide_in_use[0] != 0u ? 2u * CORNERS : CORNERS;
     uint caustic_grid = finest_grid(importon.radius);
     float narrow = importon.radius, wide = max(narrow, parameters.wide_radius), radius = narrow;
@@ -99,6 +99,6 @@ void main() {
         photons[number].contributed = 1u;
         collect_splat(collected, radiance, corner > CORNERS);
     }
-    if (any) write_collected(visit.x, importon.gathers == GATHERED_BY_RAY, collected);
+    if (any) write_collected(visit.x, (importon.gathers & GATHERED_BY_RAY) != 0u, collected);
     if (next < end || corner < corners) leave(uvec2(visit.x, looked_at));
 }

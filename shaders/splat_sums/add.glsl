@@ -16,7 +16,7 @@ void add_quanta(uint place, float quanta) {
 // Threads that meet here write the same mark.
 void add_splat(uint importon, uint photon, vec3 radiance) {
     photons[photon].contributed = 1u;
-    bool by_ray = importons[importon].gathers == GATHERED_BY_RAY;
+    bool by_ray = (importons[importon].gathers & GATHERED_BY_RAY) != 0u;
     uint place = first_word(importon, by_ray);
     add_quanta(place, radiance.r * parameters.quanta);
     add_quanta(place + 2u, radiance.g * parameters.quanta);

@@ -5,8 +5,9 @@ import numpy as np
 import scenes
 from lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator import final_gather
+from rppm_addon.integrator import final_gather, progressive
 from rppm_addon.integrator.records import GATHERING_VERTEX
+from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 
 SIZE, SEEDS = 48, 8
 
@@ -50,3 +51,41 @@ def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
     assert (vertices["shared_radius"] == 0).sum() > 50
     assert (vertices["shared_radius"] > 0).sum() > 500
     assert (vertices["weight"][vertices["shared_radius"] >= 0] >= 0).all()
+
+
+def corner(seed: int) -> Scene:
+    """A white floor and a white wall that a sun lights alike, where they meet."""
+    floor = scenes.rectangle("floor", (-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0))
+    wall = scenes.rectangle("wall", (-0.5, 0.5, 0), (0.5, 0.5, 0), (0.5, 0.5, 1), (-0.5, 0.5, 1))
+    sun = Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), (0, 1, -1)), np.ones(3))
+    half = 0.2
+    return Scene(
+        Camera(scenes.looking((0, -0.5, 1), (0, 0.5, 0)), (-half, half, -half, half), 32, 32, True),
+        meshes=[floor, wall],
+        instances=[Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [0])],
+        materials=[material("white", Lobe(LobeKind.DIFFUSE, color=(0.9, 0.9, 0.9)))],
+        lights=[sun],
+        settings=RenderSettings(photons=1024, seed=seed, radius_scale=100.0, filter_width=0.0),
+    )
+
+
+def test_corners_are_not_dark(mapper, monkeypatch):
+    """Photons around the end of a gathering ray are too few where their disk reaches beyond a wall; paths that
+    gather from every surface that they come to need none of them."""
+    radiance = {}
+    for corner_radii in (0.0, progressive.CORNER_RADII, 1e9):
+        monkeypatch.setattr(progressive, "CORNER_RADII", corner_radii)
+        pictures = []
+        for seed in range(SEEDS):
+            mapper.build(corner(seed))
+            for _ in range(16):
+                mapper.iterate()
+            pictures.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
+        radiance[corner_radii] = np.array(pictures)
+    never, near, always = radiance.values()
+    darker, almost = always - never, always - near
+    error = np.hypot(darker.std(ddof=1), almost.std(ddof=1)) / np.sqrt(SEEDS) / always.mean()
+    print(darker.mean() / always.mean(), almost.mean() / always.mean(), error)
+    assert darker.mean() > 0.008 * always.mean()
+    assert abs(almost.mean()) < 0.5 * darker.mean()
+    assert error < 0.25 * darker.mean() / always.mean()

@@ -9,7 +9,6 @@ from rppm_addon.integrator.living_paths import LivingPaths
 from rppm_addon.integrator.photon_grid import PhotonGrid
 from rppm_addon.integrator.records import (
     GATHERED_BY_RAY,
-    GATHERS_ALL,
     GATHERS_BY_RAY,
     IMPORTON,
     PHOTON,
@@ -73,7 +72,7 @@ def photons_at(positions: np.ndarray, flags: int) -> np.ndarray:
     return photons
 
 
-def importons_at(positions: np.ndarray, radii: np.ndarray, gathers: int = GATHERS_ALL) -> np.ndarray:
+def importons_at(positions: np.ndarray, radii: np.ndarray, gathers: int = 0) -> np.ndarray:
     importons = IMPORTON.zeros(len(positions))
     importons["position"], importons["radius"], importons["gathers"] = positions, radii, gathers
     importons["direction"], importons["diffuse"] = (0, 0, 1), 1.0
@@ -134,10 +133,11 @@ def test_who_takes_what(device):
     positions = np.zeros((3, 3), np.float32)
     photons = photons_at(positions, 0)
     photons["flags"] |= np.array([0, PHOTON_DIFFUSED, PHOTON_DIFFUSED | PHOTON_INDIRECT], np.uint32)
-    for gathers, expected in ((GATHERS_ALL, 2), (GATHERS_BY_RAY, 1), (GATHERED_BY_RAY, 2)):
+    both = GATHERED_BY_RAY | GATHERS_BY_RAY
+    for gathers, expected in ((0, 2), (GATHERS_BY_RAY, 1), (GATHERED_BY_RAY, 2), (both, 1)):
         importons = importons_at(np.zeros((2, 3), np.float32), np.array([0.1, 0.0], np.float32), gathers)
         contributed, diffused, any_light = device.gather(photons, importons, SplatRadii(0.1, 0.2))
-        np.testing.assert_array_equal(contributed, [True, True, gathers != GATHERS_BY_RAY])
+        np.testing.assert_array_equal(contributed, [True, True, not gathers & GATHERS_BY_RAY])
         np.testing.assert_array_equal(diffused, [expected, 0])
         np.testing.assert_array_equal(any_light, [True, False])
     nothing = importons_at(np.zeros((2, 3), np.float32), np.zeros(2))
