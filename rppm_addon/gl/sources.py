@@ -8,7 +8,9 @@ from pathlib import Path
 from .constants import Constants
 from .records import Record
 
-SHADER_FOLDER = Path(__file__).resolve().parents[2] / "shaders"
+_PACKAGE = Path(__file__).resolve().parents[1]
+SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
+"""In the package where pip installed it, else beside it: in a checkout and in Blender's extension."""
 
 _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>)\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import rppm_addon
 
+from ...gl.sources import SHADER_FOLDER
+
 _SUFFIXES = (".py", ".npz", ".glsl", ".comp", ".vert", ".frag", ".geom")
 
 
@@ -14,8 +16,8 @@ def identity() -> str:
     """Version of the RPPM that this process runs, and eight digits of a digest of its files and shaders."""
     package = Path(rppm_addon.__file__).resolve().parent
     digest = hashlib.sha256()
-    for folder in (package, package.parent / "shaders"):
+    for folder in (package, SHADER_FOLDER):
         for path in sorted(folder.rglob("*")):
-            if path.suffix in _SUFFIXES:
+            if path.suffix in _SUFFIXES and (folder == SHADER_FOLDER or SHADER_FOLDER not in path.parents):
                 digest.update(path.relative_to(folder).as_posix().encode() + b"\0" + path.read_bytes())
     return f"{importlib.metadata.version('rppm-addon')}+{digest.hexdigest()[:8]}"
