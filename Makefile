@@ -42,7 +42,9 @@ test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot 
 
 lint: setup ## Check Python, imports, licence lines and shaders
 	.venv/bin/ruff check .
-	.venv/bin/python tests/lint.py
+	.venv/bin/lint-imports --no-cache
+	.venv/bin/reuse lint --lines
+	.venv/bin/python tools/check_shaders.py
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tests/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
@@ -66,4 +68,4 @@ bench-peers: bench-tools ## Compare with Cycles, LuxCore and Mitsuba at equal ti
 
 clean: ## Remove what was made: out/, caches (.venv and .mesa stay)
 	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info
-	find rppm_addon tests tools docs benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+	find . -name ".?*" -prune -o -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -12,6 +12,9 @@ setup(
     version=MANIFEST["version"],
     packages=[*find_namespace_packages(include=["rppm_addon*"]), "rppm_addon.shaders"],
     package_dir={"rppm_addon.shaders": "shaders"},
-    package_data={"rppm_addon": ["**/*.npz"], "rppm_addon.shaders": ["**/*.glsl", "**/*.comp", "**/*.vert", "**/*.frag"]},
+    package_data={
+        "rppm_addon": ["**/*.npz"],
+        "rppm_addon.shaders": ["**/*.glsl", "**/*.comp", "**/*.vert", "**/*.frag"],
+    },
     include_package_data=False,
 )

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from .commands.arguments import parser
 from .commands.compiling import compile_programs
 from .commands.farm.command import farm
+from .commands.interruption import INTERRUPTED
 from .commands.options import is_blend, load_blend_or_saved, split_values, write_json
 from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
@@ -21,9 +22,6 @@ from .pictures import PictureError, make_folder
 from .scene import RenderSettings
 from .scene.errors import RppmError, SettingsError
 from .scene.quantities import count_text
-
-INTERRUPTED = 130
-"""Exit status after Ctrl-C, as shells have it, where nothing else is known."""
 
 
 def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECONDS) -> int:

@@ -31,7 +31,9 @@ def page_text(results: Results, images: str, mark: float) -> str:
     """The page as Markdown; images: the folder of its pictures, relative to the page."""
     machine = results.machine
     parts = [
+        # REUSE-IgnoreStart
         "<!-- SPDX-License-Identifier: GPL-3.0-or-later -->",
+        # REUSE-IgnoreEnd
         "# RPPM beside its peers",
         "Written by `make bench-peers BENCH=--publish`; how it is measured stands at the end.",
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; commit {machine['commit']}, "

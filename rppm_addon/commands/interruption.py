@@ -4,6 +4,9 @@
 import signal
 from types import FrameType
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as shells have it, where nothing else is known."""
+
 
 class Interruption:
     """While entered, the first SIGINT (Ctrl-C) or SIGTERM sets ``asked``; a second one raises KeyboardInterrupt."""

@@ -16,7 +16,7 @@ from ..gl.timers import StageTimers
 from ..materials.tables import MaterialTables
 from ..scene.errors import CheckpointError
 from ..scene.garbage import collector_paused
-from ..scene.motion import MovingScene
+from ..scene.moving_scene import MovingScene
 from ..scene.passes import passes_named
 from ..scene.scene import Scene
 from ..scene.settings import DensityEstimation, FirstPhotonHits

@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from ..scene.motion import MovingScene
+from ..scene.moving_scene import MovingScene
 from ..scene.scene import Scene
 from .geometry import finite_bounds, placed_boxes
 from .low_discrepancy import van_der_corput

@@ -6,7 +6,8 @@ from .images import Image
 from .lights import Light, LightKind, World
 from .materials import Material
 from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
-from .motion import CameraMovement, Deformation, Movement, MovingScene, Shutter
+from .motion import CameraMovement, Deformation, Movement, Shutter
+from .moving_scene import MovingScene
 from .node_graphs import Link, NodeGraph, ShaderNode
 from .scene import Scene
 from .settings import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings

@@ -3,7 +3,8 @@
 
 import dataclasses
 import queue
-from typing import TYPE_CHECKING
+import threading
+from typing import Protocol
 
 from ..scene.scene import Scene
 from .arrays import unpack
@@ -11,14 +12,26 @@ from .frames import FrameReader, SharedFrame
 from .protocol import ProtocolError
 from .sessions import SessionKind, SessionStatus
 
-if TYPE_CHECKING:
-    from .client import RendererProcess
+
+class SessionOwner(Protocol):
+    """The process that renders sessions, as they see it."""
+
+    changed: threading.Condition
+    """Guards all that sessions and the process share."""
+    sessions: dict[int, "Session"]
+    """The open ones by their numbers."""
+
+    def post(self, kind: str, **content: object) -> None:
+        """Have a message sent to the process, if there is one."""
+
+    def close_session(self, session: "Session") -> None:
+        """Forget a session."""
 
 
 class Session:
     """Something rendered in the renderer's process. All methods return at once."""
 
-    def __init__(self, process: "RendererProcess", number: int, kind: SessionKind) -> None:
+    def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         self.kind = kind
         self.number = number
         self.process = process
@@ -90,7 +103,7 @@ class Session:
 class ViewportSession(Session):
     """A picture that grows, of a scene that changes."""
 
-    def __init__(self, process: "RendererProcess", number: int, kind: SessionKind) -> None:
+    def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         super().__init__(process, number, kind)
         self.status = SessionStatus()
         """The newest that the process has told."""
@@ -153,7 +166,7 @@ class ViewportSession(Session):
 class RenderSession(Session):
     """Scenes that are each rendered once, to their end, one after the other."""
 
-    def __init__(self, process: "RendererProcess", number: int, kind: SessionKind) -> None:
+    def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         super().__init__(process, number, kind)
         self.events: queue.SimpleQueue[tuple[str, dict]] = queue.SimpleQueue()
         """What the process tells, in the protocol's words; "started" when there is a process."""

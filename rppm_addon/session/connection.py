@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The talk with one renderer process: a thread that writes, a thread that reads."""
 
+import collections
 import logging
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ..gl.context import DeviceInformation
 from .child_process import ChildProcess, ProcessEnded
-from .client_session import Session
+from .client_session import Session, SessionOwner
 from .protocol import VERSION, ProtocolError
-
-if TYPE_CHECKING:
-    from .client import RendererProcess
 
 logger = logging.getLogger(__name__)
 
@@ -22,10 +20,20 @@ _MESSAGES_SECONDS = 0.05
 """A process that sends more messages in this time is read no faster: Blender's own threads want to run."""
 
 
+class ConnectionOwner(SessionOwner, Protocol):
+    """Whoever keeps the process, as the talk with it sees them."""
+
+    outbox: collections.deque[tuple[str, dict]]
+    """Messages to be sent, the oldest first."""
+
+    def greeted(self, device: DeviceInformation) -> None:
+        """The process has opened the device; ``changed`` is held."""
+
+
 class Connection:
     """What is known of a process while it runs; guarded by the owner's ``changed``."""
 
-    def __init__(self, owner: "RendererProcess", child: ChildProcess) -> None:
+    def __init__(self, owner: ConnectionOwner, child: ChildProcess) -> None:
         """Start to talk with a process that has just been started."""
         self.ready = False
         """Whether the process has opened the device."""

@@ -91,7 +91,7 @@ def test_wheels_are_the_versions_that_are_tested():
         assert pins.get(name, version) == version
 
 
-COMMAND_LINE = ("rppm_addon/cli.py", "rppm_addon/__main__.py", "rppm_addon/commands/")
+COMMAND_LINE = ("rppm_addon/cli.py", "rppm_addon/__main__.py", "rppm_addon/watched.py", "rppm_addon/commands/")
 
 
 def test_zip_holds_what_runs_and_nothing_else(archive):

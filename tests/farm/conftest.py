@@ -29,7 +29,7 @@ def wait_for(what, condition):
 
 def renders_below(process, words=""):
     """The renders that a farm's workers have started with such words; their parents are the workers."""
-    return _children_with(process, "rppm_addon.commands.farm.leash", words, recursive=True)
+    return _children_with(process, "rppm_addon.watched", words, recursive=True)
 
 
 def workers_of(process):

@@ -174,7 +174,9 @@ def call_shader(name: str, kind: NodeKind, options: dict) -> str:
     return "\n".join(
         [
             "#version 430 core",
+            # REUSE-IgnoreStart
             "// SPDX-License-Identifier: GPL-3.0-or-later",
+            # REUSE-IgnoreEnd
             "layout(local_size_x = 64) in;",
             "layout(std430, binding = 1) readonly buffer Coordinates { float coordinates[]; };",
             "layout(std430, binding = 2) readonly buffer Constants { float constants[]; };",

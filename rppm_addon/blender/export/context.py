@@ -17,8 +17,14 @@ class ExportContext:
     images: ImageTable = field(default_factory=ImageTable)
     owners: tuple[bpy.types.bpy_struct | None, ...] = ()
     """View layer, scene and world, in the order in which they are asked for attributes."""
-    untold: int = 0
-    """How often something was read that changes without the depsgraph telling: images by frame, what owners have."""
+    owner_reads: int = 0
+    """How often an attribute was read from the owners."""
+
+    @property
+    def untracked_reads(self) -> int:
+        """How often something was read that changes without the depsgraph telling: images by frame, what owners have.
+        """
+        return self.owner_reads + self.images.reads_by_frame
 
     def read_from(self, depsgraph: bpy.types.Depsgraph) -> None:
         """What follows comes from this depsgraph, as it is now."""

@@ -20,7 +20,7 @@ Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path]
 HANDLERS: dict[str, Handler] = {}
 """By node type, the nodes that are more than their sockets and options."""
 
-STAND_INS: dict[str, str] = {}
+STAND_INS = {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
 """By node type, the socket whose value passes through a node that is not rendered."""
 
 

@@ -4,7 +4,6 @@
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
@@ -12,8 +11,8 @@ import numpy as np
 from ...scene import Image
 from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 
-if TYPE_CHECKING:
-    from .graphs import GraphExporter
+Warn = Callable[[str], None]
+"""Tells the user what is done about the node that shows an image."""
 
 _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"}
 
@@ -25,27 +24,29 @@ class ImageTable:
         self.images: list[Image] = []
         self.frame = 1
         """Of the scene, whose sequences and movies are shown."""
+        self.reads_by_frame = 0
+        """How often an image was asked for that depends on the frame."""
         self._indices: dict[tuple, int] = {}
 
-    def of_node(self, node: bpy.types.Node, exporter: "GraphExporter") -> int:
+    def of_node(self, node: bpy.types.Node, warn: Warn) -> int:
         """Index of a texture node's image, exported now if it is new; -1, with a warning, when it has no pixels."""
         image = node.image
         if image is None:
-            exporter.warn(node, "has no image and counts as magenta; choose one")
+            warn("has no image and counts as magenta; choose one")
             return MISSING
         if image.source not in {"SEQUENCE", "MOVIE"}:
-            return self._index((image.as_pointer(),), lambda: image, image, node, exporter)
-        exporter.context.untold += 1
+            return self._index((image.as_pointer(),), lambda: image, image, warn)
+        self.reads_by_frame += 1
         number = frame_of(node.image_user, self.frame)
         load = _of_movie if image.source == "MOVIE" else _of_sequence
-        return self._index((image.as_pointer(), number), lambda: load(image, number), image, node, exporter)
+        return self._index((image.as_pointer(), number), lambda: load(image, number), image, warn)
 
     def add(self, image: Image) -> int:
         """Index of an image that belongs to no datablock."""
         self.images.append(image)
         return len(self.images) - 1
 
-    def tiles(self, node: bpy.types.Node, exporter: "GraphExporter") -> np.ndarray | None:
+    def tiles(self, node: bpy.types.Node, warn: Warn) -> np.ndarray | None:
         """(n,) float32 index of the image of each UDIM tile from 1001 on, -1 where none is; None without tiles."""
         image = node.image
         if image is None or image.source != "TILED":
@@ -60,7 +61,7 @@ class ImageTable:
                 # The pixels that Blender hands out are those of the first tile, saved or not.
                 return image if number == numbers[0] else _load(path, image)
 
-            table[number - 1001] = self._index(key, tile, image, node, exporter)
+            table[number - 1001] = self._index(key, tile, image, warn)
         return table
 
     def _index(
@@ -68,8 +69,7 @@ class ImageTable:
         key: tuple,
         load: Callable[[], bpy.types.Image | None],
         image: bpy.types.Image,
-        node: bpy.types.Node,
-        exporter: "GraphExporter",
+        warn: Warn,
     ) -> int:
         if key not in self._indices:
             loaded = load()
@@ -83,7 +83,7 @@ class ImageTable:
                 self.images.append(_encoded(image, pixels))
         if self._indices[key] == MISSING:
             place = image.filepath or "no file"
-            exporter.warn(node, f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
+            warn(f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
         return self._indices[key]
 
 

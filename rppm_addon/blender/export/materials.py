@@ -20,7 +20,7 @@ class MaterialTable:
         """Of each material, the attributes that its nodes read, with the name of such a node."""
         self._context = context
         self._places: dict[int, int] = {}
-        self._untold: set[int] = set()
+        self._untracked: set[int] = set()
 
     def index(self, material: bpy.types.Material | None) -> int:
         """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
@@ -44,16 +44,16 @@ class MaterialTable:
 
     def may_have_changed(self, material: bpy.types.Material) -> bool:
         """Whether a material rests on what changes without the depsgraph telling."""
-        return material.original.session_uid in self._untold
+        return material.original.session_uid in self._untracked
 
     def _export(self, key: int, material: bpy.types.Material | None) -> None:
-        untold = self._context.untold
+        reads = self._context.untracked_reads
         with self._context.report.about(("material", key)):
             if material is None:
                 exported = Material("Default", default_surface())
             else:
                 exported = export_material(material, self._context)
-        (self._untold.add if self._context.untold > untold else self._untold.discard)(key)
+        (self._untracked.add if self._context.untracked_reads > reads else self._untracked.discard)(key)
         place = self._places[key]
         self.materials[place] = exported
         self.attributes[place] = {

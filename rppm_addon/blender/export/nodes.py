@@ -11,11 +11,9 @@ from ...materials.sky import sky_picture
 from ...scene import Image, Link
 from ...scene.sky import Sky
 from .attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, TANGENT, attribute_of
-from .graphs import STAND_INS, GraphExporter, handles, snake_case
+from .graphs import GraphExporter, handles, snake_case
 from .images import is_associated
 from .links import Path
-
-STAND_INS |= {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
 
 
 @handles("BSDF_PRINCIPLED")
@@ -78,7 +76,7 @@ def _attribute(exporter: GraphExporter, node, output, path: Path):
 
 def _view_layer_attribute(exporter: GraphExporter, node, output):
     """A property of the view layer, the scene or the world, which is one value for all surfaces."""
-    exporter.context.untold += 1
+    exporter.context.owner_reads += 1
     for owner in exporter.context.owners:
         value = attribute_of(owner, node.attribute_name)
         if value is not None:
@@ -114,8 +112,9 @@ def _object_info(exporter: GraphExporter, node, output, path: Path):
 
 @handles("TEX_IMAGE")
 def _image_texture(exporter: GraphExporter, node, output, path: Path):
-    tiles = exporter.images.tiles(node, exporter)
-    image = exporter.images.of_node(node, exporter) if tiles is None else -1
+    warn = functools.partial(exporter.warn, node)
+    tiles = exporter.images.tiles(node, warn)
+    image = exporter.images.of_node(node, warn) if tiles is None else -1
     # Only now is the image loaded: before, a movie has no colour space.
     unassociate = is_associated(node.image) and any(
         socket.identifier == "Alpha" and socket.is_linked for socket in node.outputs
@@ -131,7 +130,8 @@ def _image_texture(exporter: GraphExporter, node, output, path: Path):
 
 @handles("TEX_ENVIRONMENT")
 def _environment_texture(exporter: GraphExporter, node, output, path: Path):
-    return exporter.add("tex_environment", node, path, "color", image=exporter.images.of_node(node, exporter))
+    image = exporter.images.of_node(node, functools.partial(exporter.warn, node))
+    return exporter.add("tex_environment", node, path, "color", image=image)
 
 
 @handles("TEX_IES")

@@ -119,10 +119,10 @@ class SceneSync:
         # Not any(): each is to be exported.
         asked = [self._objects.materials.renew(material) for material in edits.materials]
         if edits.world or self._world is None:
-            untold = self._context.untold
+            reads = self._context.untracked_reads
             with self._report.about("world"):
                 self._world = export_world(source.world, self._context)
-            self._world_may_change = self._context.untold > untold
+            self._world_may_change = self._context.untracked_reads > reads
         self._objects.meshes.forget(edits.shapes)
         if self._placed is None or edits.others or any(asked) or not self._patch(depsgraph, edits):
             unchanged, moved = ({}, {}) if any(asked) else self._known(edits)

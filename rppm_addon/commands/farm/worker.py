@@ -21,9 +21,9 @@ import distributed
 import rppm_addon
 
 from .errors import TaskError
-from .leash import PATIENCE_SECONDS
 from .ledger import ATTEMPT
 from .tasks import Task
+from .watchdog import PATIENCE_SECONDS
 
 TOPIC = "rppm-farm"
 """Of the events that tell how far a task is: task, where, fraction, frames."""
@@ -114,13 +114,13 @@ def _put_in_place(task: Task, attempt: Path) -> None:
 
 
 class _Program:
-    """The rppm program on a leash; ends with the context."""
+    """The rppm program, watched; ends with the context."""
 
     def __init__(self, arguments: list[str], on_progress: Callable[[float], None]) -> None:
         root = str(Path(rppm_addon.__file__).resolve().parent.parent)
         paths = [root, *filter(None, [os.environ.get("PYTHONPATH")])]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "rppm_addon.commands.farm.leash", *arguments],
+            [sys.executable, "-m", "rppm_addon.watched", *arguments],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
@@ -138,7 +138,7 @@ class _Program:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._process.stdin.close()  # lets go of the leash
+        self._process.stdin.close()  # its watchdog ends it
         try:
             self._process.wait(2 * PATIENCE_SECONDS)
         except subprocess.TimeoutExpired:
