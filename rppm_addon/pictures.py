@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picture files: multilayer EXR written and read, PNG written.
+"""Picture files: multilayer EXR written and read.
 
 Arrays have row 0 at the bottom, as frames do; files have the top row first.
 """
 
 import contextlib
 import os
-import struct
 import tempfile
-import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -128,43 +126,6 @@ def read_exr(path: str | Path) -> ExrPicture:
     )
 
 
-def is_whole(path: str | Path) -> bool:
-    """Whether an EXR (of any number of parts) or PNG file is there and can be read to its end."""
-    try:
-        return _png_is_whole(Path(path)) if Path(path).suffix == ".png" else _exr_is_whole(Path(path))
-    except (OSError, RuntimeError, ValueError, TypeError, KeyError, struct.error, zlib.error):
-        return False
-
-
-def _exr_is_whole(path: Path) -> bool:
-    import OpenEXR
-
-    if not path.is_file():
-        return False
-    with OpenEXR.File(str(path), header_only=True) as file:
-        announced = len(file.parts)
-    with OpenEXR.File(str(path)) as file:  # a part whose pixels cannot be read is left out
-        return 0 < announced == len(file.parts)
-
-
-def _png_is_whole(path: Path) -> bool:
-    """Checks each chunk's sum and that the pictures' rows are all there, of a PNG that is not interlaced."""
-    data = path.read_bytes()
-    place, kind, rows, compressed = 8, b"", 0, b""
-    while kind != b"IEND" and place + 12 <= len(data):
-        (length,) = struct.unpack_from(">I", data, place)
-        kind, content = data[place + 4 : place + 8], data[place + 8 : place + 8 + length]
-        if data[place + 8 + length :][:4] != struct.pack(">I", zlib.crc32(kind + content)):
-            return False
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack_from(">IIBB", content)
-            rows = height * (1 + (width * depth * {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[color] + 7) // 8)
-        elif kind == b"IDAT":
-            compressed += content
-        place += 12 + length
-    return kind == b"IEND" and rows == len(zlib.decompress(compressed))
-
-
 def standard_view(combined: np.ndarray) -> np.ndarray:
     """The picture as Blender's Standard view shows it on an sRGB display.
 
@@ -181,23 +142,6 @@ def standard_view(combined: np.ndarray) -> np.ndarray:
     color = color.clip(0.0, 1.0)
     encoded = np.where(color <= 0.0031308, color * 12.92, 1.055 * color ** (1 / 2.4) - 0.055)
     return np.rint(np.concatenate([encoded, alpha], axis=-1) * 255.0).astype(np.uint8)
-
-
-def write_png(path: str | Path, pixels: np.ndarray) -> None:
-    """Write (H, W, 3 or 4) uint8, sRGB, straight alpha, row 0 at the bottom. Raises PictureError."""
-    height, width, count = pixels.shape
-    rows = np.zeros((height, 1 + width * count), np.uint8)  # column 0 says: no filter
-    rows[:, 1:] = pixels[::-1].reshape(height, -1)
-    chunks = [
-        (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[count], 0, 0, 0)),
-        (b"sRGB", b"\0"),
-        (b"IDAT", zlib.compress(rows.tobytes(), 6)),
-        (b"IEND", b""),
-    ]
-    with renamed_when_whole(path) as temporary, open(temporary, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n")
-        for kind, data in chunks:
-            file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
 
 
 def make_folder(path: Path) -> None:

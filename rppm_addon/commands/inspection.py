@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..pictures import Placement, write_exr, write_png
+from ..pictures import Placement, write_exr
 from ..scene.scene import Scene
 from ..scene.settings import CUBEMAP_COSTS
+from .picture_files import write_png
 
 # From dark blue over green to yellow: brightness grows all the way, so that grey printers show it too.
 _COLORS = np.array([[0.05, 0.03, 0.25], [0.20, 0.25, 0.55], [0.12, 0.50, 0.56], [0.30, 0.72, 0.40], [0.99, 0.91, 0.15]])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..pictures import standard_view, write_png
+from ..pictures import standard_view
 from ..scene.errors import CheckpointError
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
 from ..session.continuation import Pause
@@ -16,6 +16,7 @@ from ..session.merged_passes import MergedPasses
 from ..session.renderer import exposed
 from ..session.results import Frame
 from .checkpoints import refuse_differences
+from .picture_files import write_png
 from .recorder import picture_metadata, write_frame
 
 

@@ -9,11 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..pictures import Placement, standard_view, write_exr, write_png
+from ..pictures import Placement, standard_view, write_exr
 from ..scene import RenderSettings, Scene
 from ..scene.quantities import count_text
 from ..session.observers import RenderObserver
 from .checkpoints import StillKeeper, placement_of
+from .picture_files import write_png
 from .progress_bar import ProgressBar
 
 if TYPE_CHECKING:

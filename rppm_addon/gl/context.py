@@ -96,8 +96,6 @@ class Context:
         context = cls(gl, information)
         if not context.has_program_binaries:
             information.missing.append("program binaries (programs are compiled at every start)")
-        if not {"GL_NV_shader_atomic_float", "GL_EXT_shader_atomic_float"} & gl.extensions:
-            information.missing.append("float atomics (splatting uses a slower compare-and-swap)")
         if context.is_software:
             information.missing.append("a GPU (Mesa renders on the processor)")
         log.info("device %s, %s %s", information.name, information.driver, information.driver_folder)

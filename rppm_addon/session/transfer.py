@@ -62,21 +62,39 @@ class Part:
         return self._members >= _PART_MEMBERS or self._bytes >= _PART_BYTES
 
 
+@dataclasses.dataclass
+class _Sent:
+    """What the receiver has. Objects are known by their ids, which stay their own as long as they are kept here."""
+
+    members: dict[int, tuple[int, object, Sequence[int]]] = dataclasses.field(default_factory=dict)
+    """Handle, member, and the ids of its large arrays."""
+    arrays: dict[int, tuple[int, np.ndarray]] = dataclasses.field(default_factory=dict)
+    """Handle and array, of large arrays, which members share."""
+    users: dict[int, int] = dataclasses.field(default_factory=dict)
+    """How many members have a large array."""
+    handles: int = 0
+    """The last handle given."""
+
+    def new_handle(self) -> int:
+        self.handles += 1
+        return self.handles
+
+    def leave_array(self, key: int) -> int | None:
+        """A member less has a large array: the handle of one that no member has any more."""
+        self.users[key] -= 1
+        if self.users[key] > 0:
+            return None
+        del self.users[key]
+        return self.arrays.pop(key)[0]
+
+
 class SceneSender:
     """Knows which members the receiver has."""
 
     def __init__(self) -> None:
-        self._members: dict[int, tuple[int, object, Sequence[int]]] = {}
-        """By the member's id, which stays its own as long as the member is kept here, its handle, the member and the
-        ids of its large arrays."""
-        self._arrays: dict[int, tuple[int, np.ndarray]] = {}
-        """The same of large arrays, which members share."""
-        self._users: dict[int, int] = {}
-        """How many members have a large array."""
+        self._sent = _Sent()
         self._used: dict[int, set[int]] = {}
         """Ids of the members of each session's newest scene."""
-        self._handles = 0
-        """The last handle given."""
 
     @collector_paused()
     def send(self, session: int, scene: Scene) -> tuple[list[Part], Part]:
@@ -84,7 +102,7 @@ class SceneSender:
 
         Raises TypeError for a scene with something in it that no document can hold; the receiver then has no part.
         """
-        message = _NewMembers(self)
+        message = _NewMembers(self._sent)
         try:
             whole = Part()
             whole.document = {
@@ -111,21 +129,17 @@ class SceneSender:
             return []
         handles = []
         for key in unused:
-            handle, _, arrays = self._members.pop(key)
+            handle, _, arrays = self._sent.members.pop(key)
             handles.append(handle)
-            for array in arrays:
-                self._users[array] -= 1
-                if self._users[array] == 0:
-                    del self._users[array]
-                    handles.append(self._arrays.pop(array)[0])
+            handles += [free for array in arrays if (free := self._sent.leave_array(array)) is not None]
         return handles
 
 
 class _NewMembers:
     """What one scene has that the receiver does not have yet."""
 
-    def __init__(self, sender: SceneSender) -> None:
-        self._sender = sender
+    def __init__(self, sent: _Sent) -> None:
+        self._sent = sent
         self._parts = [Part()]
         self._array_parts: list[Part] = []
         self._added: list[int] = []
@@ -141,7 +155,7 @@ class _NewMembers:
 
     def handles(self, field: str, members: Sequence[object]) -> list[int]:
         """The handles of a scene's members, of which new ones are to be told."""
-        known = self._sender._members
+        known = self._sent.members
         ids = list(map(id, members))
         self.used.update(ids)
         new = {key: member for key, member in zip(ids, members, strict=True) if key not in known}
@@ -163,42 +177,39 @@ class _NewMembers:
                 self._parts.append(Part())
             part = self._parts[-1]
             document = encode_columns(list(chosen.values()), _LISTS[field], part.keep)
-            first = self._sender._handles + 1
+            first = self._sent.handles + 1
             for key, member in chosen.items():
                 self._give(key, member)
             part.add(field, [first, document], _PART_MEMBERS)
 
     def _give(self, key: int, member: object, large: Sequence[int] = ()) -> int:
-        self._sender._handles += 1
-        self._sender._members[key] = self._sender._handles, member, large
+        handle = self._sent.new_handle()
+        self._sent.members[key] = handle, member, large
         self._added.append(key)
-        return self._sender._handles
+        return handle
 
     def _keep(self, part: Part, large: list[int], array: np.ndarray) -> int | str:
         """A large array goes by itself, and only once."""
         if array.nbytes < LARGE:
             return part.keep(array)
-        sender, key = self._sender, id(array)
-        if key not in sender._arrays:
-            sender._handles += 1
-            sender._arrays[key] = sender._handles, array
+        sent, key = self._sent, id(array)
+        if key not in sent.arrays:
+            handle = sent.new_handle()
+            sent.arrays[key] = handle, array
             alone = Part()
-            alone.add(_ARRAYS, [sender._handles, {"array": alone.keep(array)}])
+            alone.add(_ARRAYS, [handle, {"array": alone.keep(array)}])
             self._array_parts.append(alone)
         large.append(key)
         self._asked.append(key)
-        sender._users[key] = sender._users.get(key, 0) + 1
-        return str(sender._arrays[key][0])
+        sent.users[key] = sent.users.get(key, 0) + 1
+        return str(sent.arrays[key][0])
 
     def withdraw(self) -> None:
         """Nothing is told after all."""
-        sender = self._sender
         for key in self._added:
-            del sender._members[key]
+            del self._sent.members[key]
         for key in self._asked:
-            sender._users[key] -= 1
-            if sender._users[key] == 0:
-                del sender._users[key], sender._arrays[key]
+            self._sent.leave_array(key)
 
 
 class SceneReceiver:

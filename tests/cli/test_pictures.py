@@ -6,7 +6,8 @@ import OpenEXR
 import PIL.Image
 import pytest
 
-from rppm_addon.pictures import PictureError, Placement, read_exr, standard_view, write_exr, write_png
+from rppm_addon.commands.picture_files import write_png
+from rppm_addon.pictures import PictureError, Placement, read_exr, standard_view, write_exr
 
 
 @pytest.fixture

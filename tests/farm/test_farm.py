@@ -12,7 +12,8 @@ import distributed
 import numpy as np
 import pytest
 
-from rppm_addon.pictures import is_whole, read_exr
+from rppm_addon.commands.picture_files import is_whole
+from rppm_addon.pictures import read_exr
 from rppm_addon.session.checkpoint_file import read_summary
 
 from .conftest import ROOT, dask, renders_below, start_rppm, wait_for, workers_of

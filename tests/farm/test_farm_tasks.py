@@ -12,7 +12,8 @@ import pytest
 from rppm_addon.commands.farm.errors import FarmError
 from rppm_addon.commands.farm.ledger import Ledger
 from rppm_addon.commands.farm.tasks import Task, chunks, frame_tasks, still_tasks
-from rppm_addon.pictures import is_whole, write_exr, write_png
+from rppm_addon.commands.picture_files import is_whole, write_png
+from rppm_addon.pictures import write_exr
 from rppm_addon.scene.errors import SettingsError
 
 JOB = {"scene": ["/a.blend", 1, 2], "options": ["--iterations", "4"], "split": None, "RPPM": "0.1.0+12345678"}

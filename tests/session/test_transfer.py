@@ -90,9 +90,9 @@ def test_what_no_session_uses_is_forgotten_on_both_sides():
     wire.send(without, session=1)
     assert len(wire.receiver._members) == members  # session 2 has it still
     wire.close(2)
-    assert len(wire.receiver._members) == len(wire.sender._members) == members - 1
+    assert len(wire.receiver._members) == len(wire.sender._sent.members) == members - 1
     wire.close(1)
-    assert not wire.receiver._members and not wire.sender._members
+    assert not wire.receiver._members and not wire.sender._sent.members
     assert_same(scene, wire.send(scene))
 
 
@@ -109,7 +109,7 @@ def test_a_scene_that_cannot_be_sent_leaves_nothing_half_known():
     with pytest.raises(TypeError, match="object"):
         large = Image("Large", np.zeros((512, 512, 4), np.float32))
         wire.sender.send(1, dataclasses.replace(scene, images=[large, object()]))
-    assert not wire.sender._members and not wire.sender._arrays
+    assert not wire.sender._sent.members and not wire.sender._sent.arrays
     assert_same(scene, wire.send(scene))
 
 
@@ -181,9 +181,9 @@ def test_a_mesh_that_bends_sends_its_positions_only():
         assert received.meshes[0].corner_normals is first.meshes[0].corner_normals
         assert received.meshes[1] is first.meshes[1]
     wire.send(dataclasses.replace(scene, meshes=[], instances=[]))
-    assert len(wire.receiver._members) == len(wire.sender._members) and not wire.sender._arrays
+    assert len(wire.receiver._members) == len(wire.sender._sent.members) and not wire.sender._sent.arrays
     wire.close(1)
-    assert not wire.receiver._members and not wire.sender._members
+    assert not wire.receiver._members and not wire.sender._sent.members
 
 
 def test_arrays_of_every_kind():

@@ -22,8 +22,7 @@ class ExportContext:
 
     @property
     def untracked_reads(self) -> int:
-        """How often something was read that changes without the depsgraph telling: images by frame, what owners have.
-        """
+        """How often something was read that changes without the depsgraph telling."""
         return self.owner_reads + self.images.reads_by_frame
 
     def read_from(self, depsgraph: bpy.types.Depsgraph) -> None:

@@ -16,7 +16,8 @@ from .camera import camera_pose, export_camera
 from .context import ExportContext
 from .matrices import usable_matrices
 from .meshes import read_shape, read_velocities
-from .objects import Identity, ObjectExporter, Placed, identity_of
+from .object_pass import Identity, Placed, identity_of
+from .objects import ObjectExporter
 from .sync import read_edits
 
 MIDDLE = 0.5

@@ -12,7 +12,8 @@ from ...scene.garbage import collector_paused
 from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
-from .objects import ObjectExporter, Placed
+from .object_pass import Placed
+from .objects import ObjectExporter
 from .report import Report
 from .settings import export_cubemap_centre, export_exposure, export_settings
 from .world import export_world

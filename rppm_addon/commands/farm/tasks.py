@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
-from ...pictures import is_whole
 from ...scene.errors import SettingsError
 from ..frame_numbers import path_of_frame
+from ..picture_files import is_whole
 
 PART = "iterations_"
 """Begins the names of the parts of a still and of their checkpoints."""
