@@ -40,8 +40,9 @@ test-long: setup ## Run the tests that take long
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
 	timeout --kill-after=10 2400 .venv/bin/python -m pytest tests/gui
 
-lint: setup ## Check Python, imports, licence lines and shaders
+lint: setup ## Check Python, types, imports, licence lines and shaders
 	.venv/bin/ruff check .
+	.venv/bin/mypy
 	.venv/bin/lint-imports --no-cache
 	.venv/bin/reuse lint --lines
 	.venv/bin/python tools/check_shaders.py
@@ -67,5 +68,5 @@ bench-peers: bench-tools ## Compare with Cycles, LuxCore and Mitsuba at equal ti
 	.venv/bin/python -m benchmarks.peers.run $(BENCH)
 
 clean: ## Remove what was made: out/, caches (.venv and .mesa stay)
-	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache build *.egg-info
+	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache .mypy_cache .import_linter_cache build *.egg-info
 	find . -name ".?*" -prune -o -name __pycache__ -type d -prune -exec rm -rf {} +

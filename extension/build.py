@@ -93,6 +93,7 @@ def build(folder: Path, split_platforms: bool = False) -> list[Path]:
 
 
 def main() -> int:
+    """Build as the command line says; returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--output", type=Path, default=ROOT / "build" / "extension", metavar="FOLDER")
     parser.add_argument("--split-platforms", action="store_true", help="a smaller zip for each platform")

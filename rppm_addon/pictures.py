@@ -112,7 +112,7 @@ def read_exr(path: str | Path) -> ExrPicture:
             channels = {name: channel.pixels[::-1].astype(np.float32) for name, channel in file.channels().items()}
     except (RuntimeError, OSError, ValueError, TypeError) as error:
         raise PictureError(f"{path} cannot be read as EXR ({error})") from error
-    (left, top), (_, bottom) = header["dataWindow"]
+    (left, _), (_, bottom) = header["dataWindow"]
     (frame_left, frame_top), (frame_right, frame_bottom) = header["displayWindow"]
     return ExrPicture(
         channels,
@@ -164,18 +164,19 @@ def _planes(array: np.ndarray) -> list[np.ndarray]:
 def renamed_when_whole(path: str | Path) -> Iterator[str]:
     """A temporary name in the folder of ``path`` that becomes ``path`` when all went well. Raises PictureError."""
     path = Path(path)
-    temporary = None
+    temporary: Path | None = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        temporary = Path(name)
         os.close(handle)
-        yield temporary
+        yield name
         mask = os.umask(0)
         os.umask(mask)
-        os.chmod(temporary, 0o666 & ~mask)
-        os.replace(temporary, path)
+        temporary.chmod(0o666 & ~mask)
+        temporary.replace(path)
     except (OSError, RuntimeError) as error:
         raise PictureError(f"{path} cannot be written ({error}); choose another place") from error
     finally:
-        if temporary is not None and os.path.exists(temporary):
-            os.unlink(temporary)
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)

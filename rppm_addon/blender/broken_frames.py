@@ -42,8 +42,10 @@ def _on_write(scene: bpy.types.Scene, *_: object) -> None:
 
 
 def register() -> None:
+    """Add what follows broken frames."""
     bpy.app.handlers.render_write.append(_on_write)
 
 
 def unregister() -> None:
+    """Take out what follows broken frames."""
     bpy.app.handlers.render_write.remove(_on_write)

@@ -10,6 +10,8 @@ from .final import render_final
 
 
 class RppmRenderEngine(bpy.types.RenderEngine):
+    """Hands on what Blender asks of an engine."""
+
     bl_idname = "RPPM"
     bl_label = "RPPM"
     bl_use_preview = True
@@ -18,30 +20,36 @@ class RppmRenderEngine(bpy.types.RenderEngine):
     bl_use_postprocess = True
     bl_use_gpu_context = False
 
-    def __init__(self, *args, **kwargs):
+    def __init__(self, *args: object, **kwargs: object) -> None:
         # Blender calls this twice on one object: nothing may be started here.
         super().__init__(*args, **kwargs)
 
     def update_render_passes(self, scene: bpy.types.Scene, renderlayer: bpy.types.ViewLayer) -> None:
+        """Tell Blender of the passes that a render will have."""
         self.register_pass(scene, renderlayer, COMBINED, 4, "RGBA", "COLOR")
         for entry in passes_of_layer(renderlayer):
             self.register_pass(scene, renderlayer, entry.name, len(entry.channels), entry.channels, entry.kind.value)
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Render a view layer to its end: F12, and previews of materials."""
         render_final(self, depsgraph)
 
     def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        """Something in the scene has changed."""
         viewport.of_engine(self).update(context, depsgraph)
 
     def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        """Draw the newest picture into the viewport."""
         viewport.of_engine(self).draw(context, depsgraph)
 
 
 def register() -> None:
+    """Add the engine."""
     bpy.utils.register_class(RppmRenderEngine)
     viewport.register()
 
 
 def unregister() -> None:
+    """Take out the engine."""
     viewport.unregister()
     bpy.utils.unregister_class(RppmRenderEngine)

@@ -186,7 +186,7 @@ class _FinalJob(RenderJob):
         self._observer.on_progress(progress)
         self._engine.update_progress(progress.fraction)
         self._engine.update_stats("", status_text(progress, self._scene))
-        if progress.iteration == 0 or progress.iteration == progress.iterations:
+        if progress.iteration in (0, progress.iterations):
             return False  # nothing to see yet, or shown at the end
         waited = time.monotonic() - self._shown_at
         due = waited >= max(PICTURE_SECONDS, self._showing_seconds / PICTURE_SHARE)

@@ -31,6 +31,7 @@ class RPPM_OT_select_subject(bpy.types.Operator):
     node: StringProperty(name="Node", description="Name of the node that becomes the active one")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        """Called by Blender."""
         if context.mode != "OBJECT" and bpy.ops.object.mode_set.poll():
             bpy.ops.object.mode_set(mode="OBJECT")
         kind = SubjectKind[self.kind]
@@ -53,6 +54,7 @@ class RPPM_OT_start_renderer(bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        """Called by Blender."""
         renderer_process.renderer_process().restart()
         if not bpy.app.timers.is_registered(_show_start):
             bpy.app.timers.register(_show_start, first_interval=START_SHOWN_EVERY)
@@ -74,6 +76,7 @@ class RPPM_OT_open_log(bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        """Called by Blender."""
         path = renderer_process.renderer_process().log_path
         if not path.is_file():
             self.report({"WARNING"}, f"There is no log yet: {path} is written once the renderer has started")
@@ -86,11 +89,13 @@ _CLASSES = (RPPM_OT_select_subject, RPPM_OT_start_renderer, RPPM_OT_open_log)
 
 
 def register() -> None:
+    """Add the operators."""
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
 
 
 def unregister() -> None:
+    """Take out the operators."""
     if bpy.app.timers.is_registered(_show_start):
         bpy.app.timers.unregister(_show_start)
     for cls in reversed(_CLASSES):

@@ -52,9 +52,12 @@ def missing() -> list[str]:
 
 
 class RppmPreferences(bpy.types.AddonPreferences):
+    """What holds for all files of a user."""
+
     bl_idname = root_package()
 
     def draw(self, context: bpy.types.Context) -> None:
+        """Called by Blender."""
         layout = self.layout
         problems = missing()
         for problem in problems:
@@ -94,8 +97,10 @@ class RppmPreferences(bpy.types.AddonPreferences):
 
 
 def register() -> None:
+    """Add the preferences."""
     bpy.utils.register_class(RppmPreferences)
 
 
 def unregister() -> None:
+    """Take out the preferences."""
     bpy.utils.unregister_class(RppmPreferences)

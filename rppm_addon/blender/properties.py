@@ -300,6 +300,7 @@ _CLASSES = (RppmSceneProperties, RppmLightProperties, RppmViewLayerProperties, R
 
 
 def register() -> None:
+    """Add the settings."""
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Scene.rppm = props.PointerProperty(type=RppmSceneProperties, name="RPPM")
@@ -309,6 +310,7 @@ def register() -> None:
 
 
 def unregister() -> None:
+    """Take out the settings."""
     del bpy.types.ViewLayer.rppm
     del bpy.types.View3DShading.rppm
     del bpy.types.Light.rppm

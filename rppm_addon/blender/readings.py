@@ -45,6 +45,7 @@ class MemoryReading:
 
     @property
     def total_bytes(self) -> int:
+        """Of all parts."""
         return self.by_settings.total_bytes + (self.scene_bytes or 0)
 
 

@@ -17,6 +17,8 @@ WARNINGS_KEPT = 200
 
 
 class RenderKind(enum.Enum):
+    """What a report is about."""
+
     FINAL = "Final"
     VIEWPORT = "Viewport"
 
@@ -54,14 +56,17 @@ class RenderReport:
 
     @property
     def rendering_seconds(self) -> float:
+        """Without export and compilation."""
         return max(self.seconds - self.build_seconds, 1e-9)
 
     @property
     def iterations_per_second(self) -> float:
+        """While rendering; 0 before the first."""
         return self.iterations / self.rendering_seconds
 
     @property
     def photons_per_second(self) -> float:
+        """While rendering; 0 before the first iteration."""
         return self.photons / self.rendering_seconds
 
 

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ..pictures import PictureError
 from ..scene.errors import RppmError
@@ -63,7 +64,7 @@ class Animation:
         self._bar = bar
         self._interruption = interruption
         self._write_report = write_report
-        self._report: dict[str, object] = {"scene": str(request.blend.path), "frames": []}
+        self._report: dict[str, Any] = {"scene": str(request.blend.path), "frames": []}
         self.failed: list[int] = []
         self.rendered: list[int] = []
 

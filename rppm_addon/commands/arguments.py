@@ -4,12 +4,14 @@
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn, TypeAlias
 
 from ..scene.errors import SettingsError
 from ..scene.settings import CUBEMAP_COSTS
 from .checkpoints import MINUTES
 from .frame_numbers import frame_numbers
+
+_Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
 
 def parser() -> argparse.ArgumentParser:
@@ -49,7 +51,7 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
-def _add_render(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+def _add_render(commands: _Commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
     render = commands.add_parser(
         "render",
         parents=[scene, common],
@@ -110,7 +112,7 @@ def _add_render(commands, scene: argparse.ArgumentParser, common: argparse.Argum
     )
 
 
-def _add_merge(commands, common: argparse.ArgumentParser) -> None:
+def _add_merge(commands: _Commands, common: argparse.ArgumentParser) -> None:
     merge = commands.add_parser(
         "merge",
         parents=[common],
@@ -127,7 +129,7 @@ def _add_merge(commands, common: argparse.ArgumentParser) -> None:
     _add_json(merge, "write what was merged as JSON")
 
 
-def _add_farm(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+def _add_farm(commands: _Commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
     farm = commands.add_parser(
         "farm",
         parents=[scene, common],
@@ -168,7 +170,7 @@ def _add_farm(commands, scene: argparse.ArgumentParser, common: argparse.Argumen
     farm.add_argument("--overwrite", action="store_true", help="make pictures anew that are there")
 
 
-def _add_export(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+def _add_export(commands: _Commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
     export = commands.add_parser(
         "export", parents=[scene, common], help="save the scene of a .blend file for machines without Blender"
     )
@@ -176,7 +178,7 @@ def _add_export(commands, scene: argparse.ArgumentParser, common: argparse.Argum
     export.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE.npz")
 
 
-def _add_inspect(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+def _add_inspect(commands: _Commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
     inspect = commands.add_parser(
         "inspect",
         parents=[scene, common],
@@ -198,7 +200,7 @@ def _add_inspect(commands, scene: argparse.ArgumentParser, common: argparse.Argu
     _add_json(inspect, "write counts and bytes by buffer as JSON")
 
 
-def _add_compile(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+def _add_compile(commands: _Commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
     compile_ = commands.add_parser(
         "compile",
         parents=[scene, common],
@@ -209,7 +211,7 @@ def _add_compile(commands, scene: argparse.ArgumentParser, common: argparse.Argu
     compile_.add_argument("file", type=Path, metavar="FILE", help="a .blend file or a .npz of rppm export")
 
 
-def _add_info(commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
+def _add_info(commands: _Commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
     info = commands.add_parser(
         "info",
         parents=[scene, common],
@@ -234,7 +236,7 @@ def _add_json(command: argparse.ArgumentParser, text: str) -> None:
 def _checked(convert: Callable, accept: Callable, what: str) -> Callable:
     """An argparse type that converts, checks and says what was wanted."""
 
-    def parse(text: str):
+    def parse(text: str) -> object:
         try:
             value = convert(text)
         except ValueError:

@@ -9,7 +9,8 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TextIO
+from types import ModuleType
+from typing import Any, TextIO
 
 import numpy as np
 
@@ -38,7 +39,7 @@ class BlendRequest:
     values: list[tuple[str, str]] = field(default_factory=list)
     """Data paths and what to set them to."""
 
-    def as_plain(self) -> dict[str, object]:
+    def as_plain(self) -> dict[str, Any]:
         """The request as JSON has it, for whoever is to open the same picture's scene later."""
         return {
             "path": str(self.path.resolve()),
@@ -48,7 +49,7 @@ class BlendRequest:
         }
 
     @classmethod
-    def from_plain(cls, plain: dict[str, object]) -> "BlendRequest":
+    def from_plain(cls, plain: dict[str, Any]) -> "BlendRequest":
         """The request that as_plain gave."""
         return cls(
             Path(plain["path"]),
@@ -75,7 +76,7 @@ class BlenderReport:
 class BlendFile:
     """An open .blend file, to be rendered."""
 
-    def __init__(self, bpy, request: BlendRequest, report: BlenderReport, output: TextIO) -> None:
+    def __init__(self, bpy: ModuleType, request: BlendRequest, report: BlenderReport, output: TextIO) -> None:
         self._bpy = bpy
         self._request = request
         self.report = report
@@ -175,14 +176,14 @@ def _opened(request: BlendRequest, show_output: bool) -> Iterator[tuple]:
             unregister()  # an engine still registered at exit crashes or hangs Blender
 
 
-def _open(bpy, path: Path) -> None:
+def _open(bpy: ModuleType, path: Path) -> None:
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
     except RuntimeError as error:
         raise SceneError(f"{path} cannot be opened by Blender {bpy.app.version_string}: {_one_line(error)}") from error
 
 
-def _prepare(bpy, request: BlendRequest) -> None:
+def _prepare(bpy: ModuleType, request: BlendRequest) -> None:
     scene = bpy.context.scene
     if request.frame is not None:
         scene.frame_set(request.frame)
@@ -200,7 +201,9 @@ def _prepare(bpy, request: BlendRequest) -> None:
         set_data_path((scene, bpy.data), path, value)
 
 
-def _render(bpy, request: BlendRequest, observer: RenderRecorder | _SceneTaker, report: BlenderReport) -> None:
+def _render(
+    bpy: ModuleType, request: BlendRequest, observer: RenderRecorder | _SceneTaker, report: BlenderReport
+) -> None:
     scene = bpy.context.scene
     if scene.camera is None:
         raise SceneError(
@@ -218,7 +221,7 @@ def _render(bpy, request: BlendRequest, observer: RenderRecorder | _SceneTaker, 
         report.export_seconds = observer.scene_time - start
 
 
-def _save_png(bpy, path: Path) -> None:
+def _save_png(bpy: ModuleType, path: Path) -> None:
     """Save the picture through the scene's own view transform, as Blender's render window shows it."""
     scene = bpy.context.scene
     image_settings = scene.render.image_settings
@@ -232,7 +235,7 @@ def _save_png(bpy, path: Path) -> None:
         with tempfile.TemporaryDirectory(prefix=f".{path.stem}.", dir=path.parent) as folder:
             temporary = Path(folder) / "picture.png"
             bpy.data.images["Render Result"].save_render(str(temporary), scene=scene)
-            os.replace(temporary, path)
+            temporary.replace(path)
     except (OSError, RuntimeError) as error:
         raise PictureError(f"{path} cannot be written ({_one_line(error)}); choose another place with -o") from error
 
@@ -245,7 +248,7 @@ def save_view(request: BlendRequest, combined: np.ndarray, path: Path) -> None:
     with _opened(request, show_output=False) as (bpy, _, _):
         scene = bpy.context.scene
 
-        class Shown(bpy.types.RenderEngine):
+        class Shown(bpy.types.RenderEngine):  # type: ignore[name-defined]
             """Has the picture already: Blender's own way from a render's result to a file is the one to go."""
 
             bl_idname = "RPPM_SHOWN"
@@ -268,7 +271,7 @@ def save_view(request: BlendRequest, combined: np.ndarray, path: Path) -> None:
             bpy.utils.unregister_class(Shown)
 
 
-def _remove_contents(scene: object) -> None:
+def _remove_contents(scene: Any) -> None:
     """Leave an opened scene nothing but its camera."""
     collection, camera = scene.collection, scene.camera
     for child in list(collection.children):
@@ -289,7 +292,7 @@ def _quiet_output(show: bool) -> Iterator[TextIO]:
     os.dup2(nothing, 1)
     os.close(nothing)
     try:
-        with open(os.dup(saved), "w", encoding=sys.stdout.encoding) as output:
+        with os.fdopen(os.dup(saved), "w", encoding=sys.stdout.encoding) as output:
             yield output
     finally:
         sys.stdout.flush()

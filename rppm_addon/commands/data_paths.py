@@ -7,6 +7,7 @@ A path is what Blender's "Copy Full Data Path" shows after ``bpy.data.`` or afte
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
 from ..scene.errors import SettingsError
 
@@ -66,7 +67,7 @@ def set_data_path(roots: Sequence, path: str, value: str) -> None:
         raise SettingsError(f"--set {path}={value}: {' '.join(str(error).split())}") from error
 
 
-def _owner(roots: Sequence, path: str, owner_path: str, name: str | None):
+def _owner(roots: Sequence, path: str, owner_path: str, name: str | None) -> Any:
     """The struct that holds the last step of the path."""
     for root in roots:
         owner = root
@@ -81,7 +82,7 @@ def _owner(roots: Sequence, path: str, owner_path: str, name: str | None):
     raise SettingsError(f"--set {path}: the file has nothing of that name")
 
 
-def _set_custom_property(owner, path: str, key: str, value: str) -> None:
+def _set_custom_property(owner: Any, path: str, key: str, value: str) -> None:
     if not hasattr(owner, "keys") or key not in owner.keys():  # noqa: SIM118 (an RNA struct is no mapping)
         raise SettingsError(f"--set {path}: the file has no custom property of that name")
     kind = type(owner[key])
@@ -93,7 +94,7 @@ def _set_custom_property(owner, path: str, key: str, value: str) -> None:
         raise SettingsError(f"--set {path}: {value!r} is no {kind.__name__}") from error
 
 
-def _scalar(prop, path: str, value: str) -> bool | int | float | str:
+def _scalar(prop: Any, path: str, value: str) -> bool | int | float | str:
     """One value of the property's type, checked against its hard limits."""
     if prop.type == "BOOLEAN":
         return _boolean(path, value)
@@ -117,7 +118,7 @@ def _boolean(path: str, value: str) -> bool:
     return value.lower() in _TRUE
 
 
-def _datablock(roots: Sequence, path: str, value: str):
+def _datablock(roots: Sequence, path: str, value: str) -> Any:
     """What a path such as ``objects["Camera.001"]`` names; None for the word None."""
     if value == "None":
         return None

@@ -3,6 +3,7 @@
 
 import signal
 from types import FrameType
+from typing import Any
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it, where nothing else is known."""
@@ -15,7 +16,7 @@ class Interruption:
         self.asked = False
         self.status = 0
         """Exit status of a program that a signal ended, as shells have it."""
-        self._previous: dict[int, object] = {}
+        self._previous: dict[int, Any] = {}
 
     def __enter__(self) -> "Interruption":
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -76,7 +77,8 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
         ((read_summary(path), path) for path in paths), key=lambda part: (part[0].left_out, part[0].iteration)
     )
     _check(found, incomplete)
-    radiance, passes, inspections = 0.0, MergedPasses(), {}
+    radiance: Any = 0.0
+    passes, inspections = MergedPasses(), {}
     for summary, pause in _read_parts(found):
         state = pause.state
         radiance = radiance + state.radiance.astype(np.float64) * (summary.iteration - summary.left_out)

@@ -57,5 +57,6 @@ class BarLogHandler(logging.StreamHandler):
         self._bar = bar
 
     def emit(self, record: logging.LogRecord) -> None:
+        """Write a line, from which the bar makes way."""
         self._bar.clear()
         super().emit(record)

@@ -75,6 +75,7 @@ class RenderRecorder(RenderObserver):
         self._progress: Progress | None = None
 
     def on_scene(self, scene: Scene) -> bool:
+        """As RenderObserver has it."""
         self.scene_time = time.perf_counter()
         self.scene = scene
         if "passes" not in self.request.settings:
@@ -87,6 +88,7 @@ class RenderRecorder(RenderObserver):
         return True
 
     def on_start(self, scene: Scene) -> None:
+        """As RenderObserver has it."""
         self.renderer_seconds = time.perf_counter() - self.scene_time
         self.snapshots = tuple(max(mark - self.renderer_seconds, 0.0) for mark in self.request.snapshots)
         if self.request.seconds is not None:
@@ -95,6 +97,7 @@ class RenderRecorder(RenderObserver):
         self._bar.show(0.0, "loading programs, building the structure")
 
     def on_progress(self, progress: "Progress") -> None:
+        """As RenderObserver has it."""
         self._progress = progress
         words = f"iteration {progress.iteration}"
         fraction = progress.fraction
@@ -106,9 +109,11 @@ class RenderRecorder(RenderObserver):
         self._bar.show(fraction, f"{words}, {count_text(progress.photons)} photons, {elapsed:.1f} s")
 
     def should_stop(self) -> bool:
+        """As RenderObserver has it."""
         return self._should_stop()
 
     def on_snapshot(self, seconds: float, frame: "Frame", scene: Scene) -> None:
+        """As RenderObserver has it."""
         mark = self.request.snapshots[len(self.snapshots_written)]
         path = self.request.snapshot_path(mark)
         progress = self._progress
@@ -124,10 +129,12 @@ class RenderRecorder(RenderObserver):
         self.snapshots_written.append(entry)
 
     def on_finish(self, result: "RenderResult", scene: Scene) -> None:
+        """As RenderObserver has it."""
         self.seconds = time.perf_counter() - self.scene_time
         self.result = result
 
     def on_error(self, text: str) -> None:
+        """As RenderObserver has it."""
         self.error = text
 
     def write_files(self) -> None:

@@ -88,6 +88,6 @@ class BinaryCache:
             path.parent.mkdir(parents=True, exist_ok=True)
             with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
                 file.write(struct.pack("<I", kind.value) + data.raw[: written.value])
-            os.replace(file.name, path)
+            Path(file.name).replace(path)
         except OSError as error:
             log.info("program binary not kept: %s", error)

@@ -21,6 +21,7 @@ class GrowingBuffer:
 
     @property
     def size(self) -> int:
+        """Bytes."""
         return self.buffer.size
 
     def require(self, size: int) -> bool:
@@ -73,4 +74,5 @@ class GrowingBuffer:
         self.buffer.clear()
 
     def release(self) -> None:
+        """Free the buffer."""
         self.buffer.release()

@@ -8,6 +8,7 @@ import re
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ..scene.errors import DeviceError
 from .project_mesa import load_project_mesa
@@ -51,7 +52,7 @@ class DeviceInformation:
 class Context:
     """An offscreen context of OpenGL 4.3 core: EGL on Linux, WGL on Windows."""
 
-    def __init__(self, gl, information: DeviceInformation) -> None:
+    def __init__(self, gl: Any, information: DeviceInformation) -> None:
         self.moderngl = gl
         self.information = information
         self.limits = information.limits
@@ -68,7 +69,7 @@ class Context:
         if sys.platform == "darwin":
             raise DeviceError("macOS stops at OpenGL 4.1; RPPM needs 4.3: use Linux or Windows")
         mesa = load_project_mesa()
-        options = {}
+        options: dict[str, Any] = {}
         device = device if device is not None else os.environ.get("RPPM_DEVICE", "")
         if sys.platform.startswith("linux"):
             options["backend"] = "egl"
@@ -109,9 +110,9 @@ class Context:
     @property
     def storage_block_limit(self) -> int:
         """Bytes that one storage block may span."""
-        return int(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
+        return int(str(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"]))
 
-    def function(self, name: str, result, *arguments):
+    def function(self, name: str, result: Any, *arguments: Any) -> Any:
         """A GL function that moderngl does not wrap, as a ctypes function; None if the driver lacks it."""
         if sys.platform.startswith("linux"):
             library = ctypes.CDLL("libEGL.so.1")
@@ -126,6 +127,7 @@ class Context:
 
     @property
     def has_program_binaries(self) -> bool:
+        """Whether the driver hands out compiled programs."""
         return self._integers(_NUM_PROGRAM_BINARY_FORMATS)[0] > 0
 
     @property
@@ -147,7 +149,7 @@ class Context:
         values = (ctypes.c_int * 4)()
         get_integer = self.function("glGetIntegerv", None, ctypes.c_uint, ctypes.POINTER(ctypes.c_int))
         if get_integer is None:  # Windows resolves GL 1.1 functions from the library itself
-            get_integer = ctypes.WinDLL("opengl32.dll").glGetIntegerv
+            get_integer = ctypes.WinDLL("opengl32.dll").glGetIntegerv  # type: ignore[attr-defined]
         get_integer(name, values)
         return list(values)
 
@@ -160,6 +162,7 @@ class Context:
         self.moderngl.finish()
 
     def release(self) -> None:
+        """Close the context; nothing made in it may be used any more."""
         self.moderngl.release()
 
 

@@ -4,6 +4,7 @@
 import logging
 import time
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import moderngl
 
@@ -53,6 +54,7 @@ class _Program:
             self._parameters.bind_to_uniform_block(0)
 
     def release(self) -> None:
+        """Free what it has on the device."""
         if self._parameters is not None:
             self._parameters.release()
 
@@ -95,6 +97,7 @@ class ComputeProgram(_Program):
         self.context.barrier()
 
     def release(self) -> None:
+        """Free what it has on the device."""
         super().release()
         self._program.release()
 
@@ -155,6 +158,7 @@ class DrawProgram(_Program):
         self.context.barrier()
 
     def release(self) -> None:
+        """Free what it has on the device."""
         super().release()
         self._vertex_array.release()
         self._program.release()
@@ -202,7 +206,7 @@ class ProgramLibrary:
         key = (vertex, fragment, geometry, tuple(sorted((defines or {}).items())))
         return self._get(key, lambda: self._draw(vertex, fragment, geometry, dict(defines or {})))
 
-    def _get(self, key: tuple, make):
+    def _get(self, key: tuple, make: Callable[[], Any]) -> Any:
         if key not in self._programs:
             start = time.perf_counter()
             self._programs[key] = make()
@@ -226,6 +230,7 @@ class ProgramLibrary:
         )
 
     def release(self) -> None:
+        """Free what it has on the device."""
         for program in self._programs.values():
             program.release()
         self._programs.clear()

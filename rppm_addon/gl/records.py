@@ -77,7 +77,9 @@ class Record:
 
     def offset(self, name: str) -> int:
         """Bytes before a member."""
-        return self.dtype.fields[name][1]
+        fields = self.dtype.fields
+        assert fields is not None
+        return fields[name][1]
 
     def zeros(self, count: int) -> np.ndarray:
         """(count,) array of zeroed records."""

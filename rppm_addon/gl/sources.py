@@ -49,6 +49,7 @@ class Source:
 
     @property
     def local_size(self) -> int:
+        """Invocations of a work group. Raises ShaderError when the source says none."""
         match = _LOCAL_SIZE.search(self.text)
         if match is None:
             raise ShaderError(f"{self.files[0]}: no local_size_x")

@@ -2,8 +2,9 @@
 """Seconds spent in each stage."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from .context import Context
 
@@ -20,11 +21,11 @@ class StageTimers:
         self._context = context
         self.clock: Callable[[], float] = time.perf_counter
         self._seconds: dict[str, float] = {}
-        self._pending: list[tuple[str, object]] = []
-        self._idle: list[object] = []
+        self._pending: list[tuple[str, Any]] = []
+        self._idle: list[Any] = []
 
     @contextmanager
-    def stage(self, name: str):
+    def stage(self, name: str) -> Iterator[None]:
         """Time the device work given within the with block."""
         if self._context.is_software:
             start = self.clock()
@@ -52,5 +53,6 @@ class StageTimers:
         return dict(self._seconds)
 
     def reset(self) -> None:
+        """Count from 0 again."""
         self._collect()
         self._seconds.clear()

@@ -106,7 +106,7 @@ def compute(samples: int = SAMPLES) -> dict[str, np.ndarray]:
             white[r, c] = lobe_albedos(alpha, max(c / (WHITE_SIZE - 1), 1e-3), np.array([]), samples)[0]
     cosines = np.linspace(0, 1, WHITE_SIZE)
     average = trapezoid(white * 2 * cosines, cosines)
-    etas = index_of(np.linspace(0, 1, SIZE))
+    etas = np.asarray(index_of(np.linspace(0, 1, SIZE)))
     tables = {name: np.ones((SIZE, SIZE, SIZE)) for name in ("dielectric", "glass_entering", "glass_leaving")}
     for r in range(SIZE):
         for c in range(SIZE):

@@ -6,6 +6,7 @@ constants in a buffer, so graphs that differ in those only have the same text an
 """
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -151,7 +152,7 @@ class _Compiler:
 
     # --- values -------------------------------------------------------------------------------------
 
-    def _input(self, scope: _Scope, index: int, name: str, kind: SocketType, default: object) -> str:
+    def _input(self, scope: _Scope, index: int, name: str, kind: SocketType, default: Any) -> str:
         """GLSL for an input of a node."""
         value = self._graph.nodes[index].inputs.get(name, default)
         if isinstance(value, Link):
@@ -159,10 +160,10 @@ class _Compiler:
             return self._converted(scope, value, kind)
         if isinstance(value, str) and value in _IMPLICIT:
             return _IMPLICIT[value]
-        place = self._place((index, name), self._constants_of(self._graph.nodes[index], name, value, kind))
+        place = self._place((index, name), [*self._constants_of(self._graph.nodes[index], name, value, kind)])
         return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
 
-    def _constants_of(self, node: ShaderNode, name: str, value: object, kind: SocketType) -> list[float]:
+    def _constants_of(self, node: ShaderNode, name: str, value: Any, kind: SocketType) -> list[float]:
         try:
             numbers = [_finite(v) for v in np.atleast_1d(value)[:3]]
         except (TypeError, ValueError) as error:
@@ -210,7 +211,7 @@ class _Compiler:
     def _needed(self, index: int) -> list[int]:
         """The nodes that must be known before a node is computed. The height of a bump is computed apart."""
         node, kind = self._graph.nodes[index], self._kind(index)
-        links = [node.inputs[name] for name in kind.inputs if isinstance(node.inputs.get(name), Link)]
+        links = [link for name in kind.inputs if isinstance(link := node.inputs.get(name), Link)]
         if node.kind == BUMP:
             links = [link for link in links if link is not node.inputs.get("height")]
         for link in links:

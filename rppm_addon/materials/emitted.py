@@ -3,6 +3,7 @@
 
 import enum
 from dataclasses import dataclass
+from typing import Any
 
 from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 from .nodes import KINDS
@@ -102,7 +103,7 @@ def _may_emit(node: ShaderNode) -> bool:
 
 def is_positive(node: ShaderNode, name: str) -> bool:
     """Whether an input of a node is, or may be, above 0."""
-    value = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
+    value: Any = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
     if isinstance(value, Link):
         return True
     return value > 0.0 if isinstance(value, int | float) else max(value) > 0.0

@@ -131,6 +131,7 @@ class GraphEvaluator:
         return np.nan_to_num(np.concatenate(parts), nan=0.0, posinf=0.0, neginf=0.0)
 
     def release(self) -> None:
+        """Free the buffers."""
         self._emissions.release()
         self._instance.release()
         self._nothing.release()

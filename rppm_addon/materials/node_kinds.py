@@ -3,6 +3,7 @@
 
 import enum
 from dataclasses import dataclass, field
+from typing import Any
 
 
 class SocketType(enum.Enum):
@@ -15,6 +16,7 @@ class SocketType(enum.Enum):
 
     @property
     def glsl(self) -> str:
+        """The name of the type."""
         return "float" if self is SocketType.FLOAT else "vec3"
 
 
@@ -35,7 +37,7 @@ class NodeKind:
     """
 
     source: str
-    inputs: dict[str, tuple[SocketType, object]] = field(default_factory=dict)
+    inputs: dict[str, tuple[SocketType, Any]] = field(default_factory=dict)
     """Type and default value by name; the value is a float, three, or "normal" or "tangent" of the surface."""
     outputs: dict[str, SocketType] = field(default_factory=dict)
     options: dict[str, tuple] = field(default_factory=dict)
@@ -48,7 +50,7 @@ class NodeKind:
     """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
     passed: drivers take long to fold a choice among many at every call."""
 
-    def call(self, name: str, options: dict[str, object]) -> tuple[str, list[str]]:
+    def call(self, name: str, options: dict[str, Any]) -> tuple[str, list[str]]:
         """The GLSL function of a node of this kind, which has a name, and its literals for options.
 
         Options that are left out have their first value. Raises ValueError, with the option's name, for unknown values.
@@ -66,4 +68,5 @@ class NodeKind:
 
     @property
     def is_shader(self) -> bool:
+        """Whether it gives a closure."""
         return SHADER in self.outputs.values()

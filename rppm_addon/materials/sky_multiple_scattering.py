@@ -76,7 +76,7 @@ def _coefficients(height: np.ndarray, sky: Sky) -> tuple[np.ndarray, np.ndarray,
 def viewer_radius(sky: Sky) -> np.ndarray:
     """() float64 distance of the viewer to the Earth's centre, km, to half a metre: as Cycles' single precision has it,
     which shows in what a viewer near the ground sees below."""
-    return np.float64(np.float32(EARTH_RADIUS + np.clip(sky.altitude * 1e-3, LOWEST, HIGHEST)))
+    return np.float64(np.float32(EARTH_RADIUS + np.clip(sky.altitude * 1e-3, LOWEST, HIGHEST)))  # type: ignore[return-value]
 
 
 def _to_space(radius: np.ndarray, cosine: np.ndarray) -> np.ndarray:

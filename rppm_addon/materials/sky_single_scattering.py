@@ -70,7 +70,7 @@ _NODES = _NODES / 25.0
 
 def viewer_radius(sky: Sky) -> np.ndarray:
     """() float64 distance of the viewer to the Earth's centre, metres; Cycles keeps it inside the atmosphere."""
-    return np.float64(EARTH_RADIUS + np.clip(sky.altitude, LOWEST, HIGHEST))
+    return np.float64(EARTH_RADIUS + np.clip(sky.altitude, LOWEST, HIGHEST))  # type: ignore[return-value]
 
 
 def _densities(height: np.ndarray, sky: Sky) -> list[np.ndarray]:

@@ -78,6 +78,7 @@ class MaterialTables:
 
     @property
     def memory_bytes(self) -> dict[str, int]:
+        """Bytes by buffer."""
         return {buffer.name: buffer.size for buffer in self._buffers.values()}
 
     def build(self, scene: Scene) -> None:
@@ -110,10 +111,10 @@ class MaterialTables:
         others += [(f'Light "{light.name}"', light.graph) for light in scene.lights]
         others += [(f'The volume of material "{material.name}"', material.interior) for material in materials]
         self._others = {}
-        for owner, graph in others:
-            if graph is not None:
-                compiled_graph, _ = self._compile(graph, owner, _DARK)
-                self._others[id(graph)] = compiled_graph.text, layout.add(graph, compiled_graph), owner
+        for owner, other in others:
+            if other is not None:
+                compiled_graph, _ = self._compile(other, owner, _DARK)
+                self._others[id(other)] = compiled_graph.text, layout.add(other, compiled_graph), owner
         self.attribute_names = list(layout.attributes)
         self._buffers["MaterialData"].upload(layout.data())
         self._upload_images(layout.images())
@@ -167,6 +168,7 @@ class MaterialTables:
             return np.zeros((height, width, 3), np.float32)
 
     def release(self) -> None:
+        """Free the buffers."""
         self._evaluator.release()
         for buffer in self._buffers.values():
             buffer.release()

@@ -54,7 +54,8 @@ def _optional(hint: object) -> type | None:
     if typing.get_origin(hint) not in {typing.Union, types.UnionType}:
         return None
     inner, *others = typing.get_args(hint)
-    return inner if others == [type(None)] and dataclasses.is_dataclass(inner) else None
+    is_record = isinstance(inner, type) and dataclasses.is_dataclass(inner)
+    return inner if others == [type(None)] and is_record else None
 
 
 def _encode_column(values: list, hint: object, keep: _Keep) -> dict:

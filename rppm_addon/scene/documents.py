@@ -5,7 +5,7 @@ import dataclasses
 import enum
 import functools
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,13 +13,17 @@ from .node_graphs import Link
 
 _PLAIN = (type(None), bool, int, float, str)
 
-Arrays = Mapping | Sequence
-"""Arrays by the references that stand for them in a document."""
+
+class Arrays(typing.Protocol):
+    """Arrays by the references that stand for them in a document."""
+
+    def __getitem__(self, reference: typing.Any, /) -> np.ndarray:
+        """The array of a reference."""
 
 
 def encode(value: object, keep: Callable[[np.ndarray], int | str]) -> object:
     """What json can write of a dataclass or a part of one; ``keep`` takes an array and returns its reference."""
-    kind = type(value)
+    kind: typing.Any = type(value)
     if kind in _PLAIN:
         return value
     if isinstance(value, np.ndarray):
@@ -55,7 +59,7 @@ _Reader = Callable[[typing.Any, Arrays], object]
 
 
 @functools.cache
-def _reader(kind: object) -> _Reader | None:
+def _reader(kind: typing.Any) -> _Reader | None:
     """How values of a type are read; None where the document has them as they are."""
     if kind in _PLAIN:
         return None
@@ -65,14 +69,14 @@ def _reader(kind: object) -> _Reader | None:
         return lambda value, arrays: arrays[value["array"]]
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     if origin is tuple:
-        return lambda value, arrays: tuple(value)
+        return lambda value, _: tuple(value)
     if origin in (list, dict):
         return _list_reader(_reader(inner[0])) if origin is list else _dict_reader(_reader(inner[1]))
     if origin is not None:  # optional: the first alternative
         read = _reader(inner[0])
         return None if read is None else lambda value, arrays: None if value is None else read(value, arrays)
     if issubclass(kind, enum.Enum):
-        return lambda value, arrays: kind(value) if issubclass(kind, enum.Flag) else kind[value]
+        return lambda value, _: kind(value) if issubclass(kind, enum.Flag) else kind[value]
     return _dataclass_reader(kind)
 
 

@@ -4,6 +4,7 @@
 import dataclasses
 import hashlib
 import json
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +29,7 @@ def scene_digests(scene: Scene) -> dict[str, str]:
         if id(array) not in known:
             data = np.ascontiguousarray(array)
             digest = hashlib.sha256(f"{data.dtype.str} {data.shape}".encode())
-            digest.update(data.reshape(-1).view(np.uint8))
+            digest.update(data.reshape(-1).view(np.uint8).data)
             known[id(array)] = digest.hexdigest()
         return known[id(array)]
 
@@ -40,7 +41,7 @@ def scene_digests(scene: Scene) -> dict[str, str]:
     return digests
 
 
-def plain_settings(settings: RenderSettings) -> dict[str, object]:
+def plain_settings(settings: RenderSettings) -> dict[str, Any]:
     """The settings that a picture depends on by name, as JSON has them."""
-    values = encode(settings, lambda array: array.tolist())
+    values: Any = encode(settings, lambda array: array.tolist())
     return {name: value for name, value in values.items() if name not in UNSEEN}

@@ -11,6 +11,8 @@ from .node_graphs import NodeGraph
 
 
 class LightKind(enum.Enum):
+    """As Blender names the types of lights."""
+
     POINT = "point"
     SPOT = "spot"
     SUN = "sun"

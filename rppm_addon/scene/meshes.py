@@ -52,6 +52,7 @@ class Mesh:
 
     @property
     def triangle_count(self) -> int:
+        """Triangles of the mesh alone."""
         return len(self.triangle_corners)
 
 

@@ -2,6 +2,7 @@
 """A scene at each moment while the shutter is open."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,10 @@ class MovingScene:
     """A scene with a shutter, at any time while it is open."""
 
     def __init__(self, scene: Scene) -> None:
-        self._scene = scene
+        """scene: one with a shutter."""
         shutter = scene.shutter
+        assert shutter is not None
+        self._scene, self._shutter = scene, shutter
         self._instances = _Paths(shutter.instances)
         self._lights = _Paths(shutter.lights)
         camera = shutter.camera
@@ -26,8 +29,8 @@ class MovingScene:
 
         Normals between two shapes are not unit.
         """
-        scene, shutter = self._scene, self._scene.shutter
-        members: dict[str, object] = {
+        scene, shutter = self._scene, self._shutter
+        members: dict[str, Any] = {
             "instances": self._instances.moved(scene.instances, time),
             "lights": self._lights.moved(scene.lights, time),
         }
@@ -35,7 +38,7 @@ class MovingScene:
             members["meshes"] = meshes = list(scene.meshes)
             for deformation in shutter.meshes:
                 meshes[deformation.mesh] = _deformed(meshes[deformation.mesh], deformation, time)
-        if shutter.camera is not None:
+        if shutter.camera is not None and self._camera is not None:
             (camera,) = self._camera.moved([scene.camera], time)
             first, part = _between(shutter.camera.times, time)
             window = _mixed(shutter.camera.windows, first, part)

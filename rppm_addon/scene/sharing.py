@@ -7,6 +7,7 @@ import functools
 import operator
 import typing
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ _SMALL = 1 << 10
 _PART = 1 << 16
 
 
-def equal(a: object, b: object) -> bool:
+def equal(a: Any, b: Any) -> bool:
     """Whether two members of scenes say the same, arrays bit for bit."""
     if a is b:
         return True
@@ -30,7 +31,7 @@ def equal(a: object, b: object) -> bool:
     if isinstance(a, np.ndarray):
         return same_bits(a, b)
     if dataclasses.is_dataclass(a):
-        plain, others = _fields_of(type(a))
+        plain, others = _fields_of(a.__class__)
         for name in others:  # as a loop, for thousands of instances
             if not equal(getattr(a, name), getattr(b, name)):
                 return False
@@ -91,7 +92,7 @@ def _shared_list(before: list, after: list, by_identity: bool) -> list:
 
 def _equal_instance(a: Instance, b: Instance) -> bool:
     """As equal: of thousands, most differ by their matrices if at all."""
-    return a is b or a.matrix.tobytes() == b.matrix.tobytes() and equal(a, b)
+    return a is b or (a.matrix.tobytes() == b.matrix.tobytes() and equal(a, b))
 
 
 def same_members(a: Sequence, b: Sequence) -> bool:
@@ -107,7 +108,7 @@ def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Sc
     """
     if before is None:
         return after
-    values: dict[str, object] = {}
+    values: dict[str, Any] = {}
     for name in LISTS:
         values[name] = _shared_list(getattr(before, name), getattr(after, name), name in _LARGE and not compare_large)
     for name in _MEMBERS:

@@ -24,7 +24,7 @@ def save_scene(scene: Scene, path: str | Path) -> None:
         return name
 
     document = {"format": FORMAT, "scene": encode(scene, keep)}
-    with open(path, "wb") as file:
+    with Path(path).open("wb") as file:
         np.savez_compressed(file, document=np.frombuffer(json.dumps(document).encode(), np.uint8), **arrays)
 
 

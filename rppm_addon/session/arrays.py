@@ -3,6 +3,7 @@
 
 import base64
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -72,12 +73,12 @@ def _runs(arrays: Sequence[np.ndarray]) -> list[list[np.ndarray]]:
     return runs
 
 
-def _run(memory: object, kind: str, shape: list[int], offset: int) -> np.ndarray:
+def _run(memory: Any, kind: str, shape: list[int], offset: int) -> np.ndarray:
     """A run of arrays, as the rows of one."""
     dtype = np.dtype(kind)
     if dtype.hasobject:  # bytes are not to be taken for addresses
         raise ValueError(f"an array of {dtype}")
-    run = np.ndarray(shape, dtype, memory, offset)
+    run: np.ndarray = np.ndarray(shape, dtype, memory, offset)
     if run.nbytes < LARGE:
         return run.copy()
     # Unlike the array above, what frombuffer makes keeps the memory from being closed.

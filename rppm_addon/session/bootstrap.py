@@ -18,7 +18,7 @@ _PR_SET_PDEATHSIG = 1
 def _take_pipes() -> tuple:
     """The pipes to Blender. What the process prints goes to the log from now on, which is standard error."""
     pipes = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    with open(os.devnull, "rb") as nothing:
+    with Path(os.devnull).open("rb") as nothing:
         os.dup2(nothing.fileno(), 0)
     os.dup2(2, 1)
     return pipes

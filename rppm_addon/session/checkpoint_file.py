@@ -16,7 +16,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
@@ -44,11 +44,11 @@ class StillRender:
 
     scene: dict[str, str]
     """Digests by member of the scene (scene_digests)."""
-    settings: dict[str, object]
+    settings: dict[str, Any]
     """Those that the picture depends on (plain_settings)."""
     exposure: float
     placement: Placement
-    source: dict[str, object] = field(default_factory=dict)
+    source: dict[str, Any] = field(default_factory=dict)
     """What the command line knows of the file that the scene came from."""
 
 
@@ -105,8 +105,8 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
     ]
     with renamed_when_whole(path) as temporary:
         OpenEXR.File(parts).write(temporary)
-        with open(temporary, "r+b") as file:
-            digest = _digest(file, os.path.getsize(temporary))
+        with Path(temporary).open("r+b") as file:
+            digest = _digest(file, os.fstat(file.fileno()).st_size)
             file.write(_MARK + digest)
             file.flush()
             os.fsync(file.fileno())
@@ -179,8 +179,8 @@ def _digest(file: BinaryIO, size: int) -> bytes:
 
 
 def _check_whole(path: str | Path) -> None:
-    size = os.path.getsize(path)
-    with open(path, "rb") as file:
+    with Path(path).open("rb") as file:
+        size = os.fstat(file.fileno()).st_size
         file.seek(max(size - _TRAILER, 0))
         trailer = file.read()
         if not trailer.startswith(_MARK):

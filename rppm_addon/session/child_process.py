@@ -18,7 +18,10 @@ from .shared_memory import SharedBlock
 from .transfer import Part, SceneSender
 
 _BOOTSTRAP = Path(__file__).with_name("bootstrap.py")
-_FLAGS = subprocess.CREATE_NO_WINDOW | subprocess.BELOW_NORMAL_PRIORITY_CLASS if sys.platform == "win32" else 0
+if sys.platform == "win32":
+    _FLAGS = subprocess.CREATE_NO_WINDOW | subprocess.BELOW_NORMAL_PRIORITY_CLASS
+else:
+    _FLAGS = 0
 
 
 class ProcessEnded(Exception):
@@ -48,6 +51,7 @@ class ChildProcess:
     # In the writing thread.
 
     def greet(self) -> None:
+        """Say who is there; the process answers when it has opened the device."""
         self.send("hello", version=VERSION, path=self._folders)
 
     def send(self, kind: str, **content: object) -> None:
@@ -90,6 +94,7 @@ class ChildProcess:
         raise ProcessEnded
 
     def close_session(self, session: int) -> None:
+        """Have a session closed, and forget what was sent for it. Raises ProcessEnded as send does."""
         self.send("close", session=session, dead=self._scenes.close(session))
 
     # In the reading thread.
@@ -144,6 +149,6 @@ def _opened(log_path: Path) -> BinaryIO:
     """The log, to be appended to, or nothing where it cannot be written: that keeps nobody from rendering."""
     try:
         log_path.parent.mkdir(parents=True, exist_ok=True)
-        return open(log_path, "ab")
+        return log_path.open("ab")
     except OSError:
-        return open(os.devnull, "ab")
+        return Path(os.devnull).open("ab")

@@ -61,7 +61,8 @@ class RendererProcess:
     def __init__(
         self, python: Sequence[str], folders: Sequence[str], log_path: Path, patience: Patience | None = None
     ) -> None:
-        """
+        """No process is started yet.
+
         Args:
             python: the program that runs Python, and its options.
             folders: where that Python finds NumPy and moderngl, if not by itself.

@@ -73,7 +73,7 @@ class Session:
 
     def take_snapshot(self) -> tuple[int, Scene, int, bool] | None:
         """What is to be sent now: number, scene, generation, navigating. One is on its way at a time."""
-        if not self._due or self._on_its_way:
+        if not self._due or self._on_its_way or self._snapshot is None:
             return None
         self._due = False
         self._sent += 1
@@ -81,6 +81,7 @@ class Session:
         return self._sent, *self._snapshot
 
     def snapshot_taken(self, number: int) -> None:
+        """The process has the scene of this number: the next one may be sent."""
         if number == self._on_its_way:
             self._on_its_way = 0
 
@@ -123,19 +124,23 @@ class ViewportSession(Session):
         return self._newest
 
     def introduce(self) -> None:
+        """As Session has it."""
         super().introduce()
         self._reader = None
         if self._paused:
             self.process.post("pause", session=self.number, paused=True)
 
     def release(self) -> None:
+        """As Session has it."""
         super().release()
         self._reader = None
 
     def fail(self, text: str) -> None:
+        """As Session has it."""
         self.status = dataclasses.replace(self.status, error=text, settled=True)
 
     def receive(self, kind: str, content: dict) -> None:
+        """As Session has it."""
         if kind == "frame":
             self._receive_frame(**content)
         elif kind == "status":
@@ -208,6 +213,7 @@ class RenderSession(Session):
                 self.process.post("stop", session=self.number, generation=self._generation)
 
     def introduce(self) -> None:
+        """As Session has it."""
         super().introduce()
         self.introduced = True
         self.process.post("expect_snapshots", session=self.number, seconds=self._snapshots)
@@ -216,9 +222,11 @@ class RenderSession(Session):
         self.events.put(("started", {}))
 
     def fail(self, text: str) -> None:
+        """As Session has it."""
         self.events.put(("failed", {"error": "RendererError", "text": text}))
 
     def receive(self, kind: str, content: dict) -> None:
+        """As Session has it."""
         if kind not in ("progress", "picture", "snapshot", "result", "failed"):
             raise ProtocolError(f"a render has no message {kind!r}")
         if "arrays" in content:

@@ -2,11 +2,12 @@
 """The talk with one renderer process: a thread that writes, a thread that reads."""
 
 import collections
+import functools
 import logging
 import threading
 import time
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any, Protocol
 
 from ..gl.context import DeviceInformation
 from .child_process import ChildProcess, ProcessEnded
@@ -87,11 +88,11 @@ class Connection:
                 if self.ready:
                     for session in owner.sessions.values():
                         if (snapshot := session.take_snapshot()) is not None:
-                            return lambda session=session, snapshot=snapshot: self._send_scene(session, *snapshot)
+                            return functools.partial(self._send_scene, session, *snapshot)
                 owner.changed.wait()
         return None
 
-    def _send_scene(self, session: Session, *snapshot: object) -> None:
+    def _send_scene(self, session: Session, *snapshot: Any) -> None:
         try:
             self._child.send_scene(session.number, *snapshot)
         except ProcessEnded:

@@ -15,7 +15,8 @@ from .protocol import ProtocolError
 from .shared_memory import SharedBlock
 
 SLOTS = 3
-_HEADER = np.dtype([(name, np.int64) for name in ("guard", "generation", "sequence", "width", "height")])
+_ANNOUNCED = ("generation", "sequence", "width", "height")
+_HEADER = np.dtype([(name, np.int64) for name in ("guard", *_ANNOUNCED)])
 _HEADER_BYTES = 64
 
 
@@ -43,8 +44,8 @@ class _Slots:
         self.capacity = capacity
         stride = slot_bytes(capacity)
         memory = block.memory
-        self.headers = [np.ndarray((), _HEADER, memory, slot * stride) for slot in range(SLOTS)]
-        self.pixels = [
+        self.headers: list[np.ndarray] = [np.ndarray((), _HEADER, memory, slot * stride) for slot in range(SLOTS)]
+        self.pixels: list[np.ndarray] = [
             np.ndarray((4 * capacity,), np.float32, memory, slot * stride + _HEADER_BYTES) for slot in range(SLOTS)
         ]
 
@@ -120,7 +121,7 @@ class FrameReader:
         header = self._slots.headers[slot]
         guard = int(header["guard"])
         announced = (generation, sequence, width, height)
-        if guard % 2 or tuple(int(header[name]) for name in _HEADER.names[1:]) != announced:
+        if guard % 2 or tuple(int(header[name]) for name in _ANNOUNCED) != announced:
             return None
         combined = self._slots.pixels[slot][: 4 * width * height].reshape(height, width, 4).copy()
         return combined if int(header["guard"]) == guard else None

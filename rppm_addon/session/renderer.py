@@ -151,6 +151,7 @@ class SlicedRender:
 
     @property
     def progress(self) -> Progress:
+        """How far the render is."""
         settings = self._scene.settings
         photons = self.iterations * settings.photons
         return Progress(self.iterations, settings.iterations, self._elapsed, photons, settings.time_limit)
@@ -200,6 +201,7 @@ class Renderer:
 
     @property
     def device(self) -> DeviceInformation:
+        """What is rendered on."""
         return self._context.information
 
     def __enter__(self) -> "Renderer":

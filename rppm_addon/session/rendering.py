@@ -90,7 +90,7 @@ class Rendering:
             self._context,
             self._mapper,
             self._scene,
-            on_progress=lambda progress, frame: self._send("progress", progress=dataclasses.asdict(progress)),
+            on_progress=lambda progress, _: self._send("progress", progress=dataclasses.asdict(progress)),
             snapshots=self._snapshots,
             on_snapshot=lambda seconds, frame: self._send_frame("snapshot", frame, seconds=seconds),
         )

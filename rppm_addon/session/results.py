@@ -67,6 +67,8 @@ class RenderStatistics:
 
 @dataclass
 class RenderResult:
+    """What a render gave."""
+
     frame: Frame
     statistics: RenderStatistics
     stopped: bool

@@ -12,6 +12,7 @@ import os
 import re
 import secrets
 import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -57,7 +58,7 @@ class SharedBlock:
         if match is None:
             raise ValueError(f"{name} names no shared memory")
         path, identity = match.groups()
-        if not os.readlink(path).startswith(f"/memfd:{_LABEL} "):
+        if not str(Path(path).readlink()).startswith(f"/memfd:{_LABEL} "):
             raise FileNotFoundError(f"{name} is something else now")
         file = os.open(path, os.O_RDWR | os.O_CLOEXEC)
         try:
@@ -75,7 +76,7 @@ class SharedBlock:
 
         Raises OSError when there is not so much memory.
         """
-        data = memoryview(array.reshape(-1).view(np.uint8))
+        data = array.reshape(-1).view(np.uint8).data
         if self._file is None:
             self.memory[offset : offset + len(data)] = data
             return

@@ -12,6 +12,7 @@ import functools
 import itertools
 import typing
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -48,6 +49,7 @@ class Part:
         self._bytes = 0
 
     def keep(self, array: np.ndarray) -> int:
+        """Add an array; returns its place."""
         self.arrays.append(array)
         self._bytes += array.nbytes
         return len(self.arrays) - 1
@@ -59,6 +61,7 @@ class Part:
 
     @property
     def is_full(self) -> bool:
+        """Whether the next member belongs into another message."""
         return self._members >= _PART_MEMBERS or self._bytes >= _PART_BYTES
 
 
@@ -165,7 +168,8 @@ class _NewMembers:
             for key, member in new.items():
                 if self._parts[-1].is_full:
                     self._parts.append(Part())
-                part, large = self._parts[-1], []
+                part = self._parts[-1]
+                large: list[int] = []
                 document = encode(member, functools.partial(self._keep, part, large))
                 part.add(field, [self._give(key, member, large), document])
         return [known[key][0] for key in ids]
@@ -216,7 +220,7 @@ class SceneReceiver:
     """Keeps the members that the sender refers to."""
 
     def __init__(self) -> None:
-        self._members: dict[int, object] = {}
+        self._members: dict[int, Any] = {}
         """Large arrays are among them."""
 
     @collector_paused()
@@ -234,11 +238,10 @@ class SceneReceiver:
     def receive(self, document: dict, arrays: Sequence[np.ndarray]) -> Scene:
         """The scene of the part that tells of it, once its members are known. Raises as learn does."""
         known, handles = self._members, document["members"]
-        scene = Scene(
-            **{name: known[handles[name]] for name in _SINGLE},
-            **{name: [known[handle] for handle in handles[name]] for name in _LISTS},
-            **{name: decode(value, _VALUES[name], arrays) for name, value in document["values"].items()},
-        )
+        members: dict[str, Any] = {name: known[handles[name]] for name in _SINGLE}
+        members |= {name: [known[handle] for handle in handles[name]] for name in _LISTS}
+        members |= {name: decode(value, _VALUES[name], arrays) for name, value in document["values"].items()}
+        scene = Scene(**members)
         self.forget(document["dead"])
         return scene
 
@@ -251,7 +254,7 @@ class SceneReceiver:
 class _Found:
     """Arrays by their references: places in the message, or handles as text."""
 
-    def __init__(self, members: dict[int, object], arrays: Sequence[np.ndarray]) -> None:
+    def __init__(self, members: dict[int, Any], arrays: Sequence[np.ndarray]) -> None:
         self._members, self._arrays = members, arrays
 
     def __getitem__(self, reference: int | str) -> np.ndarray:

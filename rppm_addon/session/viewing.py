@@ -77,6 +77,7 @@ class Viewing:
         self._shown_at = time.perf_counter()
 
     def pause(self, paused: bool) -> None:
+        """Stop improving the picture, or go on."""
         self._paused = paused
 
     @property

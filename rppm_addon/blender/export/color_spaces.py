@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colour spaces of image files, as Blender's colour management decodes them."""
 
-import os
 import tempfile
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -27,7 +27,7 @@ def scene_linear(colors: np.ndarray, space: str) -> np.ndarray:
     planes = {name: np.ascontiguousarray(colors[::-1, :, k], np.float32) for k, name in enumerate("RGB")}
     header = {"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}
     with tempfile.TemporaryDirectory(prefix="rppm_") as folder:
-        path = os.path.join(folder, "colors.exr")
+        path = str(Path(folder) / "colors.exr")
         OpenEXR.File(header, planes).write(path)
         image = bpy.data.images.load(path)
         try:

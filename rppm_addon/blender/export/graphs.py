@@ -40,7 +40,7 @@ def snake_case(identifier: str) -> str:
 
 
 def kind_name(node: bpy.types.Node) -> str:
-    """ "ShaderNodeTexNoise" is tex_noise."""
+    """The kind of a Blender node: "ShaderNodeTexNoise" is tex_noise."""
     name = node.bl_idname.removeprefix("ShaderNode")
     if name in _IRREGULAR:
         return _IRREGULAR[name]

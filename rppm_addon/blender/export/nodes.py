@@ -2,6 +2,7 @@
 """Nodes of the surface, the object and images that are more than their sockets and options."""
 
 import functools
+import pathlib
 
 import bpy
 import numpy as np
@@ -17,7 +18,7 @@ from .links import Path
 
 
 @handles("BSDF_PRINCIPLED")
-def _principled(exporter: GraphExporter, node, output, path: Path):
+def _principled(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     wall = next((socket for socket in node.inputs if socket.identifier == "Thin Wall"), None)
     value = False if wall is None else exporter.value(wall, path)  # sockets of Blender 5.2 on
     if not isinstance(value, Link):
@@ -32,7 +33,7 @@ def _principled(exporter: GraphExporter, node, output, path: Path):
 
 
 @handles("TEX_COORD")
-def _coordinates(exporter: GraphExporter, node, output, path: Path):
+def _coordinates(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     name = snake_case(output.identifier)
     if name == "generated":
         return exporter.shared("generated_coord", "generated", GENERATED)
@@ -46,7 +47,7 @@ def _coordinates(exporter: GraphExporter, node, output, path: Path):
 
 
 @handles("NEW_GEOMETRY")
-def _geometry(exporter: GraphExporter, node, output, path: Path):
+def _geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     name = snake_case(output.identifier)
     if name == "random_per_island":
         return exporter.shared("random_per_island", name, ISLAND)
@@ -57,24 +58,24 @@ def _geometry(exporter: GraphExporter, node, output, path: Path):
 
 
 @handles("UVMAP")
-def _uv_map(exporter: GraphExporter, node, output, path: Path):
+def _uv_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     return exporter.shared("uvmap", "uv", node.uv_map, node.name) if node.uv_map else exporter.shared("tex_coord", "uv")
 
 
 @handles("VERTEX_COLOR")
-def _color_attribute(exporter: GraphExporter, node, output, path: Path):
+def _color_attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR, node.name)
 
 
 @handles("ATTRIBUTE")
-def _attribute(exporter: GraphExporter, node, output, path: Path):
+def _attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     if node.attribute_type == "VIEW_LAYER":
         return _view_layer_attribute(exporter, node, output)
     name = node.attribute_name if node.attribute_type == "GEOMETRY" else f"{node.attribute_type}:{node.attribute_name}"
     return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE, node.name)
 
 
-def _view_layer_attribute(exporter: GraphExporter, node, output):
+def _view_layer_attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket) -> object:
     """A property of the view layer, the scene or the world, which is one value for all surfaces."""
     exporter.context.owner_reads += 1
     for owner in exporter.context.owners:
@@ -86,24 +87,24 @@ def _view_layer_attribute(exporter: GraphExporter, node, output):
 
 
 @handles("TANGENT")
-def _tangent(exporter: GraphExporter, node, output, path: Path):
+def _tangent(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     attribute = GENERATED if node.direction_type == "RADIAL" else TANGENT + node.uv_map
     return exporter.add("tangent", node, path, "tangent", attribute=attribute)
 
 
 @handles("NORMAL_MAP")
-def _normal_map(exporter: GraphExporter, node, output, path: Path):
+def _normal_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     return exporter.add("normal_map", node, path, "normal", attribute=TANGENT + node.uv_map)
 
 
 @handles("BEVEL", "AMBIENT_OCCLUSION")
-def _surroundings(exporter: GraphExporter, node, output, path: Path):
+def _surroundings(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     exporter.warn(node, "would need rays of its own, which are not traced; it is left out")
     return exporter.add(node.type.lower(), node, path, snake_case(output.identifier))
 
 
 @handles("OBJECT_INFO")
-def _object_info(exporter: GraphExporter, node, output, path: Path):
+def _object_info(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     name = snake_case(output.identifier)
     if name == "material_index":
         return float(exporter.pass_index)
@@ -111,7 +112,7 @@ def _object_info(exporter: GraphExporter, node, output, path: Path):
 
 
 @handles("TEX_IMAGE")
-def _image_texture(exporter: GraphExporter, node, output, path: Path):
+def _image_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     warn = functools.partial(exporter.warn, node)
     tiles = exporter.images.tiles(node, warn)
     image = exporter.images.of_node(node, warn) if tiles is None else -1
@@ -129,13 +130,15 @@ def _image_texture(exporter: GraphExporter, node, output, path: Path):
 
 
 @handles("TEX_ENVIRONMENT")
-def _environment_texture(exporter: GraphExporter, node, output, path: Path):
+def _environment_texture(
+    exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path
+) -> object:
     image = exporter.images.of_node(node, functools.partial(exporter.warn, node))
     return exporter.add("tex_environment", node, path, "color", image=image)
 
 
 @handles("TEX_IES")
-def _ies_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path):
+def _ies_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     vector = next(socket for socket in node.inputs if socket.identifier == "Vector")
     inputs = {}
     if not exporter.is_linked(vector, path):
@@ -157,12 +160,11 @@ def _profile(node: bpy.types.Node) -> str:
     if node.mode == "INTERNAL":
         return "" if node.ies is None else node.ies.as_string()
     file = bpy.path.abspath(node.filepath, library=node.id_data.library)
-    with open(file, encoding="latin-1") as profile:
-        return profile.read()
+    return pathlib.Path(file).read_text(encoding="latin-1")
 
 
 @handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")
-def _other_geometry(exporter: GraphExporter, node, output, path: Path):
+def _other_geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
 
 

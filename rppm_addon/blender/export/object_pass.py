@@ -113,6 +113,7 @@ class ObjectPass:
         self._result = Placed()
 
     def run(self) -> Placed:
+        """All instances and lights. Raises ExportStopped when the user wants no more."""
         matrices = instance_matrices(self._depsgraph)
         for number, instance in enumerate(self._depsgraph.object_instances):
             if number % 256 == 0:

@@ -17,7 +17,9 @@ class ExportStopped(RppmError):
 class Report:
     """Collects warnings without repeating them and asks whether to go on."""
 
-    def __init__(self, should_stop: Callable[[], bool] | None = None, show: Callable[[str], None] | None = None):
+    def __init__(
+        self, should_stop: Callable[[], bool] | None = None, show: Callable[[str], None] | None = None
+    ) -> None:
         self._warnings: dict[Hashable, dict[str, None]] = {}
         self._part: Hashable = None
         self._logged: set[str] = set()

@@ -49,6 +49,7 @@ def register() -> None:
 
 
 def unregister() -> None:
+    """Take out the panels."""
     viewport_header.unregister()
     borrowed.unregister()
     presets.unregister()

@@ -49,4 +49,5 @@ def register() -> None:
 
 
 def unregister() -> None:
+    """Take out the menu of presets."""
     bpy.utils.unregister_preset_path(str(FOLDER))

@@ -15,8 +15,10 @@ def draw_pause(self: bpy.types.Header, context: bpy.types.Context) -> None:
 
 
 def register() -> None:
+    """Add the header's button."""
     bpy.types.VIEW3D_HT_header.append(draw_pause)
 
 
 def unregister() -> None:
+    """Take out the header's button."""
     bpy.types.VIEW3D_HT_header.remove(draw_pause)

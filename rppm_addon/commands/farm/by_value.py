@@ -6,6 +6,7 @@ They are made inside others, so that dask sends their code instead of their name
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 
 def identity_function(local: bool) -> Callable[[], str]:
@@ -31,7 +32,7 @@ def identity_function(local: bool) -> Callable[[], str]:
 def perform_function() -> Callable:
     """worker.perform on the Task of these fields."""
 
-    def perform_task(folder: Path, **fields: object):
+    def perform_task(folder: Path, **fields: Any) -> object:
         from rppm_addon.commands.farm.tasks import Task
         from rppm_addon.commands.farm.worker import perform
 

@@ -62,8 +62,8 @@ def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         report = run_farm(request, bar, lambda: interruption.asked, options.debug)
     bar.clear()
     if report.failed:
-        names = ", ".join(report.failed)
-        sys.stderr.write(f"rppm: {len(report.failed)} of {report.total} {report.kind} failed: {names}\n")
+        failed = ", ".join(report.failed)
+        sys.stderr.write(f"rppm: {len(report.failed)} of {report.total} {report.kind} failed: {failed}\n")
     if not report.finished and interruption.asked:
         sys.stderr.write("rppm: interrupted; what is finished lies there, run the same again to go on\n")
         return interruption.status

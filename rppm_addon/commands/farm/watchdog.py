@@ -4,12 +4,13 @@
 import _thread
 import os
 import signal
-import sys
 import threading
 import time
 
 from ..interruption import INTERRUPTED
 
+STANDARD_INPUT = 0
+"""Its number for the system, whatever sys.stdin is."""
 BETWEEN_INTERRUPTS_SECONDS = 5.0
 """The first has the render write its checkpoint and end, the second ends it wherever it is."""
 PATIENCE_SECONDS = 10.0
@@ -24,7 +25,7 @@ def watch_parent() -> None:
 
 
 def _end_when_released() -> None:
-    while os.read(sys.__stdin__.fileno(), 1024):
+    while os.read(STANDARD_INPUT, 1024):
         pass
     for _ in range(2):
         _thread.interrupt_main()

@@ -110,7 +110,7 @@ def _put_in_place(task: Task, attempt: Path) -> None:
     """Move the pictures that are there to where they belong."""
     for path in task.files:
         if (attempt / path.name).is_file():
-            os.replace(attempt / path.name, path)
+            (attempt / path.name).replace(path)
 
 
 class _Program:

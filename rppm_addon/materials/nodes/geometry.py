@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes about the place, the object, the path and the normal."""
 
+from typing import Any
+
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 _UP = (0.0, 0.0, 1.0)
 
 
-def _geometry(outputs: dict, **members: object) -> NodeKind:
+def _geometry(outputs: dict, **members: Any) -> NodeKind:
     return NodeKind("geometry.glsl", outputs=outputs, surface=True, **members)
 
 
