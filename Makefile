@@ -48,7 +48,7 @@ lint: setup ## Check Python, types, imports, licence lines and shaders
 	.venv/bin/python tools/check_shaders.py
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
-	.venv/bin/python tests/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
+	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
 
 parity: setup ## Compare each feature with Cycles: table, contact sheets in out/parity/, docs/compatibility.md
 	.venv/bin/python -m tests.parity.features.report $(ROWS)

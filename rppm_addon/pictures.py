@@ -67,7 +67,8 @@ def write_exr(
     height, width = combined.shape[:2]
     place = placement or Placement(width, height)
     channels = dict(zip("RGBA", _planes(combined)))
-    for entry in passes_named(tuple(layers or ())):
+    layers = layers or {}
+    for entry in passes_named(tuple(layers)):
         channels.update(zip(entry.layers, _planes(layers[entry.name]), strict=True))
     header = {
         "compression": OpenEXR.ZIP_COMPRESSION,

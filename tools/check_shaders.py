@@ -35,7 +35,7 @@ def register_records() -> None:
 def node_texts() -> list[str]:
     """The programs of graphs that together have every function of every kind of node."""
     sys.path.insert(0, str(ROOT / "tests"))
-    from every_node import programs
+    from support.every_node import programs
 
     return list(programs().values())
 

@@ -143,6 +143,7 @@ def render_all(scenes: Path, only: list[str]) -> dict[str, str]:
 
 
 def main() -> int:
+    """Write or compare as the command line says; returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("action", choices=("write", "compare"))
     parser.add_argument("file", type=Path)

@@ -12,11 +12,11 @@ from ..scene import Scene
 from ..scene.errors import RppmError, SceneError
 from ..scene.passes import COMBINED
 from ..session.observers import RenderObserver, current_observer
+from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
-from ..session.sessions import SessionKind
 from . import broken_frames, renderer_process, renderer_thread
 from .export import ExportStopped, FrameExporter, export_scene, is_blurred
-from .export.camera import frame_size
+from .export.camera.camera import frame_size
 from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame as a texture in Blender's window."""
 
-from ..session.frames import SharedFrame
+from ..session.process.frames import SharedFrame
 
 
 class FrameTexture:

@@ -6,7 +6,7 @@ import contextlib
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from ..session.client import ProcessState
+from ..session.process.client import ProcessState
 from . import panels, renderer_process
 from .subjects import SubjectKind, select
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..scene.quantities import bytes_text
-from ..session.client import ProcessState
+from ..session.process.client import ProcessState
 from . import renderer_process
 from .panels.base import paragraph, reading
 

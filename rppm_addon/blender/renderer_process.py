@@ -10,11 +10,11 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..scene import Scene
-from ..session import remote_rendering
-from ..session.client import RendererProcess
+from ..session.process import remote_rendering
+from ..session.process.client import RendererProcess
+from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
 from ..session.results import RenderResult
-from ..session.sessions import SessionKind
 
 _EXTENSIONS = "bl_ext"
 _process: RendererProcess | None = None

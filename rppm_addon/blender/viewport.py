@@ -11,8 +11,8 @@ from bpy.app.handlers import persistent
 from ..scene import Camera, RenderSettings, Scene
 from ..scene.errors import RppmError
 from ..scene.sharing import share
-from ..session.client import ProcessState
-from ..session.sessions import SessionKind, SessionStatus
+from ..session.process.client import ProcessState
+from ..session.process.sessions import SessionKind, SessionStatus
 from . import panels, reports
 from .export import SceneSync, export_exposure, export_settings, export_view
 from .frame_texture import FrameTexture

@@ -78,7 +78,8 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     )
     _check(found, incomplete)
     radiance: Any = 0.0
-    passes, inspections = MergedPasses(), {}
+    passes = MergedPasses()
+    inspections: dict[str, np.ndarray] = {}
     for summary, pause in _read_parts(found):
         state = pause.state
         radiance = radiance + state.radiance.astype(np.float64) * (summary.iteration - summary.left_out)

@@ -15,8 +15,8 @@ import numpy as np
 from benchmark_machine import ROOT, Clock
 from bounding_volumes import BoundingVolumes, build_nodes
 from deep_cubemap_scenes import room_with_meshes
-from lobes import Lobe, LobeKind, material
 from ray_sets import different, photon_origins, record_rays, triangles
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary

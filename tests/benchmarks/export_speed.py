@@ -33,9 +33,9 @@ from rppm_addon.gl.context import Context  # noqa: E402
 from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
 from rppm_addon.scene import Camera, Scene  # noqa: E402
-from rppm_addon.session.arrays import pack, unpack  # noqa: E402
-from rppm_addon.session.protocol import frame_message  # noqa: E402
-from rppm_addon.session.transfer import SceneReceiver, SceneSender  # noqa: E402
+from rppm_addon.session.process.arrays import pack, unpack  # noqa: E402
+from rppm_addon.session.process.protocol import frame_message  # noqa: E402
+from rppm_addon.session.process.transfer import SceneReceiver, SceneSender  # noqa: E402
 
 STAGES = ("Blender", "export", "send", "receive", "upload", "gather", "others", "fresh export")
 CAMERA = Camera(np.diag((1.0, 1.0, 1.0, 1.0)), (-1.0, 1.0, -1.0, 1.0), 32, 32)

@@ -23,7 +23,7 @@ for folder in (ROOT, ROOT / "tests", ROOT / "tests/benchmarks"):  # the checkout
 
 import bpy  # noqa: E402
 from benchmark_machine import Clock, describe  # noqa: E402
-from held import HeldByFrame  # noqa: E402
+from support.held import HeldByFrame  # noqa: E402
 
 import rppm_addon  # noqa: E402
 from rppm_addon.gl.context import Context  # noqa: E402

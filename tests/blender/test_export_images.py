@@ -7,8 +7,8 @@ import pytest
 from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, shaders, source, to_surface
 from test_export_lights import cycles_radiance
 
-from rppm_addon.blender.export.color_spaces import scene_linear, to_srgb
-from rppm_addon.blender.export.images import MISSING
+from rppm_addon.blender.export.images.color_spaces import scene_linear, to_srgb
+from rppm_addon.blender.export.images.images import MISSING
 
 
 def new_image(name, pixels, is_float=False, space=None):

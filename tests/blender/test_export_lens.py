@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_object, export
 
-from rppm_addon.blender.export.lens import export_panorama
+from rppm_addon.blender.export.camera.lens import export_panorama
 from rppm_addon.scene import PanoramaKind
 from rppm_addon.scene.errors import SceneError
 

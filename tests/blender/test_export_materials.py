@@ -16,7 +16,7 @@ from blender_scenes import (
     to_surface,
 )
 
-from rppm_addon.blender.export.graphs import HANDLERS, _own_properties, kind_name, snake_case
+from rppm_addon.blender.export.nodes.graphs import HANDLERS, _own_properties, kind_name, snake_case
 from rppm_addon.materials.compiler import compile_graph
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene import Link

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_light, add_mesh, add_node, add_object, new_material, set_world, to_surface
-from moving import FRAME, animate, blur, taken_scene
+from support.moving import FRAME, animate, blur, taken_scene
 
 from rppm_addon.blender.export import SceneSync, export_scene
 from rppm_addon.blender.export.motion import step_times

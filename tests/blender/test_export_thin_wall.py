@@ -6,9 +6,9 @@ import bpy
 import pytest
 from blender_scenes import add_node, link, new_material
 
-from rppm_addon.blender.export import nodes  # noqa: F401  registers the handler
 from rppm_addon.blender.export.context import ExportContext
-from rppm_addon.blender.export.graphs import HANDLERS, GraphExporter
+from rppm_addon.blender.export.nodes import surface_nodes as nodes  # noqa: F401  registers the handler
+from rppm_addon.blender.export.nodes.graphs import HANDLERS, GraphExporter
 from rppm_addon.blender.export.report import Report
 from rppm_addon.materials.compiler import compile_graph
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
-from rppm_addon.blender.export.camera import export_camera
+from rppm_addon.blender.export.camera.camera import export_camera
+from rppm_addon.blender.export.camera.view import export_view
 from rppm_addon.blender.export.report import Report
-from rppm_addon.blender.export.view import export_view
 from rppm_addon.scene.errors import SceneError
 
 WIDTH, HEIGHT = 480, 270

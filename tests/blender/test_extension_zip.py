@@ -127,7 +127,7 @@ def test_imports_are_relative_or_declared(archive):
                 modules = [node.module]
             for module in modules:
                 top = module.split(".")[0]
-                if top == "rppm_addon" and name == "rppm_addon/session/bootstrap.py":
+                if top == "rppm_addon" and name == "rppm_addon/session/process/bootstrap.py":
                     continue  # in the renderer process, which has the package by its folder
                 assert top in RUNTIME | BLENDERS or top in sys.stdlib_module_names, f"{name}: imports {module}"
                 assert top not in ("socket", "ssl", "urllib", "http", "pickle"), f"{name}: imports {module}"

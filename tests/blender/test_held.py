@@ -4,7 +4,7 @@
 import bpy
 import pytest
 from blender_scenes import add_light, add_mesh, set_world
-from held import HeldByFrame
+from support.held import HeldByFrame
 
 FRAMES = 60
 GRACE = 20

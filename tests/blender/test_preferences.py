@@ -14,7 +14,7 @@ from drawing import drawn
 from rppm_addon.blender import operators, preferences, renderer_process
 from rppm_addon.blender.preferences import RppmPreferences
 from rppm_addon.gl.context import DeviceInformation
-from rppm_addon.session.client import ProcessState
+from rppm_addon.session.process.client import ProcessState
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from sent_members import watch_sent_members
+from support.sent_members import watch_sent_members
 
 import rppm_addon
 from rppm_addon.blender import renderer_process, renderer_thread
-from rppm_addon.session.client import ProcessState
 from rppm_addon.session.observers import RenderObserver, observing
-from rppm_addon.session.sessions import SessionKind
+from rppm_addon.session.process.client import ProcessState
+from rppm_addon.session.process.sessions import SessionKind
 
 
 @pytest.fixture

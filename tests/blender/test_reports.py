@@ -19,8 +19,8 @@ from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
 from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.scene import RenderSettings
-from rppm_addon.session.client import RendererProcess
-from rppm_addon.session.sessions import SessionKind, SessionStatus
+from rppm_addon.session.process.client import RendererProcess
+from rppm_addon.session.process.sessions import SessionKind, SessionStatus
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from floor import floor_scene
+from support.floor import floor_scene
 
 from rppm_addon.scene import save_scene
 

@@ -9,7 +9,7 @@ import time
 import numpy as np
 import PIL.Image
 import pytest
-from floor import floor_scene
+from support.floor import floor_scene
 
 from rppm_addon.integrator.guide import LEARNING_ITERATIONS
 from rppm_addon.integrator.state import RenderState

@@ -4,7 +4,7 @@
 import dataclasses
 import re
 
-from floor import floor_scene
+from support.floor import floor_scene
 
 from rppm_addon.commands.compiling import _small
 from rppm_addon.scene import Camera

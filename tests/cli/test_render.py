@@ -8,7 +8,7 @@ import time
 import numpy as np
 import PIL.Image
 import pytest
-from floor import floor_scene
+from support.floor import floor_scene
 
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene import load_scene

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import path_quadrature as quadrature
 import scenes
-from lobes import Lobe, LobeKind, material
 from path_quadrature import Plane, Spot
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from lobes import Lobe, LobeKind
 from path_classes import facing_down, level
 from path_quadrature import Spot
+from support.lobes import Lobe, LobeKind
 
 from rppm_addon.scene import Mesh
 

@@ -2,7 +2,7 @@
 """Small scenes made of arrays, without Blender."""
 
 import numpy as np
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, Mesh, RenderSettings, Scene
 

@@ -6,8 +6,8 @@ import dataclasses
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind
-from lobes import material as lobe_material
+from support.lobes import Lobe, LobeKind
+from support.lobes import material as lobe_material
 
 from rppm_addon.scene import (
     Camera,

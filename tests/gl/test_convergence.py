@@ -13,10 +13,10 @@ radius and the flux of its photons as they were; Eq. 2 alone is compared with th
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
 from scipy.interpolate import CubicSpline
 from scipy.stats import norm as normal
 from scipy.stats import t as student
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator import progressive
 from rppm_addon.integrator.bandwidth import shrinkage

@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 from test_render_state import busy_room
 from test_shutter import everything_moves
 

@@ -6,10 +6,10 @@ import dataclasses
 import numpy as np
 import pytest
 import scenes
-from lobes import material
 from parity.comparison import write_pair
 from path_classes import CUT, FIRST, MODES, PHOTONS, SECOND, SIZE, STORED, TRACED, lobe
 from path_comparison import BLOCKS, OUTPUT, ROUNDING, SEEDS, SHARPNESS, block_errors, blocks, render
+from support.lobes import material
 
 from rppm_addon.scene import DirectLight, Scene
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import scenes
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator import final_gather, progressive
 from rppm_addon.integrator.records import GATHERING_VERTEX

@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
+from rppm_addon.session.process.viewing import shown_picture
 from rppm_addon.session.renderer import read_combined
-from rppm_addon.session.viewing import shown_picture
 
 
 def behind_a_pane(material: Material, floor: bool = True) -> Scene:

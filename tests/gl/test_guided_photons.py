@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, image_world, material
+from support.lobes import Lobe, LobeKind, image_world, material
 from test_light_sources import LIGHTS, floor_scene
 
 from rppm_addon.integrator import guide, progressive

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 from test_light_sampling import light_samples
 from test_light_sources import floor_scene
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 from test_light_sources import floor_scene
 
 from rppm_addon.gl.records import Record

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, image_world, material
+from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator import bands
 from rppm_addon.integrator.living_paths import LivingPaths

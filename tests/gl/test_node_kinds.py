@@ -2,7 +2,7 @@
 """All kinds of nodes in the program that resolves hits."""
 
 import pytest
-from every_node import SOURCES, programs
+from support.every_node import SOURCES, programs
 
 TEXTS = programs()
 

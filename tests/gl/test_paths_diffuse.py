@@ -4,7 +4,6 @@
 import numpy as np
 import path_quadrature as quadrature
 import pytest
-from lobes import material
 from path_classes import (
     DOWN,
     FIRST,
@@ -30,6 +29,7 @@ from path_classes import (
 )
 from path_comparison import compare, gathering
 from path_quadrature import Plane
+from support.lobes import material
 
 from rppm_addon.scene import DirectLight, Instance
 

@@ -8,10 +8,10 @@ import path_glass as glass
 import path_quadrature as quadrature
 import pytest
 import scenes
-from lobes import Lobe, LobeKind
 from path_classes import FIRST, FLOOR, MODES, Build, Case, level, lobe, scene_of, traced_only, view
 from path_comparison import compare
 from path_quadrature import Plane
+from support.lobes import Lobe, LobeKind
 
 from rppm_addon.scene import DirectLight, Light, LightKind, Mesh
 

@@ -7,9 +7,9 @@ import zlib
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, image_world, material
 from path_classes import PHOTONS, RAYS, TRACED, lobe, view
 from path_comparison import SEEDS, SHARPNESS, block_errors, blocks, judge, render
+from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.scene import Image, Instance, RenderSettings, Scene, World
 

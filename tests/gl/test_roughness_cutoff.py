@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, image_world, material
+from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.scene import Camera, DirectLight, Image, Instance, Light, LightKind, RenderSettings, Scene, World
 

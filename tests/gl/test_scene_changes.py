@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, image_world, material
+from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Image, NodeGraph, Scene, World

@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 from test_convergence import blurred, lamp, lamp_radiance, pixel_points
 
 from rppm_addon.integrator import bands

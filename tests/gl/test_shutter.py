@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 import scenes
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.shutter import moment

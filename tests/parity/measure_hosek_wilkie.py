@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rppm_addon.materials import sky_hosek_wilkie
 from rppm_addon.materials.colorimetry import XYZ_TO_REC709
-from rppm_addon.materials.sky_hosek_wilkie import ALBEDOS, ELEVATION_NODES, LOWEST_COSINE, TURBIDITIES, terms
+from rppm_addon.materials.sky import hosek_wilkie as sky_hosek_wilkie
+from rppm_addon.materials.sky.hosek_wilkie import ALBEDOS, ELEVATION_NODES, LOWEST_COSINE, TURBIDITIES, terms
 from rppm_addon.scene.sky import Sky
 
 from .skies import panoramas

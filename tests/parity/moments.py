@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from moving import FRAME, taken_scene
+from support.moving import FRAME, taken_scene
 
 from rppm_addon.session.renderer import Renderer
 

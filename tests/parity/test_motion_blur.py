@@ -8,7 +8,7 @@ of a pixel behind; all scenes have some light in all of the picture, beside whic
 import bpy
 import numpy as np
 import pytest
-from moving import animate, blur
+from support.moving import animate, blur
 
 from .comparison import CAUSTIC, CONVERGED, compare
 from .moments import cycles_at_moments, render_blurred

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 
-from rppm_addon.materials.sky import sky_radiance, sun_disc
+from rppm_addon.materials.sky.picture import sky_radiance, sun_disc
 from rppm_addon.scene.sky import Sky
 
 from .skies import close_up, panorama

@@ -19,7 +19,7 @@ import OpenEXR
 from mathutils import Euler, Matrix
 
 from rppm_addon.blender.export.context import ExportContext
-from rppm_addon.blender.export.graphs import GraphExporter
+from rppm_addon.blender.export.nodes.graphs import GraphExporter
 from rppm_addon.blender.export.report import Report
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.sources import expand

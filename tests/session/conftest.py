@@ -10,9 +10,9 @@ import time
 from pathlib import Path
 
 import pytest
-from floor import floor_scene
+from support.floor import floor_scene
 
-from rppm_addon.session.client import Patience, RendererProcess
+from rppm_addon.session.process.client import Patience, RendererProcess
 
 FAKE = Path(__file__).with_name("fake_renderer.py")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rppm_addon.session.protocol import LONGEST_MESSAGE, ProtocolError, frame_message, read_message
+from rppm_addon.session.process.protocol import LONGEST_MESSAGE, ProtocolError, frame_message, read_message
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -39,6 +39,6 @@ def test_rubbish(text):
 def test_the_child_can_read_its_first_message_before_it_finds_numpy():
     code = (
         "import sys; sys.modules['numpy'] = sys.modules['moderngl'] = None; sys.path.insert(0, sys.argv[1]);"
-        "import rppm_addon.session.protocol"
+        "import rppm_addon.session.process.protocol"
     )
     subprocess.run([sys.executable, "-I", "-S", "-c", code, str(ROOT)], check=True, timeout=60)

@@ -7,14 +7,14 @@ import signal
 
 import numpy as np
 import pytest
-from sent_members import watch_sent_members
+from support.sent_members import watch_sent_members
 
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.session.client import ProcessState
-from rppm_addon.session.remote_rendering import RemoteRenderer
+from rppm_addon.session.process.client import ProcessState
+from rppm_addon.session.process.remote_rendering import RemoteRenderer
+from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
 from rppm_addon.session.renderer import Renderer
-from rppm_addon.session.sessions import SessionKind
 
 from .conftest import children, open_blocks, scene_of, wait_until
 

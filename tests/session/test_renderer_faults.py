@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import Image
-from rppm_addon.session import client, remote_rendering
-from rppm_addon.session.client import MOST_RESTARTS, ProcessState
+from rppm_addon.session.process import client, remote_rendering
+from rppm_addon.session.process.client import MOST_RESTARTS, ProcessState
+from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
-from rppm_addon.session.sessions import SessionKind
 
 from .conftest import children, scene_of, wait_until
 

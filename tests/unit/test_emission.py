@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.emission import _spread_share, share_out, spot_share, spread_constants
 from rppm_addon.integrator.environment import distribution_of

@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from full_scene import full_scene
+from support.full_scene import full_scene
 
 from rppm_addon.scene import DirectLight, RenderSettings, load_scene, save_scene
 from rppm_addon.scene.fingerprint import UNSEEN, plain_settings, scene_digests

@@ -5,9 +5,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from floor import floor_scene
 from hypothesis import given
 from hypothesis import strategies as st
+from support.floor import floor_scene
 
 from rppm_addon.integrator.shutter import moment, swept_bounds
 from rppm_addon.scene import CameraMovement, Deformation, Light, LightKind, Movement, MovingScene, Scene, Shutter

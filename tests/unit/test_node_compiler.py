@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from every_node import programs
+from support.every_node import programs
 
 from rppm_addon.materials.compiler import GraphError, Resource, compile_graph
 from rppm_addon.scene import Link, NodeGraph

@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from full_scene import assert_same, full_scene
+from support.full_scene import assert_same, full_scene
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.materials.compiler import compile_graph

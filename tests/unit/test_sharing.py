@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from lobes import Lobe, LobeKind, image_world, material
+from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Mesh, Scene
 from rppm_addon.scene.sharing import share

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rppm_addon.materials.colorimetry import black_body
-from rppm_addon.materials.sky import sky_picture, sky_radiance, sun_disc
-from rppm_addon.materials.sky_single_scattering import SUN_SOLID_ANGLE, SUN_TEMPERATURE
+from rppm_addon.materials.sky.picture import sky_picture, sky_radiance, sun_disc
+from rppm_addon.materials.sky.single_scattering import SUN_SOLID_ANGLE, SUN_TEMPERATURE
 from rppm_addon.scene.sky import Sky
 
 SCATTERING = ["SINGLE_SCATTERING", "MULTIPLE_SCATTERING"]

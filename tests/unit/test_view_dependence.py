@@ -2,7 +2,7 @@
 """Which materials scatter by shares that depend on the viewer."""
 
 import pytest
-from lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.materials.view_dependence import depends_on_view
 from rppm_addon.scene import NodeGraph

@@ -8,16 +8,16 @@ import bpy
 from ...scene import Scene
 from ...scene.errors import SceneError
 from ...scene.garbage import collector_paused
-from .camera import export_camera
+from .camera.camera import export_camera
+from .camera.view import export_view
 from .context import ExportContext
 from .frames import FrameExporter
+from .lights.world import export_world
 from .motion import MotionExporter, is_blurred
-from .objects import ObjectExporter
+from .objects.objects import ObjectExporter
 from .report import ExportStopped, Report
 from .settings import export_cubemap_centre, export_exposure, export_settings, preview_settings
 from .sync import SceneSync
-from .view import export_view
-from .world import export_world
 
 __all__ = [
     "ExportStopped",

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from .images import ImageTable
+from .images.images import ImageTable
 from .report import Report
 
 

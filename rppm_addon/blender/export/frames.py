@@ -7,7 +7,7 @@ from collections.abc import Callable
 import bpy
 
 from ...scene import Scene
-from .camera import export_camera
+from .camera.camera import export_camera
 from .report import Report
 from .sync import SceneSync
 

@@ -12,12 +12,12 @@ import bpy
 import numpy as np
 
 from ...scene import CameraMovement, Deformation, Instance, Light, Mesh, Movement, Scene, Shutter
-from .camera import camera_pose, export_camera
+from .camera.camera import camera_pose, export_camera
 from .context import ExportContext
-from .matrices import usable_matrices
-from .meshes import read_shape, read_velocities
-from .object_pass import Identity, Placed, identity_of
-from .objects import ObjectExporter
+from .meshes.meshes import read_shape, read_velocities
+from .objects.matrices import usable_matrices
+from .objects.object_pass import Identity, Placed, identity_of
+from .objects.objects import ObjectExporter
 from .sync import read_edits
 
 MIDDLE = 0.5

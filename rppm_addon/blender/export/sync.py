@@ -12,11 +12,11 @@ from ...scene.garbage import collector_paused
 from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
-from .object_pass import Placed
-from .objects import ObjectExporter
+from .lights.world import export_world
+from .objects.object_pass import Placed
+from .objects.objects import ObjectExporter
 from .report import Report
 from .settings import export_cubemap_centre, export_exposure, export_settings
-from .world import export_world
 
 _MOST_UNUSED = 64
 """Images of frames gone by are kept up to so many."""

@@ -5,7 +5,7 @@ import bpy
 
 from ...scene.errors import SceneError
 from ...scene.quantities import bytes_text, count_text, rate_text, seconds_text
-from ..export.camera import crop, frame_size
+from ..export.camera.camera import crop, frame_size
 from ..export.settings import export_settings
 from ..readings import memory_reading
 from ..reports import RenderReport, reports_of

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..export.camera import frame_size
+from ..export.camera.camera import frame_size
 from ..export.settings import export_settings
 from ..readings import radius_reading
 from ..reports import reports_of

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's camera to a window in front of a rigid camera."""
+
+import bpy
+import numpy as np
+
+from ....scene import Camera
+from ....scene.errors import SceneError
+from ..objects.matrices import rigid
+from ..report import Report
+from .lens import export_aperture, export_panorama
+
+
+def export_camera(
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, report: Report, used: bpy.types.Object | None = None
+) -> Camera:
+    """The scene's active camera, or the one that is used in its place, as evaluated in the depsgraph.
+
+    Raises SceneError when there is no camera that can be used.
+    """
+    used = used or scene.camera
+    if used is None:
+        raise SceneError("the scene has no camera; add one, or make one active with Scene properties > Camera")
+    camera_object = used.evaluated_get(depsgraph)
+    if camera_object.type != "CAMERA":
+        raise SceneError(
+            f'the active camera "{camera_object.name}" is no camera but an object of type {camera_object.type}; '
+            "choose a camera in Scene properties > Camera"
+        )
+    camera = camera_object.data
+    if camera.type not in {"PERSP", "ORTHO", "PANO"}:
+        raise SceneError(
+            f'camera "{camera_object.name}" is of type {camera.type}, which RPPM cannot render; '
+            "set its lens type to Perspective, Orthographic or Panoramic"
+        )
+    try:
+        matrix, mirrored = rigid(np.array(camera_object.matrix_world, np.float64))
+    except ValueError:
+        raise SceneError(
+            f'the matrix of camera "{camera_object.name}" cannot be inverted; '
+            "give it and its parents a scale that is not 0"
+        ) from None
+    if mirrored:
+        report.warn(f'Camera "{camera_object.name}": its negative scale is ignored; the picture is not mirrored')
+    width, height = frame_size(scene.render)
+    across, upward = frame_shape(scene.render, width, height)
+    panoramic = camera.type == "PANO"
+    return Camera(
+        matrix=matrix,
+        window=window(camera, across, upward),
+        width=width,
+        height=height,
+        orthographic=camera.type == "ORTHO",
+        clip_start=camera.clip_start,
+        clip_end=max(camera.clip_end, camera.clip_start * 1.001),
+        crop=crop(scene.render, width, height),
+        panorama=export_panorama(camera, camera_object.name, across, upward) if panoramic else None,
+        aperture=export_aperture(camera, matrix, depsgraph),
+    )
+
+
+def camera_pose(
+    camera_object: bpy.types.Object, render: bpy.types.RenderSettings
+) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
+    """Matrix and window of an evaluated camera object that export_camera takes; None where its matrix is singular."""
+    try:
+        matrix, _ = rigid(np.array(camera_object.matrix_world, np.float64))
+    except ValueError:
+        return None
+    return matrix, window(camera_object.data, *frame_shape(render, *frame_size(render)))
+
+
+def frame_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
+    """Pixels of the whole frame: the resolution, scaled by its percentage."""
+    return tuple(
+        max(1, int(size * render.resolution_percentage / 100)) for size in (render.resolution_x, render.resolution_y)
+    )
+
+
+def frame_shape(render: bpy.types.RenderSettings, width: int, height: int) -> tuple[float, float]:
+    """Sizes of the frame in units of a pixel's width: pixels may not be square."""
+    return float(width), height * render.pixel_aspect_y / render.pixel_aspect_x
+
+
+def window(
+    camera: bpy.types.Camera, across: float, upward: float, flat: bool = False
+) -> tuple[float, float, float, float]:
+    """left, right, bottom, top: tangents for a perspective camera, metres for an orthographic one, shares of a
+    panorama's frame, which is ``across`` by ``upward`` pixel widths. flat: of a panorama, those of the perspective
+    view that Blender draws of it."""
+    if camera.type == "PANO" and not flat:
+        return camera.shift_x, camera.shift_x + 1.0, camera.shift_y, camera.shift_y + 1.0
+    fit = camera.sensor_fit
+    if fit == "AUTO":
+        fit = "HORIZONTAL" if across >= upward else "VERTICAL"
+    fitted = across if fit == "HORIZONTAL" else upward
+    if camera.type == "ORTHO":
+        size = camera.ortho_scale
+    else:
+        # With automatic fit the sensor's width is laid along the longer side, whichever it is.
+        sensor = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
+        size = sensor / camera.lens
+    half_width, half_height = 0.5 * size * across / fitted, 0.5 * size * upward / fitted
+    # Shifts are in units of the fitted side.
+    x, y = camera.shift_x * size, camera.shift_y * size
+    return x - half_width, x + half_width, y - half_height, y + half_height
+
+
+def crop(render: bpy.types.RenderSettings, width: int, height: int) -> tuple[int, int, int, int] | None:
+    """Pixels of the render border, x_min, y_min, x_max, y_max; None when the whole frame is rendered.
+
+    Raises SceneError when the border holds no pixel.
+    """
+    if not render.use_border:
+        return None
+    # Blender cuts the border's edges down to whole pixels in single precision.
+    edges = np.float32([render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y])
+    x_min, y_min, x_max, y_max = (edges * np.float32([width, height, width, height])).astype(int).tolist()
+    if x_max <= x_min or y_max <= y_min:
+        raise SceneError("the render border holds no pixel; draw a larger one or clear it (View > View Regions)")
+    return x_min, y_min, x_max, y_max

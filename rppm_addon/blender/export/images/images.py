@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender images to pixels, each exported once."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ....scene import Image
+from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
+
+Warn = Callable[[str], None]
+"""Tells the user what is done about the node that shows an image."""
+
+_LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"}
+
+
+class ImageTable:
+    """The images of a scene under export, at a frame of the scene."""
+
+    def __init__(self) -> None:
+        self.images: list[Image] = []
+        self.frame = 1
+        """Of the scene, whose sequences and movies are shown."""
+        self.reads_by_frame = 0
+        """How often an image was asked for that depends on the frame."""
+        self._indices: dict[tuple, int] = {}
+
+    def of_node(self, node: bpy.types.Node, warn: Warn) -> int:
+        """Index of a texture node's image, exported now if it is new; -1, with a warning, when it has no pixels."""
+        image = node.image
+        if image is None:
+            warn("has no image and counts as magenta; choose one")
+            return MISSING
+        if image.source not in {"SEQUENCE", "MOVIE"}:
+            return self._index((image.as_pointer(),), lambda: image, image, warn)
+        self.reads_by_frame += 1
+        number = frame_of(node.image_user, self.frame)
+        load = _of_movie if image.source == "MOVIE" else _of_sequence
+        return self._index((image.as_pointer(), number), lambda: load(image, number), image, warn)
+
+    def add(self, image: Image) -> int:
+        """Index of an image that belongs to no datablock."""
+        self.images.append(image)
+        return len(self.images) - 1
+
+    def tiles(self, node: bpy.types.Node, warn: Warn) -> np.ndarray | None:
+        """(n,) float32 index of the image of each UDIM tile from 1001 on, -1 where none is; None without tiles."""
+        image = node.image
+        if image is None or image.source != "TILED":
+            return None
+        numbers = [tile.number for tile in image.tiles]
+        table = np.full(max(numbers) - 1000, -1.0, np.float32)
+        for number in numbers:
+            path = bpy.path.abspath(image.filepath.replace("<UDIM>", str(number)), library=image.library)
+            key = (image.as_pointer(), number)
+
+            def tile(number: int = number, path: str = path) -> bpy.types.Image | None:
+                # The pixels that Blender hands out are those of the first tile, saved or not.
+                return image if number == numbers[0] else _load(path, image)
+
+            table[number - 1001] = self._index(key, tile, image, warn)
+        return table
+
+    def _index(
+        self,
+        key: tuple,
+        load: Callable[[], bpy.types.Image | None],
+        image: bpy.types.Image,
+        warn: Warn,
+    ) -> int:
+        if key not in self._indices:
+            loaded = load()
+            pixels = None if loaded is None else read_pixels(loaded)
+            if loaded is not None and loaded != image:
+                bpy.data.images.remove(loaded)
+            if pixels is None:
+                self._indices[key] = MISSING
+            else:
+                self._indices[key] = len(self.images)
+                self.images.append(_encoded(image, pixels))
+        if self._indices[key] == MISSING:
+            place = image.filepath or "no file"
+            warn(f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
+        return self._indices[key]
+
+
+MISSING = -1
+"""Stands for an image without pixels; it is magenta."""
+
+
+def frame_of(user: bpy.types.ImageUser, scene_frame: int) -> int:
+    """The number of the file of a sequence, or of the picture of a movie, that is shown at a frame of the scene. As in
+    Cycles, whether the user refreshes by itself makes no difference."""
+    number = scene_frame - user.frame_start + 1
+    if user.use_cyclic:
+        number = (number - 1) % max(user.frame_duration, 1) + 1
+    return min(max(number, 0), user.frame_duration) + user.frame_offset
+
+
+def _of_sequence(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
+    """A file of a sequence: the last number in its name counts."""
+    path = Path(bpy.path.abspath(image.filepath, library=image.library))
+    digits = re.search(r"\d+(?=\D*$)", path.stem)
+    if digits is None or number < 0:
+        return _load(str(path), image) if digits is None else None
+    name = path.stem[: digits.start()] + f"{number:0{len(digits[0])}d}" + path.stem[digits.end() :]
+    return _load(str(path.with_name(name + path.suffix)), image)
+
+
+def _of_movie(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
+    """A picture of a movie, the first or last one beyond its ends, as a copy whose pixels are of that picture.
+
+    Blender's Python gives the pixels of the picture that was asked for last: scaling a copy to its own size changes
+    nothing else, and is what can name a picture without a window.
+    """
+    width, height = image.size
+    if width < 1 or height < 1:
+        return None
+    copied = image.copy()
+    copied.scale(width, height, frame=max(number, 1))
+    return copied
+
+
+def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
+    """A file as a new image that is read as another one is; None when it cannot be read."""
+    try:
+        image = bpy.data.images.load(path)
+    except RuntimeError:
+        return None
+    image.colorspace_settings.name = like.colorspace_settings.name
+    image.alpha_mode = like.alpha_mode
+    return image
+
+
+def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
+    """Pixels as they are to be filtered: encoded where Cycles does it, and colours times alpha."""
+    space = image.colorspace_settings.name
+    if image.alpha_mode == "NONE":
+        pixels[..., 3] = 1.0
+    if image.is_float:
+        # Blender has made them linear.
+        pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
+        if space == "sRGB":
+            pixels[..., :3] = to_srgb(pixels[..., :3])
+        return Image(image.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
+    if space != "sRGB" and space not in _LINEAR_SPACES:
+        linear = scene_linear(pixels[..., :3], space) * WHITE_IN_CYCLES.get(space, 1.0)
+        pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
+        return Image(image.name, pixels, "LINEAR")
+    encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
+    pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
+    if is_associated(image):
+        # Cycles takes colours in files of bytes for straight, whatever the user says.
+        products = pixels[..., :3].astype(np.uint16) * pixels[..., 3:]
+        if image.alpha_mode == "PREMUL" and image.source != "GENERATED" and image.packed_file is None:
+            products = (products + 127) // 255 * pixels[..., 3:]
+        pixels[..., :3] = products // 255
+    return Image(image.name, pixels, encoding)
+
+
+def is_associated(image: bpy.types.Image | None) -> bool:
+    """Whether an image's colours come multiplied by its alpha, and are divided by it where alpha is used as well."""
+    return (
+        image is not None and image.alpha_mode in {"STRAIGHT", "PREMUL"} and image.colorspace_settings.name not in _DATA
+    )
+
+
+_DATA = {"Non-Color", "Raw"}
+_REMEDY = "find it with File > External Data > Find Missing Files; magenta stands in"
+
+
+def read_pixels(image: bpy.types.Image) -> np.ndarray | None:
+    """Pixels as Blender stores them, (height, width, 4) float32, row 0 at the bottom.
+
+    None when the image has none, as when its file is missing.
+    """
+    width, height = image.size
+    if width < 1 or height < 1:
+        return None
+    channels = image.channels
+    flat = np.empty(width * height * channels, np.float32)
+    try:
+        image.pixels.foreach_get(flat)
+    except (RuntimeError, TypeError):
+        return None
+    if not image.has_data:
+        return None
+    stored = np.nan_to_num(flat.reshape(height, width, channels), copy=False, nan=0.0, posinf=65504.0, neginf=0.0)
+    if channels == 4:
+        return stored
+    pixels = np.ones((height, width, 4), np.float32)
+    if channels == 3:
+        pixels[..., :3] = stored
+    else:
+        pixels[..., :3] = stored[..., :1]
+        if channels == 2:
+            pixels[..., 3] = stored[..., 1]
+    return pixels

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's world to a node graph."""
+
+import copy
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ....materials.sky.sun import sun_disc
+from ....scene import Light, LightKind, Link, NodeGraph, ShaderNode, World
+from ....scene.sky import Sky
+from ..context import ExportContext
+from ..nodes.graphs import GraphExporter
+from ..nodes.links import node_tree
+
+
+def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple[World, list[Light]]:
+    """The surroundings, black where the scene has no world, and the suns of its skies, which no picture resolves."""
+    if world is None:
+        return World(), []
+    tree = node_tree(world)
+    if tree is None:
+        return World(radiance=_finite(np.array(world.color, np.float64))), []
+    owner = f'World "{world.name}"'
+    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+    if output is None:
+        return World(), []
+    exporter = GraphExporter(owner, context)
+    if output.inputs["Volume"].is_linked:
+        context.report.warn(f"{owner}: its volume is not rendered yet and is ignored")
+    exporter.graph.surface = exporter.surface(output)
+    if exporter.graph.surface is None:
+        return World(), []
+    suns = [_sun(exporter.graph, index, sky, owner) for index, sky in exporter.skies.items()]
+    return World(np.ones(3), exporter.graph), [sun for sun in suns if sun is not None]
+
+
+def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:
+    """The sun of a sky texture: what the world makes of its irradiance, apart from what does not depend on it."""
+    disc = sun_disc(sky)
+    if disc is None:
+        return None
+    nodes = copy.deepcopy(graph.nodes)
+    nodes[index] = ShaderNode(
+        "combine_color", inputs=dict(zip(("red", "green", "blue"), map(float, disc.irradiance())))
+    )
+    depends = {index}
+    for number, node in enumerate(nodes):
+        if any(isinstance(value, Link) and value.node in depends for value in node.inputs.values()):
+            depends.add(number)
+        elif node.kind in {"background", "emission"}:
+            node.inputs["strength"] = 0.0
+    backward = np.asarray(disc.direction, np.float64)  # lights shine along -Z
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(Vector(backward).to_track_quat("Z", "Y").to_matrix())
+    return Light(f"{owner} sun", LightKind.SUN, matrix, np.ones(3), sun_angle=disc.angle,
+                 graph=NodeGraph(nodes, graph.surface), of_world=True)  # fmt: skip
+
+
+def _finite(radiance: np.ndarray) -> np.ndarray:
+    return np.maximum(np.nan_to_num(radiance, nan=0.0, posinf=0.0, neginf=0.0), 0.0)

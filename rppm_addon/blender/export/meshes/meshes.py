@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evaluated Blender meshes to indexed arrays."""
+
+import bpy
+import numpy as np
+
+from ....scene import Mesh
+from ....scene.sharing import keep_equal, same_bits
+from ..report import Report
+from .element_arrays import elements
+
+FARTHEST = 1e18
+"""Coordinates beyond overflow in single precision as soon as they are squared."""
+_BLOCK = 256
+"""Corners whose squares are added up in single precision."""
+_PART = 1 << 16
+"""Elements that are looked at while they lie in a cache."""
+
+NO_MESH = Mesh(
+    "", np.zeros((0, 3), np.float32), np.zeros(0, np.int32), np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32),
+    np.zeros(0, np.int32),
+)  # fmt: skip
+"""In place of a mesh that is not there."""
+
+
+def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report, before: Mesh | None = None) -> Mesh | None:
+    """The arrays of an evaluated mesh, in its object space; None when it has no triangle.
+
+    before: what it may resemble, as it was a frame ago; arrays that are the same are its very arrays.
+    Triangles with a vertex that is not finite, or beyond FARTHEST, are left out, with a warning that names ``name``.
+    """
+    if len(mesh.polygons) == 0:
+        return None
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    if count == 0:
+        return None
+    before = NO_MESH if before is None else before
+    arrays = {
+        "triangle_corners": _kept(before.triangle_corners, elements(mesh.loop_triangles, "loops", count, 3, np.int32)),
+        "triangle_slots": _triangle_slots(mesh, before.triangle_slots),
+        **dict(zip(("positions", "corner_vertices", "corner_normals"), read_shape(mesh, before), strict=True)),
+        "corner_uv": _render_uv(mesh, before.corner_uv),
+    }
+    if not _all_near(arrays["positions"]):
+        _leave_out_the_far(arrays, name, report)
+        if len(arrays["triangle_corners"]) == 0:
+            return None
+    return Mesh(
+        name=name,
+        **arrays,
+        texture_location=tuple(mesh.texspace_location),
+        texture_size=tuple(mesh.texspace_size),
+    )
+
+
+def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions (vertices, 3), the vertex of each corner (corners,) and unit normals of corners (corners, 3).
+
+    before: as for export_mesh.
+    """
+    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
+    positions = _kept(before.positions, positions)
+    corner_vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)
+    corner_vertices = _kept(before.corner_vertices, corner_vertices)
+    return positions, corner_vertices, _corner_normals(mesh, before.corner_normals)
+
+
+def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """(vertices, 3) float32 metres a second of the point attribute "velocity", 0 where it is not finite; None without
+    one."""
+    attribute = mesh.attributes.get("velocity")
+    if attribute is None or (attribute.domain, attribute.data_type) != ("POINT", "FLOAT_VECTOR"):
+        return None
+    velocities = elements(attribute.data, "vector", len(mesh.vertices), 3, np.float32)
+    return np.where(np.abs(velocities) < FARTHEST, velocities, np.float32(0.0))
+
+
+def _kept(before: np.ndarray, view: np.ndarray) -> np.ndarray:
+    """The array before if it says the same as Blender's, or else a copy of that."""
+    return before if same_bits(before, view) else view.copy()
+
+
+def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+    count = len(mesh.loop_triangles)
+    slots = _attribute(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
+    if slots is None:
+        return keep_equal(before, np.zeros(count, np.int32))
+    if slots.min() < 0:
+        slots = np.maximum(slots, 0)
+    polygons = elements(mesh.loop_triangle_polygons, "value", count, 1, np.int32)
+    if len(before) == count:
+        parts = (slice(start, start + _PART) for start in range(0, count, _PART))
+        if all(same_bits(before[part], slots.take(polygons[part])) for part in parts):
+            return before
+    return slots.take(polygons)
+
+
+def _corner_normals(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+    """(corners, 3) float32, those of faces without area repaired: Blender may give 0 or NaN."""
+    view = elements(mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32)
+    if same_bits(before, view):
+        return before
+    normals = np.empty_like(view)
+    any_length, good = _has_free_normals(mesh), True
+    for start in range(0, len(view), _PART):  # so many lie in a cache until they are looked at
+        part = slice(start, start + _PART)
+        normals[part] = view[part]
+        good = good and not any_length and _no_zeros_among(normals[part])
+    if not good:
+        _make_unit(normals)
+    return normals
+
+
+def _leave_out_the_far(arrays: dict[str, np.ndarray], name: str, report: Report) -> None:
+    """Drop the triangles of vertices that are not finite or farther than FARTHEST."""
+    positions, triangles = arrays["positions"], arrays["triangle_corners"]
+    finite = (np.abs(positions) < FARTHEST).all(axis=1)  # false for NaN as well
+    good = finite[arrays["corner_vertices"][triangles]].all(axis=1)
+    report.warn(
+        f'Object "{name}": {np.count_nonzero(~finite)} vertices are not finite or too far away, so '
+        f"{np.count_nonzero(~good)} triangles were left out; correct the mesh or its modifiers"
+    )
+    arrays["triangle_corners"], arrays["triangle_slots"] = triangles[good], arrays["triangle_slots"][good]
+    arrays["positions"] = np.where(finite[:, None], positions, np.float32(0.0))
+
+
+def _all_near(positions: np.ndarray) -> bool:
+    """Whether all coordinates are less than FARTHEST from 0; false with NaN among them."""
+    return bool(positions.min() > -FARTHEST and positions.max() < FARTHEST) if positions.size else True
+
+
+def render_uv_name(mesh: bpy.types.Mesh) -> str | None:
+    """Name of the UV map that is rendered when a texture names none."""
+    return next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+
+
+def _render_uv(mesh: bpy.types.Mesh, before: np.ndarray | None) -> np.ndarray | None:
+    name = render_uv_name(mesh)
+    if name is None:
+        return None
+    return read_uv(mesh, name, before)
+
+
+def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None) -> np.ndarray:
+    """(corners, 2) float32 of a UV map, 0 where it is not finite; ``before`` itself if that says the same."""
+    uv = elements(mesh.uv_layers[name].uv, "vector", len(mesh.loops), 2, np.float32)
+    if before is not None and same_bits(before, uv):
+        return before
+    if np.isfinite(uv.min(initial=0.0)) and np.isfinite(uv.max(initial=0.0)):
+        return uv.copy()
+    return keep_equal(before, np.nan_to_num(uv, nan=0.0, posinf=0.0, neginf=0.0))
+
+
+def _attribute(mesh: bpy.types.Mesh, name: str, field: str, count: int, width: int, kind: type) -> np.ndarray | None:
+    """What ``elements`` gives of an attribute; None when there is none."""
+    attribute = mesh.attributes.get(name)
+    return None if attribute is None else elements(attribute.data, field, count, width, kind)
+
+
+def _has_free_normals(mesh: bpy.types.Mesh) -> bool:
+    """Whether normals are what users or nodes have stored, of any length."""
+    attribute = mesh.attributes.get("custom_normal")
+    return attribute is not None and attribute.data_type == "FLOAT_VECTOR"
+
+
+def _make_unit(normals: np.ndarray) -> None:
+    """Repair, in place, normals that are no unit vectors."""
+    squares = np.einsum("ij,ij->i", normals, normals)
+    bad = ~(np.abs(squares - 1.0) < 1e-3)
+    if bad.any():
+        wrong = np.nan_to_num(normals[bad], nan=0.0, posinf=0.0, neginf=0.0)
+        lengths = np.linalg.norm(wrong, axis=1, keepdims=True)
+        normals[bad] = np.where(lengths > 1e-6, wrong / np.maximum(lengths, 1e-30), np.float32([0.0, 0.0, 1.0]))
+
+
+def _no_zeros_among(normals: np.ndarray) -> bool:
+    """Whether normals that are unit vectors, 0 or NaN are unit vectors all: by sums of squares, block by block."""
+    whole = len(normals) // _BLOCK * _BLOCK
+    for block in (normals[:whole].reshape(-1, 3 * _BLOCK), normals[whole:].reshape(1, -1)):
+        squares = np.einsum("ij,ij->i", block, block)
+        if not (np.abs(squares - block.shape[1] / 3) < 0.25).all():
+            return False
+    return True

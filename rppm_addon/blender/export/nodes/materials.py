@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender materials to node graphs."""
+
+import bpy
+
+from ....scene import Material, NodeGraph
+from ..context import ExportContext
+from ..meshes.attributes import NO_ATTRIBUTE
+from . import surface_nodes, value_nodes  # noqa: F401  register their handlers
+from .graphs import GraphExporter
+from .links import Path, node_tree
+
+
+class MaterialTable:
+    """The materials of a scene under export, each exported once and as long as it does not change."""
+
+    def __init__(self, context: ExportContext) -> None:
+        self.materials: list[Material] = []
+        self.attributes: list[dict[str, str]] = []
+        """Of each material, the attributes that its nodes read, with the name of such a node."""
+        self._context = context
+        self._places: dict[int, int] = {}
+        self._untracked: set[int] = set()
+
+    def index(self, material: bpy.types.Material | None) -> int:
+        """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
+        # Blender gives evaluated copies no session_uid.
+        key = 0 if material is None else material.original.session_uid
+        if key not in self._places:
+            self._places[key] = len(self.materials)
+            self.materials.append(Material(""))
+            self.attributes.append({})
+            self._export(key, material)
+        return self._places[key]
+
+    def renew(self, material: bpy.types.Material) -> bool:
+        """Export a material that has changed again, if it is in use. Returns whether meshes need other attributes."""
+        key = material.original.session_uid
+        if key not in self._places:
+            return False
+        before = self.attributes[self._places[key]]
+        self._export(key, material)
+        return self.attributes[self._places[key]] != before
+
+    def may_have_changed(self, material: bpy.types.Material) -> bool:
+        """Whether a material rests on what changes without the depsgraph telling."""
+        return material.original.session_uid in self._untracked
+
+    def _export(self, key: int, material: bpy.types.Material | None) -> None:
+        reads = self._context.untracked_reads
+        with self._context.report.about(("material", key)):
+            if material is None:
+                exported = Material("Default", default_surface())
+            else:
+                exported = export_material(material, self._context)
+        (self._untracked.add if self._context.untracked_reads > reads else self._untracked.discard)(key)
+        place = self._places[key]
+        self.materials[place] = exported
+        self.attributes[place] = {
+            node.attribute: node.name for node in exported.graph.nodes if node.attribute not in {"", NO_ATTRIBUTE}
+        }
+
+
+def default_surface() -> NodeGraph:
+    """A Principled surface whose sockets are untouched."""
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_principled", "bsdf", options={"distribution": "MULTI_GGX"})
+    return graph
+
+
+def plain_surface(color: tuple[float, float, float]) -> NodeGraph:
+    """A diffuse surface."""
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=color)
+    return graph
+
+
+def export_material(material: bpy.types.Material, context: ExportContext) -> Material:
+    """The surface and the interior of a material; what has no counterpart is reported and left out."""
+    tree = node_tree(material)
+    if tree is None:
+        return Material(material.name, plain_surface(tuple(material.diffuse_color[:3])))
+    owner = f'Material "{material.name}"'
+    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+    if output is None:
+        context.report.warn(f"{owner}: it has no Material Output node and is black")
+        return Material(material.name)
+    exporter = GraphExporter(owner, context, material.pass_index)
+    graph = exporter.graph
+    if exporter.is_linked(output.inputs["Displacement"], ()):
+        _bump(exporter, material, output)
+    graph.surface = exporter.surface(output)
+    shadow = getattr(material, "use_transparent_shadow", True)
+    exported = Material(material.name, graph, transparent_shadow=shadow)
+    if exporter.is_linked(output.inputs["Volume"], ()):
+        exported.interior = _interior(owner, context, output)
+        if not exporter.is_linked(output.inputs["Surface"], ()):
+            # Only an interior: the boundary itself is not there.
+            graph.surface = graph.add("bsdf_transparent", "bsdf")
+    return exported
+
+
+def _bump(exporter: GraphExporter, material: bpy.types.Material, output: bpy.types.Node) -> None:
+    """Displacement moves no vertices here: its height turns the normals."""
+    if getattr(material, "displacement_method", "BUMP") != "BUMP":
+        exporter.warn(output, "has a displacement that moves the surface, which is rendered as bump only")
+    graph = exporter.graph
+    displacement = exporter.value(output.inputs["Displacement"], ())
+    height = graph.add("displacement_height", "height", displacement=displacement)
+    graph.normal = graph.add("bump", "normal", name=output.name, height=height)
+
+
+def _interior(owner: str, context: ExportContext, output: bpy.types.Node) -> NodeGraph:
+    exporter = GraphExporter(owner, context)
+    exporter.graph.surface = exporter.shader(output.inputs["Volume"], Path())
+    return exporter.graph

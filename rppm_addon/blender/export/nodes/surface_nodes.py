@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes of the surface, the object and images that are more than their sockets and options."""
+
+import functools
+import pathlib
+
+import bpy
+import numpy as np
+
+from ....materials.ies import FLAT_PROFILE, ProfileError, profile_table
+from ....materials.sky.picture import sky_picture
+from ....scene import Image, Link
+from ....scene.sky import Sky
+from ..images.images import is_associated
+from ..meshes.attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, TANGENT, attribute_of
+from .graphs import GraphExporter, handles, snake_case
+from .links import Path
+
+
+@handles("BSDF_PRINCIPLED")
+def _principled(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    wall = next((socket for socket in node.inputs if socket.identifier == "Thin Wall"), None)
+    value = False if wall is None else exporter.value(wall, path)  # sockets of Blender 5.2 on
+    if not isinstance(value, Link):
+        return exporter.add("bsdf_principled", node, path, "bsdf", options={"thin_wall": bool(np.max(value) > 0.0)})
+    # What varies chooses one of two surfaces. As in Cycles it is cut to an integer before it is asked whether it is 0.
+    thick, thin = (
+        exporter.append("bsdf_principled", node, path, "bsdf", options={"thin_wall": thin}) for thin in (False, True)
+    )
+    for operation in ("TRUNC", "ABSOLUTE"):
+        value = exporter.graph.add("math", "value", name=node.name, options={"operation": operation}, value=value)
+    return exporter.graph.add("mix_shader", "shader", name=node.name, fac=value, shader=thick, shader_001=thin)
+
+
+@handles("TEX_COORD")
+def _coordinates(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    name = snake_case(output.identifier)
+    if name == "generated":
+        return exporter.shared("generated_coord", "generated", GENERATED)
+    if name == "object" and node.object is not None:
+        rows = np.array(node.object.matrix_world.inverted_safe())
+        return exporter.graph.add(
+            "object_coord", "object", name=node.name, row0=tuple(rows[0, :3]), row1=tuple(rows[1, :3]),
+            row2=tuple(rows[2, :3]), offset=tuple(rows[:3, 3]),
+        )  # fmt: skip
+    return exporter.shared("tex_coord", name)
+
+
+@handles("NEW_GEOMETRY")
+def _geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    name = snake_case(output.identifier)
+    if name == "random_per_island":
+        return exporter.shared("random_per_island", name, ISLAND)
+    if name == "pointiness":
+        exporter.warn(node, "has Pointiness, which is not rendered; surfaces count as flat")
+        return 0.5
+    return exporter.shared("new_geometry", name)
+
+
+@handles("UVMAP")
+def _uv_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    return exporter.shared("uvmap", "uv", node.uv_map, node.name) if node.uv_map else exporter.shared("tex_coord", "uv")
+
+
+@handles("VERTEX_COLOR")
+def _color_attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR, node.name)
+
+
+@handles("ATTRIBUTE")
+def _attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    if node.attribute_type == "VIEW_LAYER":
+        return _view_layer_attribute(exporter, node, output)
+    name = node.attribute_name if node.attribute_type == "GEOMETRY" else f"{node.attribute_type}:{node.attribute_name}"
+    return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE, node.name)
+
+
+def _view_layer_attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket) -> object:
+    """A property of the view layer, the scene or the world, which is one value for all surfaces."""
+    exporter.context.owner_reads += 1
+    for owner in exporter.context.owners:
+        value = attribute_of(owner, node.attribute_name)
+        if value is not None:
+            color = (*value, *(1.0,) * 4)[:4] if len(value) > 1 else (value[0],) * 3 + (1.0,)
+            return {"Alpha": color[3], "Fac": sum(color[:3]) / 3.0}.get(output.identifier, color[:3])
+    return 0.0
+
+
+@handles("TANGENT")
+def _tangent(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    attribute = GENERATED if node.direction_type == "RADIAL" else TANGENT + node.uv_map
+    return exporter.add("tangent", node, path, "tangent", attribute=attribute)
+
+
+@handles("NORMAL_MAP")
+def _normal_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    return exporter.add("normal_map", node, path, "normal", attribute=TANGENT + node.uv_map)
+
+
+@handles("BEVEL", "AMBIENT_OCCLUSION")
+def _surroundings(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    exporter.warn(node, "would need rays of its own, which are not traced; it is left out")
+    return exporter.add(node.type.lower(), node, path, snake_case(output.identifier))
+
+
+@handles("OBJECT_INFO")
+def _object_info(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    name = snake_case(output.identifier)
+    if name == "material_index":
+        return float(exporter.pass_index)
+    return exporter.shared("object_info", name)
+
+
+@handles("TEX_IMAGE")
+def _image_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    warn = functools.partial(exporter.warn, node)
+    tiles = exporter.images.tiles(node, warn)
+    image = exporter.images.of_node(node, warn) if tiles is None else -1
+    # Only now is the image loaded: before, a movie has no colour space.
+    unassociate = is_associated(node.image) and any(
+        socket.identifier == "Alpha" and socket.is_linked for socket in node.outputs
+    )
+    options = {"unassociate": unassociate}
+    name = snake_case(output.identifier)
+    if tiles is not None:
+        return exporter.add("tex_image_tiles", node, path, name, options=options, table=tiles,
+                            inputs={"tiles": float(len(tiles))})  # fmt: skip
+    blend = {"projection_blend": node.projection_blend}
+    return exporter.add("tex_image", node, path, name, options=options, image=image, inputs=blend)
+
+
+@handles("TEX_ENVIRONMENT")
+def _environment_texture(
+    exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path
+) -> object:
+    image = exporter.images.of_node(node, functools.partial(exporter.warn, node))
+    return exporter.add("tex_environment", node, path, "color", image=image)
+
+
+@handles("TEX_IES")
+def _ies_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    vector = next(socket for socket in node.inputs if socket.identifier == "Vector")
+    inputs = {}
+    if not exporter.is_linked(vector, path):
+        incoming = exporter.shared("new_geometry", "incoming")
+        inputs["vector"] = exporter.graph.add(
+            "vector_transform", "vector", name=node.name, vector=incoming,
+            options={"vector_type": "NORMAL", "convert_from": "WORLD", "convert_to": "OBJECT"},
+        )  # fmt: skip
+    try:
+        table = profile_table(_profile(node))
+    except (ProfileError, OSError) as error:
+        exporter.warn(node, f"has no IES profile that can be read ({error}); its value is 100, as in Cycles")
+        table = FLAT_PROFILE
+    return exporter.add("tex_ies", node, path, "fac", table=table, inputs=inputs)
+
+
+def _profile(node: bpy.types.Node) -> str:
+    """The text of a node's IES profile. Raises OSError."""
+    if node.mode == "INTERNAL":
+        return "" if node.ies is None else node.ies.as_string()
+    file = bpy.path.abspath(node.filepath, library=node.id_data.library)
+    return pathlib.Path(file).read_text(encoding="latin-1")
+
+
+@handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")
+def _other_geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
+
+
+@handles("TEX_SKY")
+def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
+    sky = sky_of(node)
+    image = exporter.images.add(_sky_image(node.name, sky))
+    vector = exporter.coordinates_of(node, path)
+    link = exporter.graph.add("tex_environment", "color", name=node.name, image=image, vector=vector)
+    exporter.skies[link.node] = sky
+    return link
+
+
+@functools.lru_cache(maxsize=8)
+def _sky_image(name: str, sky: Sky) -> Image:
+    """Simulating an atmosphere takes up to a second: frames whose sky stays the same share its picture."""
+    return Image(name, sky_picture(sky))
+
+
+def sky_of(node: bpy.types.Node) -> Sky:
+    """What a Sky Texture node says."""
+    values = {name: getattr(node, name) for name in Sky.__dataclass_fields__ if hasattr(node, name)}
+    values["sun_direction"] = tuple(values.get("sun_direction", (0.0, 0.0, 1.0)))
+    if values["sky_type"] == "NISHITA":  # Blender 4
+        values["sky_type"] = "SINGLE_SCATTERING"
+        values["aerosol_density"] = node.dust_density
+    return Sky(**values)

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Instances and lights of single objects: their meshes, materials and the values that nodes ask for."""
+
+import functools
+
+import bpy
+import numpy as np
+
+from ....scene import Instance, Light, RayVisibility
+from ..context import ExportContext
+from ..lights.lights import export_light
+from ..meshes.attributes import attribute_of
+from ..meshes.mesh_table import MeshTable
+from ..nodes.materials import MaterialTable
+from ..visibility import visibility_of
+from .hashing import hashed
+
+_WHOLE = {"OBJECT", "INSTANCER"}
+"""Domains of attributes that objects have as a whole."""
+
+
+class InstanceReader:
+    """Makes instances and lights of objects; meshes and materials that it knows are not exported again."""
+
+    def __init__(self, context: ExportContext) -> None:
+        self.materials = MaterialTable(context)
+        self.meshes = MeshTable(context.report)
+        self.report = context.report
+        self._context = context
+        self._wants: dict[tuple[int, ...], tuple[set[str], bool]] = {}
+
+    def begin_pass(self) -> None:
+        """Materials may ask for other attributes than before."""
+        self._wants = {}
+
+    def instance(self, source: bpy.types.Object, matrix: np.ndarray, before: Instance | None) -> Instance | None:
+        """The instance of an object that stands for itself alone; None when it is not to be rendered.
+
+        before: the one that it had, if it was moved at most.
+        """
+        visibility = visibility_of(source)
+        if source.type != "MESH" or not visibility:
+            return None
+        if before is not None and self.meshes.knows(before.mesh):
+            return self._moved(source, matrix, visibility, before)
+        shading = self.shading(source, visibility)
+        index = self.mesh_index(source, source.data, shading, source.original.session_uid)
+        return None if index is None else shaded_instance(index, source, matrix, shading)
+
+    def _moved(
+        self, source: bpy.types.Object, matrix: np.ndarray, visibility: RayVisibility, before: Instance
+    ) -> Instance:
+        """What Blender does not name as changed may be animated, but for mesh and materials."""
+        name, materials = source.name, before.materials
+        return Instance(
+            before.mesh,
+            matrix,
+            materials,
+            name,
+            source.pass_index,
+            tuple(source.color),
+            _random(name),
+            None,
+            visibility,
+            source.is_holdout,
+            source.is_shadow_catcher,
+            self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
+        )
+
+    def light(self, source: bpy.types.Object, matrix: np.ndarray) -> Light | None:
+        """A light object placed by a matrix (4, 4); None when it gives no light."""
+        if not np.isfinite(matrix).all():
+            self.report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
+            return None
+        return export_light(source, matrix, self._context)
+
+    def shading(
+        self,
+        source: bpy.types.Object,
+        visibility: RayVisibility,
+        instancer: bpy.types.Object | None = None,
+    ) -> dict[str, object]:
+        """Materials of an instance and what their nodes may ask about it: members of scene.Instance.
+
+        instancer: what multiplies the object.
+        """
+        materials = self._material_slots(source)
+        return {
+            "materials": materials,
+            "color": tuple(source.color),
+            "random": 0.0 if instancer is not None else _random(source.name),
+            "visibility": visibility,
+            "holdout": source.is_holdout,
+            "shadow_catcher": source.is_shadow_catcher,
+            "attributes": self.attribute_values(source, materials, instancer),
+        }
+
+    def attribute_values(
+        self, source: bpy.types.Object, materials: list[int], instancer: bpy.types.Object | None
+    ) -> dict[str, tuple[float, ...]]:
+        """Values of attributes that the object or what multiplies it has as a whole."""
+        names, of_objects = self.wanted_attributes(materials)
+        values: dict[str, tuple[float, ...]] = {}
+        for name in names if of_objects else ():
+            domain, _, path = name.partition(":")
+            if domain in _WHOLE:
+                owners = (instancer, source) if domain == "INSTANCER" else (source,)
+                found = (attribute_of(owner, path) or attribute_of(owner and owner.data, path) for owner in owners)
+                value = next((value for value in found if value is not None), None)
+                if value is not None:
+                    values[name] = value
+        return values
+
+    def wanted_attributes(self, materials: list[int]) -> tuple[set[str], bool]:
+        """Names of the attributes that materials read, and whether any is one of objects."""
+        key = tuple(materials)
+        if key not in self._wants:
+            names = {name for material in materials for name in self.materials.attributes[material]}
+            self._wants[key] = names, any(name.partition(":")[0] in _WHOLE for name in names)
+        return self._wants[key]
+
+    def mesh_index(
+        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, shading: dict[str, object], owner: int
+    ) -> int | None:
+        """Index of an object's mesh with the attributes that its materials read; None of one without faces.
+
+        mesh: None has Blender make one of the object. owner: the session_uid of what brings it.
+        """
+        return self.meshes.index(source, mesh, self.wanted_attributes(shading["materials"])[0], owner)
+
+    def _material_slots(self, source: bpy.types.Object) -> list[int]:
+        slots = [slot.material for slot in source.material_slots]
+        made = list(source.data.materials)
+        # Geometry nodes may give the evaluated data slots that the object does not have.
+        slots += made[len(slots) :]
+        return [self.materials.index(material) for material in slots or [None]]
+
+
+def shaded_instance(mesh: int, source: bpy.types.Object, matrix: np.ndarray, shading: dict[str, object]) -> Instance:
+    """An instance of a mesh with what InstanceReader.shading gives."""
+    return Instance(mesh, matrix, object_name=source.name, object_index=source.pass_index, **shading)
+
+
+@functools.lru_cache(1 << 16)
+def _random(name: str) -> float:
+    """From 0 to 1, for an object that is no instance: Cycles' hash of its name."""
+    number = 0
+    for byte in name.encode():
+        number = (37 * number + byte) & 0xFFFFFFFF
+    return hashed(number)

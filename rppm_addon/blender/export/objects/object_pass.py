@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One pass over the instances of a depsgraph."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from ....scene import Instance, Light
+from ..meshes.attributes import GENERATED, ISLAND, TANGENT, title_of
+from ..visibility import visibility_of
+from .instance_reader import InstanceReader, shaded_instance
+from .matrices import usable_matrices
+from .object_matrices import instance_matrices
+from .particles import ParticleTable
+
+CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
+"""Object types that are rendered as the mesh that Blender makes of them."""
+UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
+
+Identity = tuple[int, ...]
+"""By what an instance or a light is known at other times: the session_uid of its object, or those of what multiplies
+the object and of the object, and Blender's persistent_id."""
+
+
+def identity_of(
+    instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, owner: bpy.types.Object
+) -> Identity:
+    """source: the original object; owner: what multiplies it, or itself."""
+    if not instance.is_instance:
+        return (owner.session_uid,)
+    return (owner.session_uid, source.session_uid, *instance.persistent_id)
+
+
+@dataclass
+class Placed:
+    """What a pass over a depsgraph found."""
+
+    instances: list[Instance] = field(default_factory=list)
+    lights: list[Light] = field(default_factory=list)
+    alone: dict[int, int] = field(default_factory=dict)
+    """By session_uid, the index of the only instance of each mesh object that multiplies nothing."""
+    lights_alone: dict[int, int] = field(default_factory=dict)
+    """By session_uid, the index of the only light of each light object."""
+    identities: dict[int, Identity] = field(default_factory=dict)
+    """Of instances and lights by their id(), if asked for."""
+
+
+@dataclass(slots=True)
+class _Kind:
+    """What the instances of one object and mesh have in common; a mesh of None is none to be rendered."""
+
+    uid: int
+    learned: bool = False
+    """Whether the rest is known, for which its mesh and materials had to be exported."""
+    mesh: int | None = None
+    converted: int = 0
+    """The address of the original object if it is a curve or the like, or else 0."""
+    name: str = ""
+    object_index: int = 0
+    shading: dict[str, object] = field(default_factory=dict)
+    asks_instancer: bool = False
+    placed: bool = False
+    """Whether there is such an instance."""
+
+
+@dataclass(slots=True)
+class _Owner:
+    """What multiplies others."""
+
+    original: bpy.types.Object
+    uid: int
+    shown: bool
+    has_particles: bool
+
+
+class ObjectPass:
+    """One pass over the instances of a depsgraph."""
+
+    def __init__(
+        self,
+        reader: InstanceReader,
+        depsgraph: bpy.types.Depsgraph,
+        shown: Callable[[bpy.types.Object], bool] | None,
+        unchanged: dict[int, Instance],
+        moved: dict[int, Instance],
+        identify: bool,
+    ) -> None:
+        self._identify = identify
+        self._identity: Identity = ()
+        """Of what is being placed."""
+        self._reader = reader
+        self._report = reader.report
+        self._depsgraph = depsgraph
+        self._shown = shown
+        self._unchanged = unchanged
+        self._moved = moved
+        self._placed: list[tuple[Instance, np.ndarray, int]] = []
+        self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object], Identity]] = []
+        self._converted: set[tuple[int, bytes]] = set()
+        self._missing: dict[tuple[str, str, str], dict[str, None]] = {}
+        """By names of material, node and attribute, the objects that do not have it."""
+        self._lacks_nothing: set[tuple] = set()
+        """Of instances that have all that they are asked for: mesh, how many attributes it has, materials, own ones."""
+        self._kinds: dict[tuple[int, int], _Kind] = {}
+        """By the addresses of the object and its mesh."""
+        self._owners: dict[int, _Owner] = {}
+        """By their addresses."""
+        self._particles = ParticleTable(depsgraph.scene_eval.frame_current_final)
+        self._multiple: set[int] = set()
+        """Objects that are multiplied or multiply others."""
+        self._result = Placed()
+
+    def run(self) -> Placed:
+        """All instances and lights. Raises ExportStopped when the user wants no more."""
+        matrices = instance_matrices(self._depsgraph)
+        for number, instance in enumerate(self._depsgraph.object_instances):
+            if number % 256 == 0:
+                self._report.progress(f"Exporting objects ({number})")
+            # Only valid inside the loop: Blender reuses the memory for the next instance.
+            if instance.is_instance:
+                self._export_multiplied(instance, instance.object, matrices[number])
+            elif instance.show_self:
+                self._export_alone(instance, instance.object, matrices[number])
+        self._convert()
+        self._keep_usable()
+        self._tell_missing()
+        return self._result
+
+    def _export_alone(
+        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
+    ) -> None:
+        original = source.original
+        if not (self._shown is None or self._shown(original)):
+            return
+        uid = original.session_uid
+        if self._identify:
+            self._identity = identity_of(instance, original, original)
+        meshes, kept = self._reader.meshes, self._unchanged.get(uid)
+        if kept is None and (moved := self._moved.get(uid)) is not None and meshes.knows(moved.mesh):
+            kept = self._reader.instance(source, matrix, moved)
+            if kept is None:
+                return
+        if kept is None or not meshes.knows(kept.mesh):
+            self._export_instance(source, matrix, uid)
+        else:
+            meshes.keep(kept.mesh)
+            self._note_missing(kept)
+            self._add(kept, matrix, uid)
+
+    def _export_multiplied(
+        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
+    ) -> None:
+        parent = instance.parent
+        owner = self._owners.get(parent.as_pointer())
+        if owner is None:
+            original = parent.original
+            shown = self._shown is None or self._shown(original)
+            owner = _Owner(original, original.session_uid, shown, len(parent.particle_systems) > 0)
+            self._owners[parent.as_pointer()] = owner
+            self._multiple.add(owner.uid)
+        data = source.data
+        key = instance.instance_object.as_pointer(), 0 if data is None else data.as_pointer()
+        kind = self._kinds.get(key)
+        if kind is None:
+            kind = self._kinds[key] = _Kind(source.original.session_uid)
+            self._multiple.add(kind.uid)
+        if not owner.shown or not instance.show_self:
+            return
+        if self._identify:
+            self._identity = identity_of(instance, source.original, owner.original)
+        if source.type != "MESH":
+            self._export_instance(source, matrix, owner.uid, instance, parent)
+            return
+        if not kind.learned:
+            self._learn(kind, source, owner, parent)
+        if kind.mesh is None:
+            return
+        self._reader.meshes.add_owner(kind.mesh, owner.uid)
+        if kind.converted:
+            self._converted.add((kind.converted, matrix.tobytes()))
+        shading = kind.shading
+        placed = Instance(
+            kind.mesh,
+            matrix,
+            shading["materials"],
+            kind.name,
+            kind.object_index,
+            tuple(source.color),
+            _random_of(instance),
+            self._particles.of(instance) if owner.has_particles else None,
+            shading["visibility"],
+            shading["holdout"],
+            shading["shadow_catcher"],
+            shading["attributes"],
+        )
+        if kind.asks_instancer:
+            placed.attributes = self._reader.attribute_values(source, placed.materials, parent)
+        if kind.asks_instancer or not kind.placed:
+            self._note_missing(placed)
+            kind.placed = True
+        self._add(placed, matrix, kind.uid)
+
+    def _learn(self, kind: _Kind, source: bpy.types.Object, owner: _Owner, parent: bpy.types.Object) -> None:
+        kind.learned = True
+        visibility = visibility_of(source)
+        if not visibility or len(source.data.polygons) == 0:
+            return
+        kind.shading = self._reader.shading(source, visibility, instancer=parent)
+        wanted, _ = self._reader.wanted_attributes(kind.shading["materials"])
+        kind.asks_instancer = any(name.startswith("INSTANCER:") for name in wanted)
+        original = source.original
+        kind.converted = original.as_pointer() if original.type in CONVERTED_TYPES else 0
+        kind.name, kind.object_index = source.name, source.pass_index
+        kind.mesh = self._reader.mesh_index(source, source.data, kind.shading, owner.uid)
+
+    def _add(self, instance: Instance, matrix: np.ndarray, uid: int) -> None:
+        """uid: of an object that stands for itself, or is multiplied; 0 where it does not tell the instance."""
+        if self._identify:
+            self._result.identities[id(instance)] = self._identity
+        self._placed.append((instance, matrix, uid))
+
+    def _export_instance(
+        self,
+        source: bpy.types.Object,
+        matrix: np.ndarray,
+        owner: int,
+        instance: bpy.types.DepsgraphObjectInstance | None = None,
+        instancer: bpy.types.Object | None = None,
+    ) -> None:
+        """owner: the session_uid of what brings it. instance, instancer: of what is multiplied."""
+        kind = source.type
+        if kind == "LIGHT":
+            light = self._reader.light(source, matrix)
+            if light is not None:
+                self._result.lights_alone[source.original.session_uid] = len(self._result.lights)
+                self._result.lights.append(light)
+                if self._identify:
+                    self._result.identities[id(light)] = self._identity
+            return
+        if kind in UNSUPPORTED_TYPES:
+            what = UNSUPPORTED_TYPES[kind]
+            self._report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
+            return
+        if kind not in CONVERTED_TYPES and kind != "MESH":
+            return
+        visibility = visibility_of(source)
+        if not visibility:
+            return
+        if kind == "MESH" and len(source.data.polygons) == 0:
+            return  # and its materials are not needed
+        shading = self._reader.shading(source, visibility, instancer=instancer)
+        if instancer is not None:
+            shading |= {"random": _random_of(instance), "particle": self._particles.of(instance)}
+        if kind != "MESH":
+            self._unconverted.append((source.original, matrix, shading, self._identity))
+            return
+        original = source.original
+        if original.type in CONVERTED_TYPES:
+            self._converted.add((original.as_pointer(), matrix.tobytes()))
+        self._place(source, source.data, matrix, shading, owner)
+
+    def _place(
+        self,
+        source: bpy.types.Object,
+        mesh: bpy.types.Mesh | None,
+        matrix: np.ndarray,
+        shading: dict[str, object],
+        owner: int,
+    ) -> None:
+        index = self._reader.mesh_index(source, mesh, shading, owner)
+        if index is not None:
+            uid = 0 if mesh is None else source.original.session_uid
+            instance = shaded_instance(index, source, matrix, shading)
+            self._note_missing(instance)
+            self._add(instance, matrix, uid)
+
+    def _note_missing(self, instance: Instance) -> None:
+        """Attributes that the materials of an instance read and that it does not have."""
+        materials, mesh = self._reader.materials, self._reader.meshes.meshes[instance.mesh]
+        key = instance.mesh, len(mesh.attributes), tuple(instance.materials), tuple(instance.attributes)
+        if key in self._lacks_nothing:
+            return
+        known = {GENERATED, ISLAND, TANGENT, *mesh.attributes, *instance.attributes}
+        asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
+        if all(attributes.keys() <= known for _, attributes in asked):
+            self._lacks_nothing.add(key)
+            return
+        slots = np.flatnonzero(np.bincount(np.minimum(mesh.triangle_slots, len(asked) - 1)))
+        for slot, attributes in asked:
+            for attribute in attributes.keys() - known if slot in slots else ():
+                material = materials.materials[instance.materials[slot]].name
+                objects = self._missing.setdefault((material, attributes[attribute], attribute), {})
+                objects[instance.object_name] = None
+
+    def _tell_missing(self) -> None:
+        for (material, node, attribute), objects in sorted(self._missing.items()):
+            first = next(iter(objects))
+            lack = f'object "{first}" lacks' if len(objects) == 1 else f'{len(objects)} objects lack, such as "{first}"'
+            self._report.warn(
+                f'Material "{material}": node "{node}" reads {title_of(attribute)}, which {lack}; it counts as 0'
+            )
+
+    def _convert(self) -> None:
+        """Place the curves, texts, surfaces and metaballs whose mesh did not come as an instance.
+
+        Blender shows the mesh of such an object as an instance beside it, but not where particles
+        or faces multiply the object.
+        """
+        for original, matrix, shading, identity in self._unconverted:
+            self._identity = identity
+            if (original.as_pointer(), matrix.tobytes()) in self._converted:
+                continue
+            source = original.evaluated_get(self._depsgraph)
+            self._place(source, None, matrix, shading, original.session_uid)
+
+    def _keep_usable(self) -> None:
+        self._result.lights_alone = _without(self._result.lights_alone, self._multiple)
+        if not self._placed:
+            return
+        given = np.array([matrix for _, matrix, _ in self._placed])
+        matrices, usable = usable_matrices(given)
+        mended = (matrices != given).any(axis=(1, 2)).tolist()
+        lost: dict[str, int] = {}
+        for number, ((instance, _, uid), good) in enumerate(zip(self._placed, usable.tolist(), strict=True)):
+            if good:
+                if mended[number]:
+                    instance.matrix = matrices[number]
+                self._result.alone[uid] = len(self._result.instances)
+                self._result.instances.append(instance)
+            else:
+                lost[instance.object_name] = lost.get(instance.object_name, 0) + 1
+        self._result.alone = _without(self._result.alone, self._multiple | {0})
+        for name, count in lost.items():
+            self._report.warn(
+                f'Object "{name}": {count} placements have no extent (scale 0) or are not finite and were left out; '
+                "give them a scale"
+            )
+
+
+def _without(places: dict[int, int], keys: set[int]) -> dict[int, int]:
+    return {key: place for key, place in places.items() if key not in keys}
+
+
+def _random_of(instance: bpy.types.DepsgraphObjectInstance) -> float:
+    """From 0 to 1, for what is multiplied."""
+    return (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Particles that instances stand for."""
+
+import bpy
+import numpy as np
+
+from ....scene import Particle
+from .hashing import hashed
+
+_COLUMNS = {"birth_time": 1, "lifetime": 1, "size": 1, "location": 3, "velocity": 3, "angular_velocity": 3}
+
+
+class ParticleTable:
+    """The particles of one pass over a depsgraph, those of a system read together."""
+
+    def __init__(self, frame: float) -> None:
+        self._frame = frame
+        self._systems: dict[int, list[tuple]] = {}
+
+    def of(self, instance: bpy.types.DepsgraphObjectInstance) -> Particle | None:
+        """What the Particle Info node tells of a multiplied instance; None when it stands for no particle."""
+        system = instance.particle_system
+        if system is None:
+            return None
+        key = system.as_pointer()
+        if key not in self._systems:
+            self._systems[key] = _rows(system)
+        index = instance.persistent_id[0]
+        if not 0 <= index < len(self._systems[key]):
+            return None
+        birth, *rest = self._systems[key][index]
+        return Particle(float(index), hashed(index), self._frame - birth, *rest)
+
+
+def _rows(system: bpy.types.ParticleSystem) -> list[tuple]:
+    """Of each particle the values of _COLUMNS."""
+    particles, columns = system.particles, []
+    for name, width in _COLUMNS.items():
+        values = np.empty(width * len(particles), np.float32)
+        particles.foreach_get(name, values)
+        columns.append(values.tolist() if width == 1 else list(map(tuple, values.reshape(-1, width).tolist())))
+    return list(zip(*columns, strict=True))

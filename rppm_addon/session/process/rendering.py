@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A session of the renderer's process that renders scenes to their end: F12, an animation, or a preview."""
+
+import collections
+import dataclasses
+from collections.abc import Callable, Iterator, Sequence
+
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...integrator.progressive import ProgressivePhotonMapper
+from ...scene.errors import RppmError
+from ...scene.scene import Scene
+from ..renderer import SlicedRender, log
+from ..results import Frame
+from .arrays import pack
+from .shared_memory import SharedBlock
+
+
+class Rendering:
+    """Renders the scene that it is shown, slice by slice, and tells what becomes of it.
+
+    What the next scene shares with it stays on the device.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary, send: Callable[..., None]) -> None:
+        self._context = context
+        self._library = library
+        self._send = send
+        self._snapshots: Sequence[float] = ()
+        self._scene: Scene | None = None
+        self._mapper: ProgressivePhotonMapper | None = None
+        self._render: SlicedRender | None = None
+        self._slices: Iterator[None] | None = None
+        self._generation = 0
+        self._stopped = 0
+        """The newest generation that is to end."""
+        self._picture_wanted = False
+        self._blocks: collections.deque[SharedBlock] = collections.deque()
+        """What lies in shared memory until Blender has copied it."""
+
+    def expect_snapshots(self, seconds: Sequence[float]) -> None:
+        """Send the picture at these ascending times; to be said before the scene is shown."""
+        self._snapshots = seconds
+
+    def show(self, scene: Scene, generation: int, navigating: bool) -> None:
+        """Render this scene."""
+        self._scene = scene
+        self._generation = generation
+        self._slices = None
+        self._picture_wanted = False
+
+    def stop(self, generation: int) -> None:
+        """End the render of this generation with what there is; another one goes on, or will begin."""
+        self._stopped = generation
+
+    @property
+    def _stopping(self) -> bool:
+        return self._stopped == self._generation
+
+    def want_picture(self) -> None:
+        """Send the picture as soon as an iteration is complete."""
+        self._picture_wanted = True
+
+    def received(self) -> None:
+        """Blender has copied the oldest frame that is in shared memory."""
+        self._blocks.popleft().close()
+
+    @property
+    def busy(self) -> bool:
+        """Whether there is something to render."""
+        return self._scene is not None
+
+    def run_slice(self) -> None:
+        """Render a bounded while."""
+        try:
+            if self._slices is None:
+                self._begin()
+            if not self._stopping and next(self._slices, self) is not self:
+                self._send_wanted_picture()
+                return
+            self._end()
+        except BrokenPipeError:
+            raise
+        except Exception as error:
+            self._fail(error)
+
+    def _begin(self) -> None:
+        self._mapper = self._mapper or ProgressivePhotonMapper(self._context, self._library)
+        self._render = SlicedRender(
+            self._context,
+            self._mapper,
+            self._scene,
+            on_progress=lambda progress, _: self._send("progress", progress=dataclasses.asdict(progress)),
+            snapshots=self._snapshots,
+            on_snapshot=lambda seconds, frame: self._send_frame("snapshot", frame, seconds=seconds),
+        )
+        self._slices = self._render.slices()
+
+    def _send_wanted_picture(self) -> None:
+        render = self._render
+        if self._picture_wanted and render.between_iterations and render.iterations > 0:
+            self._picture_wanted = False
+            self._send_frame("picture", render.frame(), progress=dataclasses.asdict(render.progress))
+
+    def _send_frame(self, kind: str, frame: Frame, **content: object) -> None:
+        description, block = pack([frame.combined, *frame.passes.values()])
+        if block is not None:
+            self._blocks.append(block)
+        self._send(kind, arrays=description, passes=list(frame.passes), **content)
+
+    def _end(self) -> None:
+        result = self._render.result(self._stopping)
+        self._scene = self._slices = None
+        self._send_frame("result", result.frame, statistics=result.statistics.as_dict(), stopped=result.stopped)
+
+    def _fail(self, error: Exception) -> None:
+        """The render has ended; what state the mapper is in is unknown."""
+        kind, text = type(error).__name__, str(error)
+        if not isinstance(error, RppmError):
+            log.exception("a render failed")
+        self._release_mapper()
+        self._send("failed", error=kind, text=text)
+
+    def _release_mapper(self) -> None:
+        self._scene = self._slices = self._render = None
+        if self._mapper is not None:
+            self._mapper.release()
+            self._mapper = None
+
+    def release(self) -> None:
+        """Give memory and frames back."""
+        self._release_mapper()
+        while self._blocks:
+            self.received()

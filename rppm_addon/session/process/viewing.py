@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A viewport's session in the renderer's process."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...integrator.film import Film
+from ...integrator.progressive import ProgressivePhotonMapper
+from ...scene.errors import RppmError
+from ...scene.scene import Scene
+from ..renderer import log, read_combined
+from .frames import FrameWriter
+from .sessions import SessionStatus
+from .sharpness import Sharpness, at_level
+
+NAVIGATION_SECONDS = 1.0 / 15.0
+"""Time for the first picture while the view or the scene keeps changing."""
+FIRST_SECONDS = 0.15
+"""Time for the first picture after a single change."""
+REST_SECONDS = 0.25
+"""Without a change for so long, the view is at rest and pictures become sharper."""
+
+BRIGHTEST = 65000.0
+"""Windows draw half floats, which end there; what is infinite would be drawn black."""
+
+FRAME_SECONDS = 1.0 / 60.0
+"""Pictures that follow each other faster are not given out: nobody would see them, and reading them costs time."""
+
+Send = Callable[..., None]
+"""send(kind, **content): a message to Blender about this session."""
+
+
+def shown_picture(film: Film, scene: Scene) -> np.ndarray:
+    """(height, width, 4) float32: Combined, or the one pass of the scene's settings as colors, a value as gray."""
+    if not film.passes:
+        return read_combined(film, scene.exposure)
+    (values,) = film.read_passes().values()
+    planes = np.atleast_3d(values)
+    shown = np.zeros((*planes.shape[:2], 4), np.float32)
+    shown[..., : planes.shape[2]] = planes
+    if planes.shape[2] == 1:
+        shown[..., :3] = planes
+    shown[..., 3] = 1.0
+    return shown
+
+
+class Viewing:
+    """Renders the newest scene that it was shown, slice by slice, and gives frames out."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, send: Send) -> None:
+        self._context = context
+        self._library = library
+        self._send = send
+        self._frames = FrameWriter()
+        self._mapper: ProgressivePhotonMapper | None = None
+        self._slices: Iterator[None] | None = None
+        self._shown: tuple[Scene, int, bool] | None = None
+        self._shown_at = 0.0
+        self._first_picture_pending = False
+        self._given_out_at = 0.0
+        self._sharpness = Sharpness()
+        self._paused = False
+        self._status = SessionStatus()
+
+    def show(self, scene: Scene, generation: int, navigating: bool) -> None:
+        """Render this scene next; what was rendered of another is dropped.
+
+        But for its first picture: else nothing would be seen of a scene that changes faster than it is rendered.
+        """
+        self._shown = (scene, generation, navigating)
+        self._shown_at = time.perf_counter()
+
+    def pause(self, paused: bool) -> None:
+        """Stop improving the picture, or go on."""
+        self._paused = paused
+
+    @property
+    def busy(self) -> bool:
+        """Whether there is something to render."""
+        return self._shown is not None or (self._slices is not None and not self._paused)
+
+    def run_slice(self) -> None:
+        """Render a bounded while."""
+        if self._shown is not None and not (self._slices is not None and self._first_picture_pending):
+            self._slices = self._render(*self._shown)
+            self._shown = None
+        try:
+            if next(self._slices, self) is self:  # ended
+                self._slices = None
+        except BrokenPipeError:
+            raise
+        except Exception as error:
+            self._fail(error)
+
+    def _render(self, scene: Scene, generation: int, navigating: bool) -> Iterator[None]:
+        """Pictures of a scene, first a coarse one and then sharper ones."""
+        self._first_picture_pending = True
+        width, height = scene.camera.resolution
+        levels = self._sharpness.levels(width * height, NAVIGATION_SECONDS if navigating else FIRST_SECONDS)
+        for level in levels:
+            yield from self._render_level(scene, generation, navigating, level)
+
+    def _render_level(self, scene: Scene, generation: int, navigating: bool, level: float) -> Iterator[None]:
+        started = time.perf_counter()
+        if self._mapper is None:
+            self._mapper = ProgressivePhotonMapper(self._context, self._library)
+        mapper, settings = self._mapper, scene.settings
+        mapper.update(at_level(scene, level), stray=math.inf if level < 1.0 else 0.0)
+        built = time.perf_counter()
+        yield
+        while mapper.iteration < settings.iterations:
+            yield from mapper.steps()
+            now = time.perf_counter()
+            last = mapper.iteration == settings.iterations
+            at_once = last or self._first_picture_pending or now - self._given_out_at >= FRAME_SECONDS
+            if last or (at_once and mapper.iteration % settings.iterations_per_frame == 0):
+                self._given_out_at = now
+                self._give_out(scene, generation)
+                if self._first_picture_pending:
+                    self._sharpness.measure(mapper.film.width * mapper.film.height, now - started)
+                    self._first_picture_pending = False
+            self._tell(
+                SessionStatus(
+                    generation=generation,
+                    iteration=mapper.iteration,
+                    iterations=settings.iterations,
+                    photons=mapper.photons_emitted,
+                    elapsed_seconds=now - started,
+                    radius_metres=mapper.splat_radii[0],
+                    memory_bytes=sum(mapper.memory_bytes.values()),
+                    density_estimation=mapper.density_estimation.name,
+                    iterations_per_second=mapper.iteration / (now - built),
+                    photons_per_second=mapper.photons_emitted / (now - built),
+                    source_watts=mapper.source_watts,
+                    source_photons=mapper.source_photons,
+                    warnings=mapper.scene.warnings,
+                    settled=level == 1.0 and mapper.iteration >= settings.iterations,
+                )
+            )
+            yield
+            at_rest = not navigating or time.perf_counter() - self._shown_at >= REST_SECONDS
+            if level < 1.0 and at_rest and not self._first_picture_pending:
+                return
+
+    def _give_out(self, scene: Scene, generation: int) -> None:
+        """Write the picture so far to a slot."""
+        combined = shown_picture(self._mapper.film, scene)
+        # Done here, where no window waits for it.
+        np.nan_to_num(combined, copy=False, nan=0.0, posinf=BRIGHTEST, neginf=0.0)
+        np.minimum(combined, BRIGHTEST, out=combined)
+        height, width = combined.shape[:2]
+        slots = self._frames.reserve(width * height)
+        if slots is not None:
+            self._send("slots", **slots)
+        announcement = self._frames.write(generation, combined)
+        self._send("frame", **announcement, progress=self._mapper.iteration / scene.settings.iterations)
+
+    def _tell(self, status: SessionStatus) -> None:
+        self._status = status
+        self._send("status", status=vars(status))
+
+    def _fail(self, error: Exception) -> None:
+        """Say what is wrong and wait for another scene; what state the mapper is in is unknown."""
+        text = str(error)
+        if not isinstance(error, RppmError):
+            log.exception("a viewport failed")
+            text = f"RPPM failed unexpectedly ({type(error).__name__}: {error}); please report what its log says"
+        self._release_mapper()
+        self._tell(replace(self._status, error=text, settled=True))
+
+    def _release_mapper(self) -> None:
+        self._slices = None
+        if self._mapper is not None:
+            self._mapper.release()
+            self._mapper = None
+
+    def release(self) -> None:
+        """Give memory and frames back."""
+        self._release_mapper()
+        self._frames.release()

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders .blend files with RPPM and with Cycles, side by side.
+
+Writes out/pairs/NAME.png (RPPM left, Cycles right), out/pairs/NAME.exr and NAME_cycles.exr, a table
+of mean radiance ratios, and a contact sheet of RPPM's pictures alone to docs/images/.
+A scene that fails is reported and the others go on.
+"""
+
+import argparse
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+import PIL.ImageDraw
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from rppm_addon.pictures import read_exr, standard_view  # noqa: E402 (the checkout, installed or not)
+
+SCENES = (
+    "cornell_box_tm",
+    "glass_caustics",
+    "causticcube",
+    "pool",
+    "diamond_ring",
+    "water_caustic_cornell",
+    "fireplace_room",
+)
+
+_CYCLES = """
+import sys
+import bpy
+source, target, width, height, seconds = sys.argv[1:]
+bpy.ops.wm.open_mainfile(filepath=source, load_ui=False, use_scripts=False)
+scene = bpy.context.scene
+render, cycles = scene.render, scene.cycles
+render.engine, cycles.device = "CYCLES", "CPU"
+render.resolution_x, render.resolution_y, render.resolution_percentage = int(width), int(height), 100
+render.use_compositing = render.use_sequencer = render.use_border = False
+cycles.samples, cycles.time_limit = 65536, float(seconds)
+cycles.use_adaptive_sampling = cycles.use_denoising = False
+cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
+cycles.caustics_reflective = cycles.caustics_refractive = True
+cycles.use_auto_tile = False
+if hasattr(render.image_settings, "media_type"):
+    render.image_settings.media_type = "IMAGE"
+render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+render.image_settings.color_mode, render.use_file_extension = "RGBA", False
+used = [layer for layer in scene.view_layers if layer.use] or list(scene.view_layers)
+for layer in scene.view_layers:
+    layer.use = layer == used[0]
+render.filepath = target
+bpy.ops.render.render(write_still=True)
+"""
+
+
+def run(command: list[str], seconds: float) -> str:
+    """Run a command with a limit; returns what went wrong, empty when nothing."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, cwd=ROOT)
+    except subprocess.TimeoutExpired:
+        return f"no end after {seconds:.0f} s"
+    if done.returncode:
+        return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+    return ""
+
+
+def exposure_of(pixels: np.ndarray) -> float:
+    """A factor that brings a picture's middle brightness into view, the same for both of a pair."""
+    luminance = pixels[..., :3] @ (0.2126, 0.7152, 0.0722)
+    lit = luminance[np.isfinite(luminance) & (luminance > 0.0)]
+    return 0.3 / float(np.percentile(lit, 60)) if lit.size else 1.0
+
+
+def as_image(pixels: np.ndarray, exposure: float) -> PIL.Image.Image:
+    """A picture through the Standard view, over black."""
+    shown = np.concatenate([pixels[..., :3] * exposure, np.ones_like(pixels[..., :1])], axis=-1)
+    return PIL.Image.fromarray(standard_view(shown)[::-1, :, :3])
+
+
+def beside(images: list[PIL.Image.Image], columns: int, labels: list[str]) -> PIL.Image.Image:
+    """Images of one size in a grid, each with a label below."""
+    width, height = images[0].width, images[0].height + 14
+    rows = -(-len(images) // columns)
+    sheet = PIL.Image.new("RGB", (columns * width, rows * height), (24, 24, 24))
+    draw = PIL.ImageDraw.Draw(sheet)
+    for index, (image, label) in enumerate(zip(images, labels)):
+        left, top = index % columns * width, index // columns * height
+        sheet.paste(image, (left, top))
+        draw.text((left + 3, top + height - 13), label, fill=(220, 220, 220))
+    return sheet
+
+
+def render_pair(blend: Path, folder: Path, options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray] | str:
+    """RPPM's and Cycles' picture of a file, or what went wrong."""
+    ours, theirs = folder / f"{blend.stem}.exr", folder / f"{blend.stem}_cycles.exr"
+    width, height = options.resolution
+    command = [sys.executable, "-m", "rppm_addon", "render", str(blend), "-o", str(ours)]
+    command += ["--resolution", f"{width}x{height}", "--set", "render.use_border=false"]
+    command += ["--seconds", str(options.seconds), "--json", str(ours.with_suffix(".json"))]
+    problem = run(command, options.seconds * 4 + 120)
+    if problem:
+        return f"RPPM: {problem}"
+    command = [sys.executable, "-c", _CYCLES, str(blend), str(theirs), str(width), str(height), str(options.seconds)]
+    if options.keep_cycles and theirs.exists() and read_exr(theirs).combined.shape[:2] == (height, width):
+        problem = ""
+    else:
+        problem = run(command, options.seconds * 4 + 120)
+    if problem:
+        return f"Cycles: {problem}"
+    return read_exr(ours).combined, read_exr(theirs).combined
+
+
+def main() -> int:
+    """Render all scenes; returns the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", type=Path, help="a folder of .blend files")
+    parser.add_argument("--names", nargs="*", default=SCENES, help="files without .blend")
+    parser.add_argument("--resolution", type=lambda text: tuple(map(int, text.split("x"))), default=(256, 192))
+    parser.add_argument("--seconds", type=float, default=60.0, help="time for each renderer and scene")
+    parser.add_argument("--keep-cycles", action="store_true", help="use Cycles' pictures of an earlier run")
+    parser.add_argument("--sheet", type=Path, default=ROOT / "docs/images/contact_sheet.jpg")
+    options = parser.parse_args()
+    folder = ROOT / "out" / "pairs"
+    folder.mkdir(parents=True, exist_ok=True)
+    sheet, labels, failures = [], [], []
+    print(f"{'scene':24} {'RPPM / Cycles, mean of R, G, B':36} seconds")
+    for name in options.names:
+        blend = (options.scenes / f"{name}.blend").resolve()
+        start = time.monotonic()
+        pair = render_pair(blend, folder, options) if blend.exists() else f"{blend.name} is not in {options.scenes}"
+        if isinstance(pair, str):
+            failures.append(name)
+            print(f"{name:24} {pair}", flush=True)
+            continue
+        ours, theirs = pair
+        with np.errstate(all="ignore"):
+            ratio = ours[..., :3].mean((0, 1)) / theirs[..., :3].mean((0, 1))
+        exposure = exposure_of(ours)  # Cycles is short of the light that it cannot find
+        images = [as_image(ours, exposure), as_image(theirs, exposure)]
+        beside(images, 2, ["RPPM", "Cycles"]).save(folder / f"{name}.png")
+        sheet.append(images[0])
+        labels.append(name)
+        print(f"{name:24} {'  '.join(f'{value:.3f}' for value in ratio):36} {time.monotonic() - start:.0f}", flush=True)
+    if sheet:
+        options.sheet.parent.mkdir(parents=True, exist_ok=True)
+        temporary = options.sheet.with_name(f".{options.sheet.name}")
+        beside(sheet, 3, labels).save(temporary, format="JPEG", quality=88)
+        temporary.replace(options.sheet)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
