@@ -11,8 +11,8 @@ from .progress_bar import ProgressBar
 from .recorder import apply_settings
 
 _LONGEST_SIDE = 64
-"""Pixels, so that rendering takes next to no time beside compiling, and yet both routes of density estimation are
-tried."""
+"""Pixels, so that rendering takes next to no time beside compiling, and yet GPUs try both routes of density
+estimation."""
 _MOST_PHOTONS = 1024
 _ITERATIONS = 2
 """The second is the first that rests on what another one learned."""

@@ -173,6 +173,7 @@ def test_both_routes_give_the_same_bits(mapper, monkeypatch, name, rows):
 @pytest.fixture
 def undecided(monkeypatch):
     monkeypatch.setattr(density_estimator, "_faster", WeakKeyDictionary())
+    monkeypatch.setattr(density_estimator, "_may_rasterize", lambda context: True)
 
 
 @pytest.mark.parametrize("rasterized_takes", [0.5, 2.0])
@@ -209,5 +210,14 @@ def test_the_faster_route_is_taken_and_kept(mapper, other_mapper, monkeypatch, u
 def test_nothing_is_tried_with_next_to_nothing(mapper, monkeypatch, undecided):
     monkeypatch.setattr(DensityEstimator, "_seconds", lambda *_: pytest.fail("both were tried"))
     mapper.build(wide(scenes.room(8, photons=500)))
+    mapper.iterate()
+    assert mapper.density_estimation is DensityEstimation.GRID
+
+
+def test_nothing_is_tried_where_no_unit_rasterizes(mapper, monkeypatch, undecided):
+    monkeypatch.setattr(density_estimator, "_may_rasterize", lambda context: False)
+    monkeypatch.setattr(density_estimator, "_FEWEST_TO_TRY", 100)
+    monkeypatch.setattr(DensityEstimator, "_seconds", lambda *_: pytest.fail("both were tried"))
+    mapper.build(busy())
     mapper.iterate()
     assert mapper.density_estimation is DensityEstimation.GRID
