@@ -81,7 +81,8 @@ class ProgressivePhotonMapper:
         self._geometry = Geometry(context, library)
         self._materials = MaterialTables(context, library)
         self._emission = Emission(context, library)
-        self._deep_cubemap = DeepCubemap(context, library)
+        # Where no unit rasterizes that takes two to three times as long, and trying it most of the first build.
+        self._deep_cubemap = DeepCubemap(context, library, rasterize=False if context.is_software else None)
         self._resolve = Resolve(context, library)
         self.iteration = 0
         """The last that was run, counted from 1."""
