@@ -27,10 +27,10 @@ PointerProperty = functools.partial(props.PointerProperty, update=_edited)
 DEFAULTS = RenderSettings()
 _MOST_PHOTONS = 1 << 22
 
-VIEWPORT_PHOTONS = DEFAULTS.photons // 4
+VIEWPORT_PHOTONS = 1 << 14
 """In the viewport a quick first picture counts for more than how good it is."""
-VIEWPORT_ITERATIONS = DEFAULTS.iterations * DEFAULTS.photons // VIEWPORT_PHOTONS
-"""Until a viewport at rest has seen as many photons as a final render does."""
+VIEWPORT_ITERATIONS = 4 * DEFAULTS.iterations
+"""A viewport at rest goes on for longer, as its iterations have fewer photons."""
 
 
 class RppmSceneProperties(bpy.types.PropertyGroup):
@@ -55,11 +55,13 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
     )
     photons: IntProperty(
         name="Photons",
-        description="Photons emitted in each iteration, shared among the lights by their power and photon share",
+        description=(
+            "Photons emitted in each iteration, shared among the lights by their power and photon share; "
+            "0 is automatic: as many as the picture has pixels, within limits"
+        ),
         default=DEFAULTS.photons,
-        min=1,
+        min=0,
         max=_MOST_PHOTONS,
-        soft_min=1024,
         step=1024,
     )
     viewport_iterations: IntProperty(
@@ -73,12 +75,11 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         name="Viewport Photons",
         description=(
             "Photons emitted in each iteration of the viewport: fewer show a changed view sooner, "
-            "more make its first pictures smoother"
+            "more make its first pictures smoother; 0 is automatic, as in a final render"
         ),
         default=VIEWPORT_PHOTONS,
-        min=1,
+        min=0,
         max=_MOST_PHOTONS,
-        soft_min=1024,
         step=1024,
     )
     viewport_paused: BoolProperty(

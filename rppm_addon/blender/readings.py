@@ -54,9 +54,8 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
 
     def expected(settings: RenderSettings, width: int, height: int) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
-        return expected_memory(
-            width, height, settings.photons, settings.photon_path_length, rasterized, settings.passes
-        )
+        photons = settings.photons_for(width, height)
+        return expected_memory(width, height, photons, settings.photon_path_length, rasterized, settings.passes)
 
     scene_bytes = None
     if report is not None:

@@ -55,6 +55,10 @@ class RenderReport:
     """All of them, where ``warnings`` was cut short."""
 
     @property
+    def photons_per_iteration(self) -> int:
+        return self.photons // max(self.iterations, 1)
+
+    @property
     def rendering_seconds(self) -> float:
         """Without export and compilation."""
         return max(self.seconds - self.build_seconds, 1e-9)

@@ -46,6 +46,6 @@ def _small(scene: Scene) -> Scene:
     scale = min(1.0, _LONGEST_SIDE / max(camera.width, camera.height))
     size = (max(1, round(side * scale)) for side in (camera.width, camera.height))
     few = dataclasses.replace(
-        settings, iterations=_ITERATIONS, time_limit=0.0, photons=min(settings.photons, _MOST_PHOTONS)
+        settings, iterations=_ITERATIONS, time_limit=0.0, photons=min(scene.photon_count, _MOST_PHOTONS)
     )
     return dataclasses.replace(scene, camera=camera_at_resolution(camera, *size), settings=few)

@@ -47,7 +47,7 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
         geometry=not same_members(before.instances, after.instances)
         or not same_members(before.meshes, after.meshes)
         or len(before.materials) != len(after.materials),
-        lights=world or lamps or after.settings.photons != before.settings.photons,
+        lights=world or lamps or after.photon_count != before.photon_count,
         world=world,
         lamps=lamps,
         cubemap=after.settings.cubemap_resolution != before.settings.cubemap_resolution

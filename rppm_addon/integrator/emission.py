@@ -239,7 +239,7 @@ class Emission:
 
         kept = self._table if keep_learned and names == self._names else None
         self._names, self._powers = names, powers
-        self.photon_flux = sum(powers) / scene.settings.photons
+        self.photon_flux = sum(powers) / scene.photon_count
         # By power, half of it evenly: what does not choose by the point, and MIS weights.
         selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
         table = np.array(entries, LIGHT.dtype)
@@ -247,7 +247,7 @@ class Emission:
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
-        self._table, self._photons = table, scene.settings.photons
+        self._table, self._photons = table, scene.photon_count
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
                 table[column] = kept[column]

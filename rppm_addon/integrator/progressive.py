@@ -220,7 +220,7 @@ class ProgressivePhotonMapper:
         width, height = camera.resolution
         self._bands = bands_of(width, height)
         rows = self._bands[0][1]
-        self._photons = Photons(self.context, self._library, settings.photons, settings.photon_path_length)
+        self._photons = Photons(self.context, self._library, self.scene.photon_count, settings.photon_path_length)
         self._gbuffer = (
             GBuffer(self.context, self._library, width, rows)
             if is_rasterized(camera)
@@ -398,7 +398,7 @@ class ProgressivePhotonMapper:
 
     @property
     def photons_emitted(self) -> int:
-        return self.iteration * self.scene.settings.photons
+        return self.iteration * self.scene.photon_count
 
     @property
     def source_watts(self) -> dict[str, float]:
@@ -439,8 +439,8 @@ class ProgressivePhotonMapper:
             "density estimation": self._density_estimator.memory_bytes,
             "passes": self.film.memory_bytes | self._caustic_radii.memory_bytes,
         }
-        settings = self.scene.settings
-        return reckon_memory(groups, self.film.width * self.film.height, settings.photons, settings.photon_path_length)
+        segments = self.scene.settings.photon_path_length
+        return reckon_memory(groups, self.film.width * self.film.height, self.scene.photon_count, segments)
 
     @property
     def memory_bytes(self) -> dict[str, int]:
@@ -533,7 +533,7 @@ class ProgressivePhotonMapper:
             listed.count - listed.diffused_count,
             listed.diffused_count,
             self._photons.world_radiances.buffer,
-            settings.photons,
+            self.scene.photon_count,
             self._emission.photon_flux,
             radii,
             float(np.max(np.abs(bounds))),
@@ -717,5 +717,5 @@ def _views_for(scene: Scene) -> tuple:
     """What the sizes and kinds of the camera's side depend on: scenes that agree in it take over the buffers."""
     camera, settings = scene.camera, scene.settings
     catchers = any(instance.shadow_catcher for instance in scene.instances)
-    sizes = camera.resolution, settings.photons, settings.photon_path_length
+    sizes = camera.resolution, scene.photon_count, settings.photon_path_length
     return is_rasterized(camera), *sizes, settings.passes, catchers

@@ -45,6 +45,11 @@ class Scene:
             log.warning(text)
 
     @property
+    def photon_count(self) -> int:
+        """Photons of an iteration."""
+        return self.settings.photons_for(*self.camera.resolution)
+
+    @property
     def triangle_count(self) -> int:
         """Triangles with all instances expanded."""
         return sum(self.meshes[instance.mesh].triangle_count for instance in self.instances)

@@ -13,6 +13,11 @@ CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
 """What a ray costs in the deep cubemap: cells looked at; triangles tested; entries in the cell of the hit, 0 where
 nothing is hit; entries read."""
 
+_FEWEST_AUTOMATIC_PHOTONS, _MOST_AUTOMATIC_PHOTONS = 1 << 13, 1 << 18
+"""Fewer take next to no less time; more take longer than one waits for an iteration where there is no GPU."""
+_MOST_AUTOMATIC_SEGMENTS = 1 << 21
+"""Photon records that take 128 MiB, the largest buffer that all drivers have."""
+
 
 class DirectLight(enum.Enum):
     """How light that comes straight from a source is estimated; never both."""
@@ -50,8 +55,8 @@ class RenderSettings:
     iterations: int = 128
     time_limit: float = 0.0
     """Stop with the iteration that ends nearest to so many seconds; 0 is no limit."""
-    photons: int = 65536
-    """Photons emitted in each iteration, shared among the lights."""
+    photons: int = 0
+    """Photons emitted in each iteration, shared among the lights; 0 is automatic (photons_for)."""
     camera_path_length: int = 8
     """d_eye: camera path segments, the primary ray being the first."""
     photon_path_length: int = 8
@@ -98,7 +103,7 @@ class RenderSettings:
 
         need("iterations", self.iterations >= 1, "1 or more")
         need("time_limit", math.isfinite(self.time_limit) and self.time_limit >= 0.0, "0 (no limit) or seconds")
-        need("photons", 1 <= self.photons <= 1 << 22, "1 to 4194304")
+        need("photons", 0 <= self.photons <= 1 << 22, "0 (automatic) or 1 to 4194304")
         need("camera_path_length", 1 <= self.camera_path_length <= 64, "1 to 64")
         need("photon_path_length", 1 <= self.photon_path_length <= 64, "1 to 64")
         need("alpha", 0.0 < self.alpha < 1.0, "a value between 0 and 1")
@@ -128,6 +133,16 @@ class RenderSettings:
             resolution == 0 or (16 <= resolution <= 16384 and resolution & (resolution - 1) == 0),
             "0 (automatic) or a power of two from 16 to 16384",
         )
+
+    def photons_for(self, width: int, height: int) -> int:
+        """Photons of an iteration that renders so many pixels: where automatic, one a pixel within limits.
+
+        Depends on nothing that another machine or another run would find otherwise.
+        """
+        if self.photons:
+            return self.photons
+        most = min(_MOST_AUTOMATIC_PHOTONS, _MOST_AUTOMATIC_SEGMENTS // self.photon_path_length)
+        return max(min(width * height, most), _FEWEST_AUTOMATIC_PHOTONS)
 
     def with_values(self, **values: object) -> "RenderSettings":
         """A copy with some settings replaced; values may be text, as from the command line.

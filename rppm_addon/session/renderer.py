@@ -153,7 +153,7 @@ class SlicedRender:
     def progress(self) -> Progress:
         """How far the render is."""
         settings = self._scene.settings
-        photons = self.iterations * settings.photons
+        photons = self.iterations * self._scene.photon_count
         return Progress(self.iterations, settings.iterations, self._elapsed, photons, settings.time_limit)
 
     def frame(self) -> Frame:

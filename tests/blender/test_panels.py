@@ -176,6 +176,16 @@ def test_expected_memory(scene):
     assert drawn(panel, context_of(scene)).labels  # a border without pixels is no reason not to draw
 
 
+def test_automatic_photons_are_told(scene):
+    panel, render = panels.sampling.RPPM_PT_sampling_final, scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = 400, 300, 50
+    render.use_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.0, 0.5, 0.0, 1.0
+    assert "15.0 k photons" in drawn(panel, context_of(scene)).labels
+    scene.rppm.photons = 5000
+    assert not drawn(panel, context_of(scene)).labels
+
+
 def test_rates_and_the_last_renders(scene):
     viewport = report(RenderKind.VIEWPORT, iterations=4, photons=1000, density_estimation="GRID")
     reports.record(scene.session_uid, viewport)
@@ -184,6 +194,7 @@ def test_rates_and_the_last_renders(scene):
     status = drawn(panels.performance.RPPM_PT_status, context_of(scene)).labels
     assert status.index("Viewport") < status.index("Final")
     assert "1 iterations, 250 photons" in status and "2 iterations, 6.00 k photons" in status
+    assert status.count("3.00 k an iteration") == 1 and status.count("250 an iteration") == 1
     assert "8 of 8" in status and "200.0 MiB" in status
     assert status.count("Density Estimation") == status.count("Photon Grid") == 1
     table = drawn(panels.performance.RPPM_PT_last_renders, context_of(scene)).labels
@@ -226,7 +237,7 @@ def test_presets_set_what_they_say(scene):
     folder = bpy.utils.preset_paths("rppm")
     files = {path.stem: path for path in (presets.FOLDER / "presets" / "rppm").glob("*.py")}
     assert str(presets.FOLDER / "presets" / "rppm") in folder and set(files) == {"Draft", "Balanced", "Final"}
-    emitted = {}
+    iterations = {}
     for name, path in files.items():
         for setting in presets.SETTINGS:
             scene.rppm.property_unset(setting)
@@ -237,14 +248,15 @@ def test_presets_set_what_they_say(scene):
         written = {line.split(" = ")[0] for line in path.read_text().splitlines() if line.startswith("settings.")}
         assert written == set(presets.RPPM_OT_preset_add.preset_values)
         assert settings.seed == 7
-        emitted[name] = settings.iterations * settings.photons
+        iterations[name] = settings.iterations
+        assert settings.photons == RenderSettings().photons
         if name == "Balanced":
             for setting in presets.SETTINGS:
                 expected = getattr(RenderSettings(), setting)
                 assert getattr(settings, setting) == (
                     pytest.approx(expected, rel=1e-6) if isinstance(expected, float) else expected
                 )
-    assert emitted["Draft"] * 8 == emitted["Balanced"] == emitted["Final"] // 8
+    assert iterations["Draft"] * 4 == iterations["Balanced"] == iterations["Final"] // 4
 
 
 def test_a_preset_of_the_users_own(scene, tmp_path, monkeypatch):

@@ -12,7 +12,9 @@ from pathlib import Path
 import checkpoints
 import numpy as np
 import pytest
+from full_scene import full_scene
 
+from rppm_addon.commands.checkpoints import still_render
 from rppm_addon.integrator.state import RenderState
 from rppm_addon.pictures import PictureError, read_exr
 from rppm_addon.scene.errors import CheckpointError
@@ -151,3 +153,12 @@ def test_a_writer_that_is_killed_leaves_a_whole_file(tmp_path):
         if told:
             assert summary.iteration - int(told[-1]) in (0, 1)
         np.testing.assert_array_equal(pause.state.radiance, checkpoints.pause(0, summary.iteration).state.radiance)
+
+
+def test_automatic_photons_are_kept_as_their_number():
+    """A part that was rendered with this number goes with others that found it themselves."""
+    scene = full_scene()
+    scene.settings.photons = 0
+    automatic = still_render(scene, {})
+    scene.settings.photons = scene.photon_count
+    assert automatic == still_render(scene, {}) and automatic.settings["photons"] == 8192

@@ -8,6 +8,7 @@ import pytest
 from support.full_scene import assert_same, full_scene
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
+from rppm_addon.integrator.records import PHOTON
 from rppm_addon.materials.compiler import compile_graph
 from rppm_addon.scene import (
     Aperture,
@@ -16,6 +17,7 @@ from rppm_addon.scene import (
     Panorama,
     PanoramaKind,
     RenderSettings,
+    Scene,
     load_scene,
     save_scene,
 )
@@ -62,7 +64,7 @@ def test_other_files_are_refused_in_one_line(tmp_path):
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("iterations", 0), ("photons", 0), ("photons", 1 << 23), ("alpha", 1.0), ("alpha", 0.0), ("radius_scale", 0.0),
+        ("iterations", 0), ("photons", -1), ("photons", 1 << 23), ("alpha", 1.0), ("alpha", 0.0), ("radius_scale", 0.0),
         ("camera_path_length", 0), ("photon_path_length", 65), ("cubemap_resolution", 100), ("seed", -1),
         ("specular_roughness", 1.1), ("radius_scale", float("nan")), ("time_limit", -1.0), ("filter_width", -1.0),
     ],
@@ -70,6 +72,22 @@ def test_other_files_are_refused_in_one_line(tmp_path):
 def test_bad_settings_are_named(name, value):
     with pytest.raises(SettingsError, match=f"^{name} is .*; set it to"):
         dataclasses.replace(RenderSettings(), **{name: value}).validate()
+
+
+@pytest.mark.parametrize(
+    ("asked", "segments", "size", "photons"),
+    [
+        (0, 8, (256, 256), 65536), (0, 8, (16, 12), 8192), (0, 8, (480, 360), 172800), (0, 8, (1920, 1080), 262144),
+        (0, 12, (1920, 1080), 174762), (0, 64, (1920, 1080), 32768), (0, 1, (1920, 1080), 262144),
+        (7, 8, (256, 256), 7),
+    ],
+)  # fmt: skip
+def test_automatic_photons_follow_the_pixels(asked, segments, size, photons):
+    settings = RenderSettings(photons=asked, photon_path_length=segments)
+    assert settings.photons_for(*size) == photons
+    assert Scene(Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), *size), settings=settings).photon_count == photons
+    if asked == 0:
+        assert photons * segments * PHOTON.size <= 1 << 27
 
 
 def test_default_settings_are_valid():

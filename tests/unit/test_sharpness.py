@@ -61,6 +61,6 @@ def test_a_coarse_camera_sees_the_same(level, crop):
 def test_photons_thin_out_with_the_side_of_the_picture():
     scene = Scene(camera=Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 64, 64))
     coarse = at_level(scene, 0.25)
-    assert coarse.settings.photons == scene.settings.photons // 4
+    assert coarse.settings.photons == scene.photon_count // 4
     assert at_level(scene, 1.0) is scene
     assert coarse.instances is scene.instances

@@ -5,6 +5,9 @@ import textwrap
 
 import bpy
 
+from ...scene.errors import SceneError
+from ..export.camera.camera import crop, frame_size
+
 ENGINE = "RPPM"
 _CHARACTER_WIDTH = 7.0
 """Pixels of a letter at a scale of 1, on average."""
@@ -26,6 +29,16 @@ class RppmPanel:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         return self.layout.column()
+
+
+def rendered_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
+    """Pixels across and upward that a final render has."""
+    width, height = frame_size(render)
+    try:
+        region = crop(render, width, height)
+    except SceneError:  # an empty border, which a render says
+        region = None
+    return (width, height) if region is None else (region[2] - region[0], region[3] - region[1])
 
 
 def reading(layout: bpy.types.UILayout, name: str, text: str) -> None:

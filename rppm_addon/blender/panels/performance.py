@@ -3,13 +3,11 @@
 
 import bpy
 
-from ...scene.errors import SceneError
 from ...scene.quantities import bytes_text, count_text, rate_text, seconds_text
-from ..export.camera.camera import crop, frame_size
 from ..export.settings import export_settings
 from ..readings import memory_reading
 from ..reports import RenderReport, reports_of
-from .base import RppmPanel, reading
+from .base import RppmPanel, reading, rendered_size
 
 
 class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
@@ -21,7 +19,8 @@ class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
         column = self.column()
         reports = reports_of(scene.session_uid)
         last = reports.finals[0] if reports.finals else None
-        memory = memory_reading(export_settings(scene, context.view_layer), *_region(scene.render), last)
+        settings = export_settings(scene, context.view_layer)
+        memory = memory_reading(settings, *rendered_size(scene.render), last)
         photons = memory.by_settings.ppm.get("photons", 0)
         reading(column, "Photons", bytes_text(photons))
         reading(column, "Picture and Paths", bytes_text(memory.by_settings.total_bytes - photons))
@@ -30,16 +29,6 @@ class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
         else:
             reading(column, "Scene", bytes_text(memory.scene_bytes))
         reading(column, "Expected Memory", bytes_text(memory.total_bytes))
-
-
-def _region(render: bpy.types.RenderSettings) -> tuple[int, int]:
-    """Pixels across and upward that a final render has."""
-    width, height = frame_size(render)
-    try:
-        region = crop(render, width, height)
-    except SceneError:  # an empty border, which a render says
-        region = None
-    return (width, height) if region is None else (region[2] - region[0], region[3] - region[1])
 
 
 class RPPM_PT_status(RppmPanel, bpy.types.Panel):
@@ -59,6 +48,7 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
     reading(column, "Iterations", f"{report.iterations} of {report.settings.iterations}")
+    reading(column, "Photons", f"{count_text(report.photons_per_iteration)} an iteration")
     radius = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_metres, precision=4)
     reading(column, "Largest Radius", radius)
     reading(column, "Memory", bytes_text(report.memory_bytes))

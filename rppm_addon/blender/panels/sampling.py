@@ -3,7 +3,9 @@
 
 import bpy
 
-from .base import RppmPanel
+from ...scene.quantities import count_text
+from ..export.settings import export_settings
+from .base import RppmPanel, reading, rendered_size
 from .presets import RPPM_PT_presets
 
 
@@ -41,6 +43,9 @@ class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
         column = self.column()
         column.prop(settings, "iterations")
         column.prop(settings, "photons")
+        if settings.photons == 0:
+            photons = export_settings(context.scene).photons_for(*rendered_size(context.scene.render))
+            reading(column, "Automatic", f"{count_text(photons)} photons")
         column.prop(settings, "time_limit")
 
 

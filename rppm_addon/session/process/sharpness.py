@@ -46,7 +46,7 @@ def at_level(scene: Scene, level: float) -> Scene:
     """
     if level >= 1.0:
         return scene
-    photons = max(1, round(scene.settings.photons * level))
+    photons = max(1, round(scene.photon_count * level))
     return replace(scene, camera=scaled(scene.camera, level), settings=replace(scene.settings, photons=photons))
 
 

@@ -5,7 +5,7 @@ import bpy
 settings = bpy.context.scene.rppm
 
 settings.iterations = 128
-settings.photons = 65536
+settings.photons = 0
 settings.direct_light = "RAYS"
 settings.final_gather = True
 settings.camera_path_length = 8
