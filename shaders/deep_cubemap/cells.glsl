@@ -16,6 +16,7 @@
 // While a level is being built, `content` is the fragments in a cell and `slices` the cells of the
 // next level that they might touch.
 #include <CubemapCell>
+#include "common/whole_numbers.glsl"
 
 #ifdef DEEP_CUBEMAP_BUILD
 #define CUBEMAP_CELLS_ACCESS
@@ -54,11 +55,11 @@ uvec2 depth_codes(vec2 interval, DeepCubemapState cubemap) {
 }
 
 // Where codes lie in a cell's depth range, as whole numbers from 0 to `last`. Monotone, so two intervals
-// that overlap share a number. Codes are positive as int too, whose conversions are the faster ones.
+// that overlap share a number. Codes are positive as int too.
 ivec2 depth_parts(uvec2 codes, CubemapCell cell, int last) {
     int near = int(~cell.near_complement), far = int(cell.far);
     float scale = float(last + 1) / float(max(far - near, 1));
-    return min(ivec2(vec2(clamp(ivec2(codes), near, far) - near) * scale), last);
+    return min(whole_part(vec2(clamp(ivec2(codes), near, far) - near) * scale), last);
 }
 
 // The slices of a cell's depth range that an interval touches, a bit each.

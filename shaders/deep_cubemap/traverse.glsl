@@ -11,6 +11,7 @@
 // far below that, unless tens of thousands of triangles crowd into a few cells or around the centre.
 #include "common/constants.glsl"
 #include "common/finite.glsl"
+#include "common/whole_numbers.glsl"
 #include "common/intersection.glsl"
 #include "deep_cubemap/triangles.glsl"
 #include "deep_cubemap/state.glsl"
@@ -103,7 +104,7 @@ ivec2 cell_at(vec3 origin, vec3 direction, vec2 distances, ivec2 steps, float re
     vec2 depths = max(origin.z + distances * direction.z, vec2(1e-30));
     vec2 error = 3e-7 * (abs(origin.x) + abs(origin.y) + abs(origin.z)) / depths + 2e-7;
     vec2 position = ((origin.xy + distances * direction.xy) / depths - vec2(steps) * error) * 0.5 + 0.5;
-    return ivec2(clamp(position * resolution, vec2(0.0), vec2(resolution - 1.0)));
+    return whole_part(clamp(position * resolution, vec2(0.0), vec2(resolution - 1.0)));
 }
 
 // Which way the ray moves across the face along x and y: -1, 0 or 1; 0 where it runs along a plane
@@ -111,7 +112,7 @@ ivec2 cell_at(vec3 origin, vec3 direction, vec2 distances, ivec2 steps, float re
 ivec2 step_directions(vec3 origin, vec3 direction) {
     vec2 one = direction.xy * origin.z, other = origin.xy * direction.z;
     bvec2 moves = greaterThan(abs(one - other), 3e-7 * (abs(one) + abs(other)));
-    return ivec2(sign(one - other)) * ivec2(moves);
+    return (ivec2(greaterThan(one, other)) - ivec2(lessThan(one, other))) * ivec2(moves);
 }
 
 // A cell's new place along one axis within its block: as computed, but never backwards.
