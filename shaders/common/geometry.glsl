@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/constants.glsl"
+#include "common/whole_numbers.glsl"
 
 // Octahedral unit vectors in two 16-bit parts (Cigolle et al., JCGT 2014).
 vec2 octahedral_fold(vec2 v) {
@@ -8,7 +9,9 @@ vec2 octahedral_fold(vec2 v) {
 
 uint pack_unit_vector(vec3 v) {
     v /= abs(v.x) + abs(v.y) + abs(v.z);
-    return packSnorm2x16(v.z >= 0.0 ? v.xy : octahedral_fold(v.xy));
+    // packSnorm2x16, which drivers on the processor do one thread after the other
+    ivec2 parts = nearest_whole(clamp(v.z >= 0.0 ? v.xy : octahedral_fold(v.xy), -1.0, 1.0) * 32767.0);
+    return uint(parts.x & 0xffff) | uint(parts.y) << 16u;
 }
 
 vec3 unpack_unit_vector(uint bits) {
@@ -30,7 +33,7 @@ void tangent_frame(vec3 n, out vec3 t, out vec3 b) {
 // A point just off the surface on the side of n (Waechter and Binder, Ray Tracing Gems, ch. 6):
 // the step follows the coordinates' float spacing.
 vec3 offset_from_surface(vec3 p, vec3 n) {
-    ivec3 steps = ivec3(256.0 * n);
+    ivec3 steps = whole_part(256.0 * n);
     vec3 stepped = vec3(
         intBitsToFloat(floatBitsToInt(p.x) + (p.x < 0.0 ? -steps.x : steps.x)),
         intBitsToFloat(floatBitsToInt(p.y) + (p.y < 0.0 ? -steps.y : steps.y)),

@@ -9,3 +9,15 @@ int whole_part(float x) { return floatBitsToInt(trunc(x) + WHOLE_NUMBERS) - WHOL
 ivec2 whole_part(vec2 x) { return floatBitsToInt(trunc(x) + WHOLE_NUMBERS) - WHOLE_NUMBER_BITS; }
 ivec3 whole_part(vec3 x) { return floatBitsToInt(trunc(x) + WHOLE_NUMBERS) - WHOLE_NUMBER_BITS; }
 ivec4 whole_part(vec4 x) { return floatBitsToInt(trunc(x) + WHOLE_NUMBERS) - WHOLE_NUMBER_BITS; }
+
+// The nearest whole numbers, even ones of two that are as near.
+ivec2 nearest_whole(vec2 x) {
+    precise vec2 sum = x + WHOLE_NUMBERS;
+    return floatBitsToInt(sum) - WHOLE_NUMBER_BITS;
+}
+
+// uint() of a whole number below 2^32.
+uint whole_word(float x) {
+    float upper = floor(x * (1.0 / 65536.0)), lower = x - 65536.0 * upper;
+    return uint(whole_part(upper)) << 16u | uint(whole_part(lower));
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the photons of earlier iterations have taught: the random numbers that place and direct a photon are cut into
 // cells, and those from which photons come to importons are chosen more often (after Hachisuka and Jensen 2011).
+#include "common/whole_numbers.glsl"
 
 layout(std430, binding = 3) readonly buffer Guide { uint guide_starts[]; };  // in 2^-32, of each cell's probabilities
 
@@ -17,7 +18,7 @@ float guide_density(Light light, uint cell) {
 // place: where on the light (x of it: which emissive triangle); direction: where to.
 uint guide_cell(Light light, vec2 place, vec2 direction) {
     vec4 at = vec4(place, direction) * vec4(light.cells);
-    uvec4 cell = min(uvec4(max(at, 0.0)), light.cells - 1u);
+    uvec4 cell = uvec4(whole_part(clamp(at, vec4(0.0), vec4(light.cells - 1u))));
     return ((cell.w * light.cells.z + cell.z) * light.cells.y + cell.y) * light.cells.x + cell.x;
 }
 

@@ -33,7 +33,7 @@ void main() {
     for (uint tap = 0u; tap < taps; ++tap) {
         float angle = 2.0 * PI * turn.x + GOLDEN_ANGLE * float(tap);
         vec2 offset = parameters.radius_in_pixels * sqrt((float(tap) + turn.y) / float(taps)) * vec2(cos(angle), sin(angle));
-        ivec2 other_pixel = pixel + ivec2(round(offset));
+        ivec2 other_pixel = pixel + nearest_whole(offset);
         if (other_pixel == pixel || any(lessThan(other_pixel, ivec2(0))) || any(greaterThanEqual(other_pixel, size))) continue;
         uint other_index = uint(other_pixel.y) * parameters.width + uint(other_pixel.x);
         GatheringVertex other = gathering_vertices[other_index];

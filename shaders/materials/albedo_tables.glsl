@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // rppm_addon/materials/albedo_tables.py, in the order in which load() lists them.
+#include "common/whole_numbers.glsl"
 
 layout(std430, binding = 9) readonly buffer AlbedoTables { float albedo_tables[]; };
 
@@ -15,7 +16,7 @@ const int GLASS_LEAVING_AVERAGE = GLASS_ENTERING_AVERAGE + TABLE_SIZE * TABLE_SI
 
 float table_plane(int first, int size, float roughness, float cosine) {
     vec2 p = clamp(vec2(cosine, roughness), 0.0, 1.0) * float(size - 1);
-    ivec2 i = min(ivec2(p), ivec2(size - 2));
+    ivec2 i = min(whole_part(p), ivec2(size - 2));
     vec2 f = p - vec2(i);
     int at = first + i.y * size + i.x;
     return mix(mix(albedo_tables[at], albedo_tables[at + 1], f.x),
@@ -26,7 +27,7 @@ float ior_place(float ior) { return sqrt(abs((ior - 1.0) / (ior + 1.0))); }
 
 float table_volume(int first, float ior, float roughness, float cosine) {
     float z = ior_place(ior) * float(TABLE_SIZE - 1);
-    int i = clamp(int(z), 0, TABLE_SIZE - 2);
+    int i = whole_part(clamp(z, 0.0, float(TABLE_SIZE - 2)));
     int plane = TABLE_SIZE * TABLE_SIZE;
     return mix(table_plane(first + i * plane, TABLE_SIZE, roughness, cosine),
                table_plane(first + (i + 1) * plane, TABLE_SIZE, roughness, cosine), clamp(z - float(i), 0.0, 1.0));
@@ -36,7 +37,7 @@ float white_albedo(float roughness, float cosine) { return table_plane(0, WHITE_
 
 float white_average_albedo(float roughness) {
     float p = clamp(roughness, 0.0, 1.0) * float(WHITE_SIZE - 1);
-    int i = min(int(p), WHITE_SIZE - 2);
+    int i = min(whole_part(p), WHITE_SIZE - 2);
     return mix(albedo_tables[WHITE_AVERAGE + i], albedo_tables[WHITE_AVERAGE + i + 1], p - float(i));
 }
 

@@ -3,6 +3,8 @@
 // does not depend on their order and that of floats does. For each pixel of the band they are six, low words first:
 // three channels of what its importons take, and three of what its gathering ray finds.
 
+#include "common/whole_numbers.glsl"
+
 const float WORD = 4294967296.0;
 const float MOST_QUANTA = 4611686018427387904.0;  // 2^62
 
@@ -20,5 +22,5 @@ uvec2 whole_quanta(float quanta) {
     float high = floor(quanta / WORD);
     // What a float cannot count in whole quanta already is whole.
     float rest = quanta - high * WORD;
-    return uvec2(rest < 8388608.0 ? floor(rest + 0.5) : rest, high);
+    return uvec2(whole_word(rest < 8388608.0 ? floor(rest + 0.5) : rest), whole_word(high));
 }

@@ -26,7 +26,7 @@ bool passes_by_f0(uint kind) { return kind == LOBE_GLASS || kind == LOBE_COATED_
 
 // Kind and tint in one word, as closures and importons keep them.
 uint pack_kind(uint kind, vec3 tint) {
-    uvec3 parts = uvec3(clamp(tint, 0.0, 1.0) * vec3(511.0, 1023.0, 511.0) + 0.5);
+    uvec3 parts = uvec3(whole_part(clamp(tint, 0.0, 1.0) * vec3(511.0, 1023.0, 511.0) + 0.5));
     return kind | (parts.r << 4u) | (parts.g << 13u) | (parts.b << 23u);
 }
 uint unpack_kind(uint bits) { return bits & 0xfu; }
