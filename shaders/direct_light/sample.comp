@@ -20,6 +20,18 @@ layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 layout(std430, binding = 9) writeonly buffer LightTriangles { uint light_triangles[]; };
 layout(std430, binding = 8) writeonly buffer Contributions { vec4 contributions[]; };
 
+// The alpha above which lobes are evaluated towards lights.
+float smoothest_lit(bool gathered) {
+    return gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha);
+}
+
+// Whether any part of a closure is.
+bool can_be_lit(Closure closure, bool gathered) {
+    bool lit = largest(closure.diffuse) > 0.0 || largest(closure.translucent) > 0.0;
+    for (int k = 0; k < CLOSURE_LOBES; ++k) lit = lit || lobe_stores(closure_lobe(closure, k), smoothest_lit(gathered));
+    return lit;
+}
+
 // Lights are found by shadow rays. Light of the environment is found by gathering rays as well, and specular lobes
 // are followed to all lights with extent: the power heuristic weights both ways, part by part of the closure.
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
@@ -39,7 +51,7 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, bool gath
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (!lobe_stores(lobe, gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha))) continue;
+        if (!lobe_stores(lobe, smoothest_lit(gathered))) continue;
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = 1.0;
         if (light_pdf > 0.0 && parameters.last_segment == 0u && (specular || (gathers && environment)))
@@ -60,15 +72,14 @@ void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     shadow_rays[index].maximum_distance = 0.0;
-    contributions[index] = vec4(0.0);
-    light_triangles[index] = NO_TRIANGLE;
     Ray ray = rays[index];
     Closure closure = closures[index];
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
+    bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
+    if (!can_be_lit(closure, gathered)) return;
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_DIRECT_LIGHT << 24u));
     vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices), scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(camera_paths[index].flags, closure.distance, parameters.gathers_again_below);
     // An even environment is left to the gathering ray.

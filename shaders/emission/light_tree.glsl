@@ -81,10 +81,12 @@ float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep
 LightChoice choose_light_at(LitPoint point, float environment_irradiance, float u, float u_deep) {
     uint kinds = 3u + parameters.sun_count;
     float total = 0.0, shining = 0.0;
-    vec3 importances = vec3(tree_importance(0u, parameters.light_tree_leaves, point),
-                            tree_importance(parameters.triangle_tree, parameters.triangle_tree_leaves, point), environment_irradiance);
+    // The first sun's is kept as well: most scenes have no other.
+    vec4 importances = vec4(tree_importance(0u, parameters.light_tree_leaves, point),
+                            tree_importance(parameters.triangle_tree, parameters.triangle_tree_leaves, point), environment_irradiance,
+                            parameters.sun_count > 0u ? sun_importance(light_nodes[parameters.first_sun], point) : 0.0);
     for (uint kind = 0u; kind < kinds; ++kind) {
-        float importance = kind < 3u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+        float importance = kind < 4u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
         total += importance;
         shining += importance > 0.0 ? 1.0 : 0.0;
     }
@@ -92,7 +94,7 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     if (!(total > 0.0)) return choice;
     uint chosen = kinds;
     for (uint kind = 0u; kind < kinds; ++kind) {
-        float importance = kind < 3u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+        float importance = kind < 4u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
         if (!(importance > 0.0)) continue;
         float probability = (1.0 - EVEN_FRACTION_OF_KINDS) * importance / total + EVEN_FRACTION_OF_KINDS / shining;
         chosen = kind;
