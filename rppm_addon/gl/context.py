@@ -128,7 +128,7 @@ class Context:
     @property
     def has_program_binaries(self) -> bool:
         """Whether the driver hands out compiled programs."""
-        return self._integers(_NUM_PROGRAM_BINARY_FORMATS)[0] > 0
+        return self.integers(_NUM_PROGRAM_BINARY_FORMATS)[0] > 0
 
     @property
     def available_memory(self) -> int | None:
@@ -141,10 +141,10 @@ class Context:
             return next((int(line.split()[1]) << 10 for line in lines if line.startswith("MemAvailable:")), None)
         for extension, name in _AVAILABLE_KIBIBYTES.items():
             if extension in self.moderngl.extensions:
-                return self._integers(name)[0] << 10
+                return self.integers(name)[0] << 10
         return None
 
-    def _integers(self, name: int) -> list[int]:
+    def integers(self, name: int) -> list[int]:
         """glGetIntegerv of up to four numbers."""
         values = (ctypes.c_int * 4)()
         get_integer = self.function("glGetIntegerv", None, ctypes.c_uint, ctypes.POINTER(ctypes.c_int))

@@ -11,6 +11,7 @@ import moderngl
 from .binary_cache import BinaryCache
 from .context import Context
 from .sources import CompileError, ShaderError, Source, expand
+from .texel_buffers import TexelBuffers
 
 log = logging.getLogger(__name__)
 
@@ -22,7 +23,7 @@ GROUPS_PER_ROW = 65535
 
 
 class _Program:
-    """What compute and draw programs share: bindings by block name, and the parameter block."""
+    """What compute and draw programs share: bindings by block name, texel buffers, and the parameter block."""
 
     def __init__(self, context: Context, sources: list[Source]) -> None:
         self.context = context
@@ -35,6 +36,8 @@ class _Program:
                 if self.blocks.setdefault(block, binding) != binding:
                     raise ShaderError(f"{self.name}: block {block} has two bindings")
             self.record = self.record or source.parameters
+        self.texel_buffers = {name: unit for source in sources for name, unit in source.texel_buffers.items()}
+        self._texel_buffers = TexelBuffers(context, self.texel_buffers) if self.texel_buffers else None
         if len(set(self.blocks.values())) != len(self.blocks):
             raise ShaderError(f"{self.name}: two blocks share a binding: {self.blocks}")
         self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
@@ -43,18 +46,22 @@ class _Program:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
-        if buffers.keys() != self.blocks.keys():
-            missing = sorted(self.blocks.keys() - buffers.keys())
-            unknown = sorted(buffers.keys() - self.blocks.keys())
+        wanted = self.blocks.keys() | self.texel_buffers.keys()
+        if buffers.keys() != wanted:
+            missing, unknown = sorted(wanted - buffers.keys()), sorted(buffers.keys() - wanted)
             raise ValueError(f"{self.name}: buffers missing {missing}, unknown {unknown}")
         for block, binding in self.blocks.items():
             buffers[block].bind_to_storage_buffer(binding)
+        if self._texel_buffers is not None:
+            self._texel_buffers.bind(buffers)
         if self._parameters is not None:
             self._parameters.write(self.record.pack(dict(parameters or {})))
             self._parameters.bind_to_uniform_block(0)
 
     def release(self) -> None:
         """Free what it has on the device."""
+        if self._texel_buffers is not None:
+            self._texel_buffers.release()
         if self._parameters is not None:
             self._parameters.release()
 

@@ -5,6 +5,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from . import texel_buffers
 from .constants import Constants
 from .records import Record
 
@@ -15,6 +16,7 @@ SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent
 _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>)\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _BLOCK = re.compile(r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*(\d+)\s*\)[\w\s]*?\bbuffer\s+(\w+)")
+_TEXEL_BUFFER = re.compile(r"layout\s*\(\s*binding\s*=\s*(\d+)\s*\)\s*uniform\s+(u?samplerBuffer)\s+(\w+)")
 _PARAMETERS = re.compile(r"layout\s*\(\s*std140\s*,\s*binding\s*=\s*0\s*\)\s*uniform\s+\w+\s*\{\s*(\w+)\s+\w+\s*;")
 _LOCAL_SIZE = re.compile(r"local_size_x\s*=\s*(\d+)")
 # "0:12(3): error" (Mesa), "0(12) : error" (NVIDIA), "ERROR: 0:12:" (AMD, Intel, glslang)
@@ -35,11 +37,20 @@ class Source:
 
     text: str
     files: list[str]
+    has_texel_buffers: bool = False
 
     @property
     def blocks(self) -> dict[str, int]:
-        """Binding of each storage block by the block's name."""
-        return {name: int(binding) for binding, name in _BLOCK.findall(self.text)}
+        """Binding of each storage block by the block's name, but for those that are texel buffers here."""
+        texels = self.texel_buffers
+        return {name: int(binding) for binding, name in _BLOCK.findall(self.text) if name not in texels}
+
+    @property
+    def texel_buffers(self) -> dict[str, tuple[int, str]]:
+        """Texture unit and type of sampler of each texel buffer by name; none without their define."""
+        if not self.has_texel_buffers:
+            return {}
+        return {name: (int(unit), sampler) for unit, sampler, name in _TEXEL_BUFFER.findall(self.text)}
 
     @property
     def parameters(self) -> Record | None:
@@ -107,4 +118,4 @@ def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[st
                 lines.append(line)
 
     read(path, path)
-    return Source("\n".join(lines) + "\n", files)
+    return Source("\n".join(lines) + "\n", files, texel_buffers.DEFINE in (defines or {}))

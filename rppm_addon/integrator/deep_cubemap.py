@@ -31,6 +31,8 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..gl.texel_buffers import DEFINE as TEXEL_BUFFERS
+from ..gl.texel_buffers import TEXEL_SIZE, most_texels
 from ..scene.errors import DeviceError
 from . import records  # noqa: F401  the kernels include Ray and Hit
 from .living_paths import LivingPaths
@@ -114,6 +116,8 @@ _TRIAL_LEAST, _TRIAL_MOST = 1000, 16384
 _RAYS_PER_DISPATCH = 1 << 18
 _JOBS_PER_DRAW = 1 << 16
 
+_READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
+
 _REMEDY = "lower the cubemap resolution or simplify the geometry"
 
 
@@ -137,6 +141,8 @@ class DeepCubemap:
     same behind; None takes the one that is faster, found by trying both with the first scene of a thousand triangles.
     ``least_gain``: cells are divided where that leaves so many fewer triangles in each.
     ``most_bins``: depth bins that a cell may have at most.
+    ``texel_buffers``: whether rays read cells, entries and triangles as texels, which changes no hit; None leaves it
+    to the kind of driver. What is too long for that is read from storage blocks.
     """
 
     def __init__(
@@ -146,11 +152,14 @@ class DeepCubemap:
         rasterize: bool | None = None,
         least_gain: int = _LEAST_GAIN,
         most_bins: int = _MOST_BINS,
+        texel_buffers: bool | None = None,
     ) -> None:
         self._context = context
         self._rasterize = rasterize
         self._library = library
         self._least_gain, self._most_bins = least_gain, most_bins
+        self._texel_buffers = context.is_software if texel_buffers is None else texel_buffers
+        self._most_texel_bytes = TEXEL_SIZE * most_texels(context)
 
         def buffer(name: str) -> GrowingBuffer:
             return GrowingBuffer(context, f"deep cubemap {name}", _REMEDY)
@@ -273,7 +282,10 @@ class DeepCubemap:
         return self._lists[name][0].buffer
 
     def _trace(self, kernel: str, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> None:
-        program = self._library.compute(kernel)
+        as_texels = self._texel_buffers and all(
+            self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS
+        )
+        program = self._library.compute(kernel, {TEXEL_BUFFERS: 1} if as_texels else {})
         buffers = {**self.traversal_buffers, **buffers}
         if living.most <= _RAYS_PER_DISPATCH:
             living.run(program, buffers, {"first_place": 0})
@@ -311,7 +323,7 @@ class DeepCubemap:
         limit = self._context.storage_block_limit
 
         def room(number: int, spacious: int) -> int:
-            return max(number, min(spacious, limit))
+            return -(-max(number, min(spacious, limit)) // TEXEL_SIZE) * TEXEL_SIZE
 
         spacious = count + count // 4
         if name == "tile":

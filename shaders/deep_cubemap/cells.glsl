@@ -24,7 +24,19 @@
 #define CUBEMAP_CELLS_ACCESS restrict readonly
 #endif
 
+// By index; see rppm_addon/gl/texel_buffers.py.
+#ifdef TEXEL_BUFFERS
+layout(binding = 0) uniform usamplerBuffer CubemapCells;
+CubemapCell cubemap_cell(uint index) {
+    uvec4 words = texelFetch(CubemapCells, int(index));
+    return CubemapCell(words.x, words.y, words.z, words.w);
+}
+#else
 layout(std430, binding = 10) CUBEMAP_CELLS_ACCESS buffer CubemapCells { CubemapCell cubemap_cells[]; };
+#ifndef DEEP_CUBEMAP_BUILD
+CubemapCell cubemap_cell(uint index) { return cubemap_cells[index]; }
+#endif
+#endif
 
 const uint CELL_LIST = 0u;
 const uint CELL_BINS = 1u;

@@ -9,7 +9,18 @@
 #define CELL_ENTRIES_ACCESS restrict readonly
 #endif
 
+#ifdef TEXEL_BUFFERS
+layout(binding = 1) uniform usamplerBuffer CellEntries;
+uvec2 cell_entry(uint place) {
+    uvec4 two = texelFetch(CellEntries, int(place >> 1u));
+    return (place & 1u) == 0u ? two.xy : two.zw;
+}
+#else
 layout(std430, binding = 12) CELL_ENTRIES_ACCESS buffer CellEntries { uvec2 cell_entries[]; };
+#ifndef DEEP_CUBEMAP_BUILD
+uvec2 cell_entry(uint place) { return cell_entries[place]; }
+#endif
+#endif
 
 const uint ENTRY_IN_BIN_BEFORE = 0x80000000u;
 const uint ENTRY_IN_BIN_BEHIND = 0x40000000u;

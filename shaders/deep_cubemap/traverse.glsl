@@ -41,13 +41,14 @@ uvec3 walk_counts = uvec3(0u); // steps, triangle tests, entries
 
 void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
-    if (walk.any_hit && triangle_vertices[3u * triangle].w > 0.0) return;  // casts no shadow
+    vec4 vertex0 = triangle_vertex(3u * triangle);
+    if (walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
 #ifdef DEEP_CUBEMAP_COUNT
     ++walk_counts.y;
 #endif
     intersect_triangle(
-        walk.test, triangle, triangle_vertices[3u * triangle].xyz, triangle_vertices[3u * triangle + 1u].xyz,
-        triangle_vertices[3u * triangle + 2u].xyz, best);
+        walk.test, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz, triangle_vertex(3u * triangle + 2u).xyz,
+        best);
 }
 
 // Tests what a cell holds between two depths; cells with depth bins in the ray's order.
@@ -74,7 +75,7 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
 #ifdef DEEP_CUBEMAP_COUNT
                 ++walk_counts.z;
 #endif
-                uvec2 entry = cell_entries[place];
+                uvec2 entry = cell_entry(place);
                 if ((entry.y >> 16) >= wanted.x && (entry.y & 0xffffu) <= wanted.y && (entry.x & seen) == 0u) {
                     triangle = entry.x & ENTRY_TRIANGLE;
                 }
@@ -185,7 +186,7 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
         vec2 ends = vec2(origin.z + here * direction.z, origin.z + exit * direction.z);
         uvec2 depths = depth_codes(
             vec2(min(ends.x, ends.y) - walk.cubemap.margin, max(ends.x, ends.y) + walk.cubemap.margin), walk.cubemap);
-        CubemapCell content = cubemap_cells[tile + tile_offset(block)];
+        CubemapCell content = cubemap_cell(tile + tile_offset(block));
         bool occupied = depths.x <= content.far && depths.y >= ~content.near_complement
             && (content.slices & depth_slices(depths, content)) != 0u;
         if (occupied) {

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The world-space triangles, three vertices each (w unused).
 
+#ifdef TEXEL_BUFFERS
+layout(binding = 2) uniform samplerBuffer Triangles;
+vec4 triangle_vertex(uint number) { return texelFetch(Triangles, int(number)); }
+#else
 layout(std430, binding = 8) restrict readonly buffer Triangles { vec4 triangle_vertices[]; };
+vec4 triangle_vertex(uint number) { return triangle_vertices[number]; }
+#endif

@@ -23,7 +23,14 @@ class Scene:
     """Triangles on the device and their cubemap; a context manager."""
 
     def __init__(
-        self, context, library, triangles: np.ndarray, centre, resolution: int = 64, rasterize: bool | None = True
+        self,
+        context,
+        library,
+        triangles: np.ndarray,
+        centre,
+        resolution: int = 64,
+        rasterize: bool | None = True,
+        texel_buffers: bool | None = None,
     ) -> None:
         self.context, self.library = context, library
         self.host_triangles = np.asarray(triangles, np.float32)
@@ -31,7 +38,7 @@ class Scene:
         vertices[: 3 * len(triangles), :3] = self.host_triangles.reshape(-1, 3)
         self.triangles = context.moderngl.buffer(vertices.tobytes())
         self.centre = np.asarray(centre, np.float32)
-        self.cubemap = DeepCubemap(context, library, rasterize)
+        self.cubemap = DeepCubemap(context, library, rasterize, texel_buffers=texel_buffers)
         self._rays = LivingPaths(context, library, "rays of a test", "take fewer")
         self.build(resolution)
 

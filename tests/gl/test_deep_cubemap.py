@@ -132,6 +132,24 @@ def test_the_resolution_does_not_matter(context, library, meshes):
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
 
 
+def test_texel_buffers_change_no_hit(context, library, meshes):
+    rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=8))
+    found = []
+    for texel_buffers in (False, True):
+        with Scene(context, library, meshes, PLAIN, 256, texel_buffers=texel_buffers) as scene:
+            found.append((bits(scene.trace(rays)), scene.occluded(rays)))
+    np.testing.assert_array_equal(found[0][0], found[1][0])
+    np.testing.assert_array_equal(found[0][1], found[1][1])
+
+
+def test_buffers_too_long_for_texels_are_read_as_storage(context, library, meshes, monkeypatch):
+    rays = ray_records(*make_rays("uniform", 2_000, PLAIN, seed=8))
+    with Scene(context, library, meshes, PLAIN, 256, texel_buffers=True) as scene:
+        expected = scene.trace(rays)
+        monkeypatch.setattr(scene.cubemap, "_most_texel_bytes", 1024)
+        np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
+
+
 def test_any_hit_decides_as_the_nearest_hit_does(context, library, meshes):
     rays = ray_records(*make_rays("uniform", 100_000, PLAIN, seed=7))
     rng = np.random.default_rng(8)
