@@ -72,6 +72,8 @@ void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     shadow_rays[index].maximum_distance = 0.0;
+    contributions[index] = vec4(0.0);
+    light_triangles[index] = NO_TRIANGLE;
     Ray ray = rays[index];
     Closure closure = closures[index];
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
