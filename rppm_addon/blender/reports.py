@@ -56,6 +56,7 @@ class RenderReport:
 
     @property
     def photons_per_iteration(self) -> int:
+        """Those of each iteration, which have them alike."""
         return self.photons // max(self.iterations, 1)
 
     @property

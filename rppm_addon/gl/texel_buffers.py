@@ -45,4 +45,5 @@ class TexelBuffers:
             self._attach(_TEXTURE_BUFFER, _FORMATS[sampler], buffers[name].glo)
 
     def release(self) -> None:
+        """Free the textures; the buffers stay."""
         self._delete(len(self._textures), self._textures)
