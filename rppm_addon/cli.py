@@ -69,7 +69,7 @@ def _merge(options: argparse.Namespace, bar: ProgressBar) -> int:
     if options.json is not None:
         write_json(options.json, {"files": files, **merged.report()})
     print(
-        f"{merged.iterations} iterations, {count_text(merged.photons)} photons of {len(merged.parts)} "
+        f"{merged.iterations} samples, {count_text(merged.photons)} photons of {len(merged.parts)} "
         f"{'part' if len(merged.parts) == 1 else 'parts'}: {', '.join(files)}"
     )
     return 0

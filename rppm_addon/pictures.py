@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .scene.errors import RppmError
-from .scene.passes import passes_named
+from .scene.passes import PASSES
 
 
 class PictureError(RppmError):
@@ -68,8 +68,9 @@ def write_exr(
     place = placement or Placement(width, height)
     channels = dict(zip("RGBA", _planes(combined)))
     layers = layers or {}
-    for entry in passes_named(tuple(layers)):
-        channels.update(zip(entry.layers, _planes(layers[entry.name]), strict=True))
+    for name, array in layers.items():
+        planes = _planes(array)
+        channels.update(zip(_channels_of(name, len(planes)), planes, strict=True))
     header = {
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
@@ -79,6 +80,12 @@ def write_exr(
     }
     with renamed_when_whole(path) as temporary:
         OpenEXR.File(header, channels).write(temporary)
+
+
+def _channels_of(layer: str, count: int) -> list[str]:
+    """Names of a layer's channels: those of the pass of that name, or X, Y, Z, and Z where it is one."""
+    letters = {entry.name: entry.channels for entry in PASSES}.get(layer, "Z" if count == 1 else "XYZ")
+    return [f"{layer}.{letter}" for letter in letters]
 
 
 @dataclass
@@ -98,8 +105,8 @@ class ExrPicture:
 
     def layer(self, name: str) -> np.ndarray:
         """(H, W) or (H, W, channels) of a pass. Raises KeyError where the file does not have it."""
-        (entry,) = passes_named((name,))
-        planes = [self.channels[layer] for layer in entry.layers]
+        count = sum(channel.rpartition(".")[0] == name for channel in self.channels)
+        planes = [self.channels[channel] for channel in _channels_of(name, count)]
         return np.stack(planes, axis=-1) if len(planes) > 1 else planes[0]
 
 

@@ -31,7 +31,7 @@ class Case:
 
     file: str
     sets: tuple[str, ...] = ()
-    runs: tuple[tuple[str, ...], ...] = (("--iterations", "3"),)
+    runs: tuple[tuple[str, ...], ...] = (("--samples", "3"),)
     merge: bool = False
     """Whether the runs are parts of one still."""
     frames: bool = False
@@ -42,9 +42,9 @@ _CAMERA = "camera.data"
 CASES = {
     "room of glass": Case("first_light"),
     "rasterized splats": Case("first_light", ("rppm.density_estimation=RASTERIZED",)),
-    "splat roulette": Case("first_light", ("rppm.density_estimation=RASTERIZED", "rppm.splat_roulette=true")),
-    "photons alone": Case("first_light", ("rppm.direct_light=PHOTONS", "rppm.final_gather=false")),
-    "radii of all pixels alike": Case("pool", ("rppm.adaptive_radius=false",)),
+    "splat roulette": Case("first_light", ("rppm.density_estimation=RASTERIZED", "rppm.use_splat_roulette=true")),
+    "photons alone": Case("first_light", ("rppm.direct_light=PHOTONS", "rppm.use_final_gather=false")),
+    "radii of all pixels alike": Case("pool", ("rppm.use_adaptive_radius=false",)),
     "pool": Case("pool"),
     "shadow catcher": Case("pool", ('objects["Deck"].is_shadow_catcher=true', "render.film_transparent=true")),
     "holdout": Case("pool", ('objects["Ball"].is_holdout=true', "render.film_transparent=true")),
@@ -52,16 +52,16 @@ CASES = {
     "panorama": Case("pool", (f"{_CAMERA}.type=PANO",)),
     "orthographic": Case("pool", (f"{_CAMERA}.type=ORTHO",)),
     "blur of motion": Case("spotlight", ("render.use_motion_blur=true",)),
-    "frames": Case("spotlight", runs=(("--frames", "1..3", "--iterations", "2"),), frames=True),
-    "learned": Case("spotlight", runs=(("--iterations", "6"),)),
+    "frames": Case("spotlight", runs=(("--frames", "1..3", "--samples", "2"),), frames=True),
+    "learned": Case("spotlight", runs=(("--samples", "6"),)),
     "resumed": Case(
         "spotlight",
         runs=(
-            ("--iterations", "3", "--checkpoint", "{folder}/checkpoint.exr"),
-            ("--iterations", "6", "--checkpoint", "{folder}/checkpoint.exr", "--resume"),
+            ("--samples", "3", "--checkpoint", "{folder}/checkpoint.exr"),
+            ("--samples", "6", "--checkpoint", "{folder}/checkpoint.exr", "--resume"),
         ),
     ),
-    "merged": Case("spotlight", runs=(("--iterations-range", "0:3"), ("--iterations-range", "3:6")), merge=True),
+    "merged": Case("spotlight", runs=(("--samples-range", "0:3"), ("--samples-range", "3:6")), merge=True),
     "dupli lights": Case("bseed_duplis_dupli_lights"),
     "many kinds of lights": Case("gltfio_04_lights"),
     "transparency": Case("bseed_object_alpha_object_alpha"),

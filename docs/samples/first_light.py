@@ -247,7 +247,7 @@ def set_up_render(scene):
     set_up_pictures(scene)
     scene.view_settings.look = "AgX - Medium High Contrast"
     color_world(scene, (0, 0, 0), 1.0)
-    scene.rppm.iterations = 72
+    scene.rppm.samples = 72
     scene.rppm.time_limit = 50.0  # two slow cores get a picture within a minute
     scene.rppm.photons = 65536
     scene.rppm.radius_scale = 16.0

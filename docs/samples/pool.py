@@ -149,8 +149,8 @@ def set_up_render(scene):
     set_up_frames(scene, 48)
     color_world(scene, (0.30, 0.48, 0.75), 0.6)
     settings = scene.rppm
-    settings.iterations, settings.photons, settings.radius_scale = 32, 65536, 12.0
-    settings.camera_path_length = settings.photon_path_length = 5
+    settings.samples, settings.photons, settings.radius_scale = 32, 65536, 12.0
+    settings.max_camera_bounces = settings.max_photon_bounces = 4
 
 
 def build(scene):

@@ -113,7 +113,7 @@ def set_up_render(scene):
     set_up_frames(scene, FRAMES)
     color_world(scene, (0.10, 0.12, 0.16), 0.35)
     settings = scene.rppm
-    settings.iterations, settings.photons, settings.radius_scale = 32, 65536, 12.0
+    settings.samples, settings.photons, settings.radius_scale = 32, 65536, 12.0
 
 
 def build(scene):

@@ -77,7 +77,7 @@ class Viewport:
             self._texture.draw(frame, *place)
             self._forget_regions(frame.generation)
         self._tell(context)
-        self._session.pause(context.scene.rppm.viewport_paused)
+        self._session.pause(context.scene.rppm.preview_pause)
         self._seen = self._state()
 
     def _follow(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
@@ -120,7 +120,7 @@ class Viewport:
         elif not status.iterations:
             self.engine.update_stats("RPPM", "Compiling shaders and building the scene")
         else:
-            self.engine.update_stats("", status_text(status, context.scene.rppm.viewport_paused))
+            self.engine.update_stats("", status_text(status, context.scene.rppm.preview_pause))
         self._record(context, status)
 
     def _record(self, context: bpy.types.Context, status: SessionStatus) -> None:
@@ -177,7 +177,7 @@ def _region_of(camera: Camera) -> tuple[float, float, float, float]:
 
 def status_text(status: SessionStatus, paused: bool) -> str:
     """One line over the viewport."""
-    text = f"Iteration {status.iteration}/{status.iterations} | Radius {_metres(status.radius_metres)}"
+    text = f"Sample {status.iteration}/{status.iterations} | Radius {_metres(status.radius_metres)}"
     if paused:
         return f"{text} | Paused"
     if status.settled:

@@ -66,13 +66,18 @@ def _add_render(commands: _Commands, scene: argparse.ArgumentParser, common: arg
         "scene's view transform, of a saved scene by Standard); may be repeated",
     )
     limit = render.add_mutually_exclusive_group()
-    limit.add_argument("--iterations", type=_positive_integer, metavar="N", help="number of iterations")
+    limit.add_argument(
+        "--samples",
+        type=_positive_integer,
+        metavar="N",
+        help="iterations of the photon mapper",
+    )
     limit.add_argument("--seconds", type=_positive_number, metavar="S", help="render so long instead")
     limit.add_argument(
-        "--iterations-range",
-        type=_iterations_range,
+        "--samples-range",
+        type=_samples_range,
         metavar="A:B",
-        help="render the iterations from A up to but not including B, the first being 0; PICTURE is then an .exr with "
+        help="render the samples from A up to but not including B, the first being 0; PICTURE is then an .exr with "
         "this part of the still, for rppm merge",
     )
     render.add_argument(
@@ -81,13 +86,13 @@ def _add_render(commands: _Commands, scene: argparse.ArgumentParser, common: arg
         metavar="A..B",
         help="frames of a .blend file: 1..100, 1..100..5 (every fifth), 1,5,9; PICTURE has #### where the number goes",
     )
-    render.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of an iteration")
+    render.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of a sample")
     render.add_argument(
         "--snapshots",
         type=_snapshot_marks,
         default=(),
         metavar="S,S,...",
-        help="write an EXR at each of these seconds, named PICTURE_Ss.exr; without --iterations and --seconds the "
+        help="write an EXR at each of these seconds, named PICTURE_Ss.exr; without --samples and --seconds the "
         "render lasts until the last",
     )
     _add_json(render, "write what happened as JSON")
@@ -117,15 +122,15 @@ def _add_merge(commands: _Commands, common: argparse.ArgumentParser) -> None:
         "merge",
         parents=[common],
         help="make one picture of the parts of a still",
-        description="Make one picture of the parts of a still that rppm render --iterations-range wrote, on as many "
+        description="Make one picture of the parts of a still that rppm render --samples-range wrote, on as many "
         "machines as you like. Checkpoints will do as well.",
     )
-    merge.add_argument("parts", type=Path, nargs="+", metavar="PART.exr", help="parts without common iterations")
+    merge.add_argument("parts", type=Path, nargs="+", metavar="PART.exr", help="parts without common samples")
     _add_output(
         merge,
         ".exr or .png, as of rppm render; may be repeated",
     )
-    merge.add_argument("--incomplete", action="store_true", help="merge what there is though iterations are missing")
+    merge.add_argument("--incomplete", action="store_true", help="merge what there is though samples are missing")
     _add_json(merge, "write what was merged as JSON")
 
 
@@ -144,13 +149,11 @@ def _add_farm(commands: _Commands, scene: argparse.ArgumentParser, common: argpa
     )
     what = farm.add_mutually_exclusive_group(required=True)
     what.add_argument("--frames", type=_frames, metavar="A..B", help="an animation: 1..100, 1..100..5 or 1,5,9")
-    what.add_argument("--parts", type=_positive_integer, metavar="K", help="a still, its iterations in so many parts")
+    what.add_argument("--parts", type=_positive_integer, metavar="K", help="a still, its samples in so many parts")
     limit = farm.add_mutually_exclusive_group()
-    limit.add_argument(
-        "--iterations", type=_positive_integer, metavar="N", help="iterations of a frame, or of the still"
-    )
+    limit.add_argument("--samples", type=_positive_integer, metavar="N", help="samples of a frame, or of the still")
     limit.add_argument("--seconds", type=_positive_number, metavar="S", help="render each frame so long instead")
-    farm.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of an iteration")
+    farm.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of a sample")
     where = farm.add_mutually_exclusive_group()
     where.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler, such as tcp://host:8786")
     where.add_argument(
@@ -280,9 +283,7 @@ _snapshot_marks = _checked(
     lambda marks: all(0.0 < mark < 1e9 for mark in marks) and list(marks) == sorted(set(marks)),
     "an ascending list of seconds such as 2,5,10",
 )
-_iterations_range = _checked(
-    _range, lambda ends: 0 <= ends[0] < ends[1] < 1 << 30, "a range of iterations such as 0:500"
-)
+_samples_range = _checked(_range, lambda ends: 0 <= ends[0] < ends[1] < 1 << 30, "a range of samples such as 0:500")
 _checkpoint_minutes = _checked(float, lambda value: 0.0 <= value < 1e9, "a number of minutes")
 _exr_path = _checked(Path, lambda path: path.suffix == ".exr", "the name of an .exr file")
 _picture_path = _checked(Path, lambda path: path.suffix in (".exr", ".png"), "the name of an .exr or .png file")

@@ -95,12 +95,12 @@ class StillKeeper:
             if summary.left_out != left_out:
                 raise CheckpointError(
                     f"{path} begins with iteration {summary.left_out}, not {left_out}; go on with "
-                    f"--iterations-range {summary.left_out}:B, or begin anew with another checkpoint"
+                    f"--samples-range {summary.left_out}:B, or begin anew with another checkpoint"
                 )
             self.resumed_iterations = summary.iteration - summary.left_out
             if iterations is not None and self.resumed_iterations > iterations:
                 raise CheckpointError(
-                    f"{path} has {self.resumed_iterations} iterations already; ask for as many or more than those, "
+                    f"{path} has {self.resumed_iterations} samples already; ask for as many or more than those, "
                     "or begin anew with another checkpoint"
                 )
             self._seconds_before = summary.seconds

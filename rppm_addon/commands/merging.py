@@ -119,13 +119,13 @@ def _check(found: Sequence[tuple[CheckpointSummary, Path]], incomplete: bool) ->
         if after.left_out < before.iteration:
             end = min(before.iteration, after.iteration)
             raise CheckpointError(
-                f"{before_path} and {after_path} both have the iterations {after.left_out}:{end}; leave one of them out"
+                f"{before_path} and {after_path} both have the samples {after.left_out}:{end}; leave one of them out"
             )
     ends = [0, *(summary.iteration for summary, _ in found)]
     gaps = [f"{end}:{summary.left_out}" for end, (summary, _) in zip(ends, found) if summary.left_out > end]
     if gaps and not incomplete:
         ranges = " and ".join(gaps)
         raise CheckpointError(
-            f"the iterations {ranges} are in no part; render them with rppm render --iterations-range {gaps[0]}, "
+            f"the samples {ranges} are in no part; render them with rppm render --samples-range {gaps[0]}, "
             "or merge what there is with --incomplete"
         )

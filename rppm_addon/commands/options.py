@@ -35,9 +35,9 @@ def split_values(values: list[str]) -> tuple[dict[str, object], list[tuple[str, 
 
 
 def values_and_limits(options: argparse.Namespace) -> tuple[dict[str, object], list[tuple[str, str]]]:
-    """What split_values makes of --set, with --iterations and --photons among the settings."""
+    """What split_values makes of --set, with --samples and --photons among the settings."""
     settings, data_values = split_values(options.values)
-    for name in ("iterations", "photons"):
+    for name in ("samples", "photons"):
         if getattr(options, name) is not None:
             settings[name] = getattr(options, name)
     return settings, data_values
@@ -45,14 +45,14 @@ def values_and_limits(options: argparse.Namespace) -> tuple[dict[str, object], l
 
 def seconds_of(options: argparse.Namespace) -> float | None:
     """How long to render: --seconds, or without a limit as long as --snapshots take."""
-    if options.seconds is None and options.iterations is None and options.snapshots:
+    if options.seconds is None and options.samples is None and options.snapshots:
         return options.snapshots[-1]
     return options.seconds
 
 
 def values_of_frames(settings: dict[str, object]) -> list[tuple[str, str]]:
     """Take what makes the seed of a frame out of the settings, to be set in the .blend file."""
-    return [(f"rppm.{name}", str(settings.pop(name))) for name in ("seed", "animate_seed") if name in settings]
+    return [(f"rppm.{name}", str(settings.pop(name))) for name in ("seed", "use_animated_seed") if name in settings]
 
 
 def refuse_blend_options(options: argparse.Namespace, data_values: list[tuple[str, str]]) -> None:

@@ -99,7 +99,7 @@ class RenderRecorder(RenderObserver):
     def on_progress(self, progress: "Progress") -> None:
         """As RenderObserver has it."""
         self._progress = progress
-        words = f"iteration {progress.iteration}"
+        words = f"sample {progress.iteration}"
         fraction = progress.fraction
         elapsed = time.perf_counter() - self.scene_time
         if self.request.seconds is not None:
@@ -177,7 +177,7 @@ class RenderRecorder(RenderObserver):
         statistics = self.result.statistics
         width, height = self.scene.camera.resolution
         return (
-            f"{statistics.iterations} iterations, {count_text(statistics.photons)} photons in {self.seconds:.1f} s "
+            f"{statistics.iterations} samples, {count_text(statistics.photons)} photons in {self.seconds:.1f} s "
             f"at {width}x{height} on {statistics.device}: {', '.join(str(path) for path in self.files)}"
         )
 
@@ -190,7 +190,7 @@ class RenderRecorder(RenderObserver):
 
 def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> RenderSettings:
     """Settings with values, which may be text, over them. Raises SettingsError."""
-    settings = settings.with_values(**values)
+    settings = settings.with_properties(values)
     settings.validate()
     return settings
 

@@ -45,7 +45,7 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
     keeper = _still_keeper(options, settings, {"blend": blend_request.as_plain()} if blend_request else {})
     for path in [*options.output, *([options.checkpoint] if options.checkpoint else [])]:
         make_folder(path)
-    outputs = [] if options.iterations_range else options.output
+    outputs = [] if options.samples_range else options.output
     request = RenderRequest(outputs, settings, seconds_of(options), options.snapshots)
     with Interruption() as interruption:
         recorder = RenderRecorder(request, bar, lambda: interruption.asked, not from_blend, keeper)
@@ -83,8 +83,8 @@ def _render_frames(
         raise SettingsError("--frames needs a .blend file; a saved scene holds one frame")
     if options.frame is not None:
         raise SettingsError("--frame and --frames do not go together; leave one out")
-    if options.checkpoint is not None or options.iterations_range is not None:
-        raise SettingsError("--checkpoint and --iterations-range are for stills; name one frame with --frame")
+    if options.checkpoint is not None or options.samples_range is not None:
+        raise SettingsError("--checkpoint and --samples-range are for stills; name one frame with --frame")
     check_places(options.output, options.frames)
     for path in options.output:
         make_folder(path)
@@ -117,17 +117,17 @@ def _still_keeper(
 ) -> StillKeeper | None:
     """Who keeps the still, if it is to be kept or rendered in part; the range's length and no time limit enter the
     settings."""
-    if options.iterations_range is None and options.checkpoint is None and not options.resume:
+    if options.samples_range is None and options.checkpoint is None and not options.resume:
         return None
     first, part = 0, None
-    if options.iterations_range is not None:
-        first, end = options.iterations_range
+    if options.samples_range is not None:
+        first, end = options.samples_range
         if len(options.output) > 1 or options.output[0].suffix != ".exr" or options.snapshots:
             raise SettingsError(
-                "--iterations-range writes one part for rppm merge; give one -o PART.exr and no --snapshots"
+                "--samples-range writes one part for rppm merge; give one -o PART.exr and no --snapshots"
             )
         part = options.output[0]
-        settings |= {"iterations": end - first, "time_limit": 0.0}
+        settings |= {"samples": end - first, "time_limit": 0.0}
     elif options.checkpoint in options.output:
         raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
     request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)

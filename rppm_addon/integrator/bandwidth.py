@@ -31,7 +31,7 @@ def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
 
 def most_radius_factor(settings: RenderSettings) -> float:
     """Times Eq. 3's radius, what all pixels begin with for caustics (caustic_radii.py)."""
-    exact = not settings.adaptive_radius or settings.radius_minimum > 0.0 or settings.radius_maximum > 0.0
+    exact = not settings.use_adaptive_radius or settings.radius_minimum > 0.0 or settings.radius_maximum > 0.0
     return 1.0 if exact else _MOST_FACTOR
 
 

@@ -85,7 +85,7 @@ class DirectLight:
                 "last_segment": segment == stages.settings.camera_path_length - 1,
                 "first_pixel": first_pixel,
                 "specular_alpha": stages.settings.specular_roughness**2,
-                "final_gather": stages.settings.final_gather,
+                "final_gather": stages.settings.use_final_gather,
                 "gathers_again_below": gathers_again_below,
             },
         )

@@ -220,7 +220,7 @@ class Emission:
                 if nodes.shape is not None:
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
-            add(source_name(light.name), entry, power, light.photon_share)
+            add(source_name(light.name), entry, power, light.photon_weight)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = MESH, int(RayVisibility.ALL)

@@ -127,7 +127,7 @@ class Importons:
                 "first_pixel": first_pixel,
                 "film_transparent": settings.film_transparent,
                 "next_event": settings.direct_light is DirectLight.RAYS,
-                "final_gather": settings.final_gather,
+                "final_gather": settings.use_final_gather,
                 "specular_alpha": settings.specular_roughness**2,
                 "radius_scale": radius_scale,
                 "shrinkage": shrinkage,

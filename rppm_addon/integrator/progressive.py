@@ -385,7 +385,7 @@ class ProgressivePhotonMapper:
 
     @property
     def _gathers(self) -> bool:
-        return self.scene.settings.final_gather and self.scene.settings.camera_path_length > 1
+        return self.scene.settings.use_final_gather and self.scene.settings.camera_path_length > 1
 
     @property
     def _expected(self) -> int:
@@ -522,7 +522,7 @@ class ProgressivePhotonMapper:
         radii = SplatRadii(*self.splat_radii, self._most_radius_factor)
         estimator.sums.count_in(
             radiance_quantum(self._emission.photon_flux, max(radii.caustic, radii.wide)),
-            self._roulette_seed() if settings.splat_roulette else 0,
+            self._roulette_seed() if settings.use_splat_roulette else 0,
             learns_after(self.iteration),
         )
         bounds = self._geometry.bounds_low, self._geometry.bounds_high

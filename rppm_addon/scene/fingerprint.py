@@ -12,9 +12,7 @@ from .documents import encode
 from .scene import Scene
 from .settings import RenderSettings
 
-UNSEEN = frozenset(
-    {"iterations", "time_limit", "iterations_per_frame", "density_estimation", "first_photon_hits"}
-)
+UNSEEN = frozenset({"iterations", "time_limit", "iterations_per_frame", "density_estimation", "first_photon_hits"})
 """Settings that say when a render ends or is shown or by which way it comes to its picture, and nothing of what an
 iteration finds."""
 _NOT_RENDERED = frozenset({"settings", "warnings"})

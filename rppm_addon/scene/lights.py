@@ -53,7 +53,7 @@ class Light:
     """Its emission multiplies ``strength``; None is 1."""
     of_world: bool = False
     """SUN: whether the graph is a world's, which the sun belongs to, and sees directions as a world does."""
-    photon_share: float = 1.0
+    photon_weight: float = 1.0
     """Weight of this light when photons are shared out (paper section 4.3), on top of its power."""
 
 

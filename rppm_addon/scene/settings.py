@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Render settings; the Blender properties and the CLI's --set use the same names."""
+"""Render settings, each declared once: Blender's properties, the command line and docs/settings.md follow.
+
+Fields have the paper's names; where Cycles has another name for users, ``property_name`` tells it.
+"""
 
 import dataclasses
 import enum
-import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .errors import SettingsError
 from .passes import passes_named
+from .setting_info import setting, settings_of
 
 CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
 """What a ray costs in the deep cubemap: cells looked at; triangles tested; entries in the cell of the hit, 0 where
 nothing is hit; entries read."""
 
+MOST_PHOTONS = 1 << 22
 _FEWEST_AUTOMATIC_PHOTONS, _MOST_AUTOMATIC_PHOTONS = 1 << 13, 1 << 18
 """Fewer take next to no less time; more take longer than one waits for an iteration where there is no GPU."""
 _MOST_AUTOMATIC_SEGMENTS = 1 << 21
@@ -52,87 +57,235 @@ class FirstPhotonHits(enum.Enum):
 class RenderSettings:
     """Settings of the photon mapper. Lengths in metres, times in seconds."""
 
-    iterations: int = 128
-    time_limit: float = 0.0
-    """Stop with the iteration that ends nearest to so many seconds; 0 is no limit."""
-    photons: int = 0
-    """Photons emitted in each iteration, shared among the lights; 0 is automatic (photons_for)."""
-    camera_path_length: int = 8
+    iterations: int = setting(
+        128,
+        "Samples",
+        "Iterations of the photon mapper: each sends photons and looks at every pixel once, and makes the picture "
+        "sharper and less noisy",
+        property_name="samples",
+        minimum=1,
+        soft_maximum=4096,
+    )
+    time_limit: float = setting(
+        0.0,
+        "Time Limit",
+        "Stop after this time even if samples are left; 0 is no limit",
+        minimum=0.0,
+        soft_maximum=3600.0,
+        unit="s",
+        zero="no limit",
+    )
+    """Stop with the iteration that ends nearest to so many seconds."""
+    photons: int = setting(
+        0,
+        "Photons",
+        "Photons emitted in each sample, shared among the lights by their power and photon weight; "
+        "0 is automatic: as many as the picture has pixels, within limits",
+        minimum=0,
+        maximum=MOST_PHOTONS,
+        zero="automatic",
+        step=1024,
+    )
+    """In each iteration; automatic: photons_for."""
+    camera_path_length: int = setting(
+        8,
+        "Max Camera Bounces",
+        "Most bounces of camera paths off glass, mirrors and other specular surfaces; surfaces that gather photons "
+        "end them",
+        property_name="max_camera_bounces",
+        property_offset=-1,
+        minimum=1,
+        maximum=64,
+        soft_maximum=32,
+    )
     """d_eye: camera path segments, the primary ray being the first."""
-    photon_path_length: int = 8
+    photon_path_length: int = setting(
+        8,
+        "Max Photon Bounces",
+        "Most bounces of photons off any surface",
+        property_name="max_photon_bounces",
+        property_offset=-1,
+        minimum=1,
+        maximum=64,
+        soft_maximum=32,
+    )
     """d_photon: photon path segments, the first leaving the light."""
-    alpha: float = 0.7
-    """Eq. 2: the share of photons kept as the radius shrinks, in (0, 1)."""
-    radius_scale: float = 10.0
-    """s_r of Eq. 3: first radius in pixels of a 1 megapixel frame, scaled with the frame."""
-    adaptive_radius: bool = True
-    """Whether pixels begin with a wider radius for caustics than Eq. 3's and come back to it where photons are many;
-    not where r_min or r_max is given."""
-    radius_minimum: float = 0.0
-    """r_min of the first iteration; 0 is automatic."""
-    radius_maximum: float = 0.0
-    """r_max of the first iteration; 0 is automatic."""
-    specular_roughness: float = 0.5
-    """Lobes with at most this roughness (the user's, not its square) are traced as specular;
-    rougher ones store photons."""
-    direct_light: DirectLight = DirectLight.RAYS
-    final_gather: bool = True
-    """Whether light that other surfaces send to a point is looked for along one ray, at whose end photons count."""
-    splat_roulette: bool = False
-    """Whether half of the splats are left out and the others count twice (paper section 4.2, Fig. 5)."""
-    density_estimation: DensityEstimation = DensityEstimation.AUTOMATIC
-    first_photon_hits: FirstPhotonHits = FirstPhotonHits.AUTOMATIC
-    iterations_per_frame: int = 1
-    """N_ipf: iterations between two pictures shown."""
-    seed: int = 0
-    cubemap_resolution: int = 0
-    """The most cells along a side of DIRT's cube faces, a power of two; 0 is automatic."""
-    filter_width: float = 1.5
-    """Width of the Blackman-Harris pixel filter in pixels, as Cycles counts it; 0 looks through
-    pixel centres only."""
-    film_transparent: bool = False
-    passes: tuple[str, ...] = ("Depth", "Normal")
-    """Render passes beside Combined, by name (scene/passes.py)."""
+    alpha: float = setting(
+        0.7,
+        "Alpha",
+        "Fraction of the new photons that are kept as the radius shrinks: low values sharpen quickly and stay noisy, "
+        "high values stay smooth and blurred",
+        minimum=0.01,
+        maximum=0.999999,
+        soft_maximum=0.99,
+        unit="fraction",
+    )
+    """Eq. 2."""
+    radius_scale: float = setting(
+        10.0,
+        "Initial Radius",
+        "The first sample gathers photons over a disk as large as a square of this side, in pixels of a 1 megapixel "
+        "picture; larger and smaller pictures scale it",
+        minimum=0.01,
+        soft_minimum=1.0,
+        soft_maximum=50.0,
+        unit="pixels",
+    )
+    """s_r of Eq. 3."""
+    use_adaptive_radius: bool = setting(
+        True,
+        "Adaptive Radius",
+        "Begin with three times the radius for caustics, and come back to the initial one where photons are many: "
+        "less noise where they are few. Without effect where Minimum or Maximum is set",
+    )
+    radius_minimum: float = setting(
+        0.0,
+        "Minimum Radius",
+        "Smallest radius in the first sample, shrinking from there; 0 is automatic",
+        minimum=0.0,
+        soft_maximum=1.0,
+        unit="m",
+        zero="automatic",
+    )
+    """r_min of the first iteration."""
+    radius_maximum: float = setting(
+        0.0,
+        "Maximum Radius",
+        "Largest radius in the first sample, shrinking from there; 0 is automatic",
+        minimum=0.0,
+        soft_maximum=1.0,
+        unit="m",
+        zero="automatic",
+    )
+    """r_max of the first iteration."""
+    specular_roughness: float = setting(
+        0.5,
+        "Specular Roughness",
+        "Surfaces up to this roughness, as their node shows it, are followed as mirrors and glass; rougher ones "
+        "gather photons",
+        minimum=0.0,
+        maximum=1.0,
+        unit="fraction",
+    )
+    """The user's roughness, not its square."""
+    direct_light: DirectLight = setting(
+        DirectLight.RAYS,
+        "Direct Light",
+        "How light that comes straight from a source is estimated",
+        choices={
+            DirectLight.RAYS: ("Rays", "Follow a ray to a light from each point: less noise"),
+            DirectLight.PHOTONS: (
+                "Photons",
+                "Use the photons that come straight from the lights, as the paper does",
+            ),
+        },
+    )
+    use_final_gather: bool = setting(
+        True,
+        "Final Gather",
+        "Look for light from other surfaces along one ray from each point, and take only direct light and caustics "
+        "from the photons there: fine noise in place of blotches, slower samples",
+    )
+    use_splat_roulette: bool = setting(
+        False,
+        "Splat Roulette",
+        "Leave out half of the splats at random and count the others twice: faster samples, more noise",
+    )
+    """Paper section 4.2, Fig. 5."""
+    density_estimation: DensityEstimation = setting(
+        DensityEstimation.AUTOMATIC,
+        "Density Estimation",
+        "How photons and the points that take them find each other: any way gives the same picture",
+        choices={
+            DensityEstimation.AUTOMATIC: ("Automatic", "Try both with the first photons and take the faster one"),
+            DensityEstimation.RASTERIZED: (
+                "Rasterized",
+                "Splat photons onto pixels by rasterization, as the paper does",
+            ),
+            DensityEstimation.GRID: (
+                "Photon Grid",
+                "Sort photons into grids of cells, and look for them in the cells around",
+            ),
+        },
+    )
+    first_photon_hits: FirstPhotonHits = setting(
+        FirstPhotonHits.AUTOMATIC,
+        "First Photon Hits",
+        "How it is found where photons from lamps and suns hit first: any way gives the same picture",
+        choices={
+            FirstPhotonHits.AUTOMATIC: (
+                "Automatic",
+                "Trace the first samples, then try both and take the faster one",
+            ),
+            FirstPhotonHits.RASTERIZED: ("Rasterized", "Rasterize what lamps and suns see, as the paper does"),
+            FirstPhotonHits.TRACED: ("Traced", "Trace rays through the deep cubemap"),
+        },
+    )
+    iterations_per_frame: int = setting(
+        1,
+        "Samples per Frame",
+        "Samples before a picture is shown: while an animation plays in the viewport more make each frame smoother "
+        "and the playback slower; final renders show their progress as often",
+        property_name="samples_per_frame",
+        minimum=1,
+        soft_maximum=64,
+    )
+    """N_ipf."""
+    seed: int = setting(
+        0,
+        "Seed",
+        "Start of the random numbers; the same seed gives the same noise",
+        minimum=0,
+        maximum=(1 << 31) - 1,
+    )
+    cubemap_resolution: int = setting(
+        0,
+        "Cubemap Resolution",
+        "The most cells along a side of the deep cubemap's faces, a power of two from 16 to 16384. They are that fine "
+        "only where many triangles crowd; fewer take less memory, and rays take longer; 0 is automatic",
+        minimum=0,
+        maximum=16384,
+        zero="automatic",
+    )
+    filter_width: float = setting(
+        1.5,
+        "Filter Width",
+        "Width of the Blackman-Harris pixel filter; 0 looks through the middle of pixels only",
+        minimum=0.0,
+        maximum=20.0,
+        soft_maximum=10.0,
+        unit="pixels",
+    )
+    """As Cycles counts it."""
+    film_transparent: bool = setting(
+        False,
+        "Transparent",
+        "Whether the background is transparent",
+        where="Film > Transparent (render.film_transparent)",
+    )
+    passes: tuple[str, ...] = setting(
+        ("Depth", "Normal"),
+        "Passes",
+        "Render passes beside Combined, by name",
+        where="the switches of the view layer",
+    )
+    """By name (scene/passes.py)."""
 
     def validate(self) -> None:
         """Raise SettingsError naming the first setting that cannot be used, and its range."""
-
-        def need(name: str, good: bool, what: str) -> None:
-            if not good:
-                raise SettingsError(f"{name} is {getattr(self, name)}; set it to {what}")
-
-        need("iterations", self.iterations >= 1, "1 or more")
-        need("time_limit", math.isfinite(self.time_limit) and self.time_limit >= 0.0, "0 (no limit) or seconds")
-        need("photons", 0 <= self.photons <= 1 << 22, "0 (automatic) or 1 to 4194304")
-        need("camera_path_length", 1 <= self.camera_path_length <= 64, "1 to 64")
-        need("photon_path_length", 1 <= self.photon_path_length <= 64, "1 to 64")
-        need("alpha", 0.0 < self.alpha < 1.0, "a value between 0 and 1")
-        need("radius_scale", math.isfinite(self.radius_scale) and self.radius_scale > 0.0, "more than 0 pixels")
-        need(
-            "radius_minimum",
-            math.isfinite(self.radius_minimum) and self.radius_minimum >= 0.0,
-            "0 (automatic) or metres",
-        )
-        need(
-            "radius_maximum",
-            math.isfinite(self.radius_maximum) and self.radius_maximum >= 0.0,
-            "0 (automatic) or metres",
-        )
+        for name, info in settings_of(RenderSettings).items():
+            if not info.accepts(getattr(self, name)):
+                raise SettingsError(f"{info.shown(name, getattr(self, name))}; set it to {info.range_text}")
         if 0.0 < self.radius_maximum < self.radius_minimum:
             raise SettingsError(
                 f"radius_maximum is {self.radius_maximum}, less than radius_minimum {self.radius_minimum}; raise it"
             )
-        need("specular_roughness", 0.0 <= self.specular_roughness <= 1.0, "0 to 1")
-        need("filter_width", math.isfinite(self.filter_width) and 0.0 <= self.filter_width <= 20.0, "0 to 20 pixels")
-        need("iterations_per_frame", self.iterations_per_frame >= 1, "1 or more")
-        need("seed", 0 <= self.seed < 1 << 31, "0 to 2147483647")
         passes_named(self.passes)
         resolution = self.cubemap_resolution
-        need(
-            "cubemap_resolution",
-            resolution == 0 or (16 <= resolution <= 16384 and resolution & (resolution - 1) == 0),
-            "0 (automatic) or a power of two from 16 to 16384",
-        )
+        if resolution and (resolution < 16 or resolution & (resolution - 1)):
+            raise SettingsError(
+                f"cubemap_resolution is {resolution}; set it to 0 (automatic) or a power of two from 16 to 16384"
+            )
 
     def photons_for(self, width: int, height: int) -> int:
         """Photons of an iteration that renders so many pixels: where automatic, one a pixel within limits.
@@ -145,26 +298,43 @@ class RenderSettings:
         return max(min(width * height, most), _FEWEST_AUTOMATIC_PHOTONS)
 
     def with_values(self, **values: object) -> "RenderSettings":
-        """A copy with some settings replaced; values may be text, as from the command line.
+        """A copy with some fields replaced; enumerations may be given by name.
 
         Raises SettingsError for an unknown name or a value of the wrong kind.
         """
-        fields = {field.name: field for field in dataclasses.fields(self)}
+        known = settings_of(RenderSettings)
+        for name in values:
+            if name not in known:
+                raise SettingsError(f"there is no setting {name}; the settings are {', '.join(known)}")
+        changed = {name: _converted(name, type(getattr(self, name)), value) for name, value in values.items()}
+        return dataclasses.replace(self, **changed)
+
+    def with_properties(self, values: Mapping[str, object]) -> "RenderSettings":
+        """A copy with some settings replaced by the names that users know them by; values may be text, as from the
+        command line.
+
+        Raises SettingsError for an unknown name or a value of the wrong kind.
+        """
+        fields = {info.property_of(name): (name, info) for name, info in settings_of(RenderSettings).items()}
         converted = {}
-        for name, value in values.items():
-            if name not in fields:
-                raise SettingsError(f"there is no setting {name}; the settings are {', '.join(fields)}")
-            kind = type(getattr(self, name))
-            try:
-                if kind is bool and isinstance(value, str):
-                    converted[name] = {"true": True, "1": True, "false": False, "0": False}[value.lower()]
-                elif kind is tuple:
-                    names = value.split(",") if isinstance(value, str) else value
-                    converted[name] = tuple(text for item in names if (text := item.strip()))
-                elif issubclass(kind, enum.Enum):
-                    converted[name] = value if isinstance(value, kind) else kind[str(value).upper()]
-                else:
-                    converted[name] = kind(value)
-            except (KeyError, ValueError, TypeError) as error:
-                raise SettingsError(f"{name} cannot be {value!r}; it takes a {kind.__name__}") from error
+        for given, value in values.items():
+            if given not in fields:
+                raise SettingsError(f"there is no setting {given}; the settings are {', '.join(fields)}")
+            name, info = fields[given]
+            converted[name] = _converted(given, type(getattr(self, name)), value, info.property_offset)
         return dataclasses.replace(self, **converted)
+
+
+def _converted(name: str, kind: type, value: object, offset: int = 0) -> object:
+    """A value, perhaps text, as the field has it; ``offset``: what users see more."""
+    try:
+        if kind is bool and isinstance(value, str):
+            return {"true": True, "1": True, "false": False, "0": False}[value.lower()]
+        if kind is tuple:
+            names = value.split(",") if isinstance(value, str) else value
+            return tuple(text for item in names if (text := item.strip()))
+        if issubclass(kind, enum.Enum):
+            return value if isinstance(value, kind) else kind[str(value).upper()]
+        return kind(value) - offset if offset else kind(value)
+    except (KeyError, ValueError, TypeError) as error:
+        raise SettingsError(f"{name} cannot be {value!r}; it takes a {kind.__name__}") from error

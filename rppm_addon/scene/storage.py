@@ -11,7 +11,7 @@ from .documents import decode, encode
 from .errors import SceneError
 from .scene import Scene
 
-FORMAT = 2
+FORMAT = 3
 
 
 def save_scene(scene: Scene, path: str | Path) -> None:
@@ -41,4 +41,7 @@ def load_scene(path: str | Path) -> Scene:
         raise SceneError(f"{path} is not a saved scene ({error}); write one with rppm export") from error
     if document.get("format") != FORMAT:
         raise SceneError(f"{path} has scene format {document.get('format')}, not {FORMAT}; export it again")
-    return decode(document["scene"], Scene, arrays)
+    try:
+        return decode(document["scene"], Scene, arrays)
+    except (KeyError, TypeError, ValueError) as error:
+        raise SceneError(f"{path} holds what this version of RPPM does not know ({error}); export it again") from error

@@ -19,7 +19,7 @@ def final_gather(subject: Subject, clock: Clock, quick: bool) -> dict:
     """
     scale = scale_of(clock, quick)
     with Rendering(subject, clock, scale) as rendering:
-        rendering.start(final_gather=True, seed=1)
+        rendering.start(use_final_gather=True, seed=1)
         for _ in range(scale.reference_iterations):
             rendering.iterate()
         reference = _radiance(rendering)
@@ -27,7 +27,7 @@ def final_gather(subject: Subject, clock: Clock, quick: bool) -> dict:
         longest = 0.0
         for gathers in (True, False):
             length = rendering.description["photon_path_length"] + (0 if gathers else 1)
-            rendering.start(final_gather=gathers, photon_path_length=length)
+            rendering.start(use_final_gather=gathers, photon_path_length=length)
             seconds, curve = 0.0, []
             while rendering.mapper.iteration < scale.reference_iterations // 4 if gathers else seconds < longest:
                 seconds += sum(rendering.iterate().values())

@@ -114,7 +114,7 @@ class Rendering:
             photons=scale.photons,
             photon_path_length=photon_length,
             camera_path_length=camera_length,
-            final_gather=False,  # the paper's estimate
+            use_final_gather=False,  # the paper's estimate
             density_estimation=DensityEstimation.RASTERIZED,
         )
         self._scene = subject.scene

@@ -24,13 +24,13 @@ def roulette(subject: Subject, clock: Clock, quick: bool) -> dict:
     with Rendering(subject, clock, scale) as rendering:
         whole = {}
         for rejects in (False, True):
-            rendering.start(**fixed, splat_roulette=rejects)
+            rendering.start(**fixed, use_splat_roulette=rejects)
             rendering.iterate()  # programs are made
             whole[rejects] = sum(rendering.mean_iteration(count).values())
         marks = (count, max(1, round(count * whole[False] / whole[True])))
         for seed in range(scale.seeds):
             for rejects in (False, True):
-                rendering.start(**fixed, seed=seed, splat_roulette=rejects)
+                rendering.start(**fixed, seed=seed, use_splat_roulette=rejects)
                 found = {}
                 for iteration in range(1, max(marks) + 1):
                     times = rendering.iterate()

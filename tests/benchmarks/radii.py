@@ -21,7 +21,7 @@ from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
 from rppm_addon.scene import Scene, load_scene  # noqa: E402
 
-REFERENCE = {"radius_scale": 8.0, "adaptive_radius": False, "seed": 77}
+REFERENCE = {"radius_scale": 8.0, "use_adaptive_radius": False, "seed": 77}
 WORST = 0.001
 """Share of the pixels, the worst ones, that errors leave out."""
 
@@ -54,8 +54,8 @@ def main() -> None:
     options = parser.parse_args()
     context = Context.create(None)
     mapper = ProgressivePhotonMapper(context, ProgramLibrary(context))
-    ways = {f"s_r {scale:g}": {"radius_scale": scale, "adaptive_radius": False} for scale in options.scales}
-    ways["adaptive"] = {"radius_scale": 10.0, "adaptive_radius": True}
+    ways = {f"s_r {scale:g}": {"radius_scale": scale, "use_adaptive_radius": False} for scale in options.scales}
+    ways["adaptive"] = {"radius_scale": 10.0, "use_adaptive_radius": True}
     print("| scene |", " | ".join(ways), "|")
     print("|---|" + "---:|" * len(ways))
     for path in options.scenes:

@@ -37,7 +37,7 @@ def lit(scene):
     add_light(scene, "SUN", energy=np.pi, angle=0.0)
     set_world(scene)
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 4.0  # the quad takes the middle half
-    scene.rppm.iterations, scene.rppm.photons, scene.rppm.cubemap_resolution = 2, 256, 16
+    scene.rppm.samples, scene.rppm.photons, scene.rppm.cubemap_resolution = 2, 256, 16
     scene.rppm.filter_width = 0.0
     return scene
 

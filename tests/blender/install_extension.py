@@ -19,7 +19,7 @@ def render_default_scene(picture: Path) -> None:
     scene = bpy.context.scene
     scene.render.engine = "RPPM"
     scene.render.resolution_x = scene.render.resolution_y = 16
-    scene.rppm.iterations, scene.rppm.photons, scene.rppm.cubemap_resolution = 1, 512, 16
+    scene.rppm.samples, scene.rppm.photons, scene.rppm.cubemap_resolution = 1, 512, 16
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.filepath = str(picture)
     bpy.ops.render.render(write_still=True)

@@ -18,7 +18,7 @@ def stage(scene, material, size=16):
     add_light(scene, "SUN", "Sun", energy=1.0)
     add_light(scene, "POINT", "Lamp", energy=10.0)
     set_world(scene, (0.2, 0.2, 0.2))
-    scene.rppm.iterations, scene.rppm.photons, scene.rppm.cubemap_resolution = 1, 512, 16
+    scene.rppm.samples, scene.rppm.photons, scene.rppm.cubemap_resolution = 1, 512, 16
 
 
 def picture(renderer, scene) -> tuple[np.ndarray, list[str], Scene]:

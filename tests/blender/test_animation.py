@@ -39,7 +39,7 @@ def moving(lit):
     """A floor, things that change in all the ways that Blender tells of, and some of which it tells nothing."""
     lit.render.resolution_x, lit.render.resolution_y = 16, 12
     lit.camera.data.type = "PERSP"
-    lit.rppm.photons, lit.rppm.iterations = 512, 3
+    lit.rppm.photons, lit.rppm.samples = 512, 3
     lit.frame_start, lit.frame_end = 1, LAST
     floor = bpy.data.objects["Quad"]
     floor.scale = (3.0, 3.0, 1.0)
@@ -109,9 +109,9 @@ def still(scene, folder, frame):
     return pixels(folder / "still.exr")
 
 
-@pytest.mark.parametrize("animate_seed", [False, True])
-def test_each_frame_is_that_of_a_fresh_render(moving, tmp_path, animate_seed):
-    moving.rppm.animate_seed = animate_seed
+@pytest.mark.parametrize("use_animated_seed", [False, True])
+def test_each_frame_is_that_of_a_fresh_render(moving, tmp_path, use_animated_seed):
+    moving.rppm.use_animated_seed = use_animated_seed
     fresh = [still(moving, tmp_path, frame) for frame in range(1, LAST + 1)]
     assert len({picture.tobytes() for picture in fresh}) == LAST
     for persistent in (False, True):

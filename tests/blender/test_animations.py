@@ -49,9 +49,9 @@ def device():
 def animated(scene, tmp_path):
     scene.render.image_settings.file_format = "PNG"
     scene.render.filepath = str(tmp_path / "frame_")
-    scene.rppm.iterations, scene.rppm.photons, scene.rppm.cubemap_resolution = ITERATIONS, 1024, 64
-    scene.rppm.viewport_photons = scene.rppm.photons
-    scene.rppm.camera_path_length = scene.rppm.photon_path_length = 4
+    scene.rppm.samples, scene.rppm.photons, scene.rppm.cubemap_resolution = ITERATIONS, 1024, 64
+    scene.rppm.preview_photons = scene.rppm.photons
+    scene.rppm.max_camera_bounces = scene.rppm.max_photon_bounces = 3
     stage(scene)
     return scene
 

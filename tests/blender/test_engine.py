@@ -180,7 +180,7 @@ def test_an_observer_may_want_the_scene_only(lit, monkeypatch):
 
 @pytest.mark.parametrize("iterations", [1, 3])
 def test_stopping_between_iterations_keeps_the_picture(lit, tmp_path, monkeypatch, iterations):
-    lit.rppm.iterations = 1000
+    lit.rppm.samples = 1000
     recorder = Recorder()
     replace_methods(monkeypatch, test_break=lambda: bool(recorder.progress) and recorder.progress[-1] >= iterations)
     with observing(recorder):
@@ -260,7 +260,7 @@ def test_warnings_are_reported(lit, monkeypatch):
 def test_progress_and_status(lit, monkeypatch):
     stats, progress = [], []
     replace_methods(monkeypatch, update_stats=lambda _, info: stats.append(info), update_progress=progress.append)
-    lit.rppm.iterations = 4
+    lit.rppm.samples = 4
     bpy.ops.render.render()
     assert any(text.startswith("Exporting") for text in stats)
     samples = [text.split(" | ")[0] for text in stats if text.startswith("Sample")]
@@ -270,7 +270,7 @@ def test_progress_and_status(lit, monkeypatch):
 
 def test_the_first_picture_comes_after_the_first_iteration(lit, monkeypatch):
     shown = []
-    lit.rppm.iterations = 3
+    lit.rppm.samples = 3
     original = final._FinalJob.on_frame
 
     def on_frame(self, progress, frame):
@@ -283,7 +283,7 @@ def test_the_first_picture_comes_after_the_first_iteration(lit, monkeypatch):
     bpy.ops.render.render()
     assert shown == [1, 2]
     shown.clear()
-    lit.rppm.iterations, lit.rppm.iterations_per_frame = 9, 4
+    lit.rppm.samples, lit.rppm.samples_per_frame = 9, 4
     bpy.ops.render.render()
     assert shown == [1, 4, 8]
 
@@ -316,7 +316,7 @@ def test_animation_keeps_the_renderer(lit, tmp_path, monkeypatch):
 
 def test_an_empty_scene_shows_its_world(scene, tmp_path):
     set_world(scene, (0.5, 0.25, 0.125))
-    scene.rppm.iterations, scene.rppm.photons = 1, 64
+    scene.rppm.samples, scene.rppm.photons = 1, 64
     combined = render_exr(scene, tmp_path)["ViewLayer.Combined"]
     np.testing.assert_allclose(combined[..., :3].mean(axis=(0, 1)), (0.5, 0.25, 0.125), rtol=1e-3)
 

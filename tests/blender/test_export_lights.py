@@ -66,10 +66,10 @@ def test_area_radiance(scene, shape, area, scale):
 
 def test_photon_share_and_visibility(scene):
     added = add_light(scene, "POINT")
-    added.data.rppm.photon_share = 2.5
+    added.data.rppm.photon_weight = 2.5
     added.visible_camera = True
     (light,) = export(scene).lights
-    assert light.photon_share == 2.5 and RayVisibility.CAMERA in light.visibility
+    assert light.photon_weight == 2.5 and RayVisibility.CAMERA in light.visibility
     added.visible_camera = False
     assert RayVisibility.CAMERA not in export(scene).lights[0].visibility
 

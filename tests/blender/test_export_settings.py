@@ -9,16 +9,19 @@ from blender_scenes import add_light, export
 
 from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.scene import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
+from rppm_addon.scene.setting_info import settings_of
 
 ELSEWHERE = {"film_transparent", "passes"}  # properties that Blender itself has
 # what makes the seed another one, an object of Blender's, exported as a point, and what viewports have apart
-BESIDES = {"animate_seed", "cubemap_centre_object", "viewport_iterations", "viewport_photons", "viewport_paused"}
+BESIDES = {"use_animated_seed", "cubemap_center_object", "preview_samples", "preview_photons", "preview_pause"}
 
 
 def test_properties_are_the_settings_with_their_defaults(scene):
     names = {field.name for field in dataclasses.fields(RenderSettings)}
+    infos = settings_of(RenderSettings)
+    assert infos.keys() == names
     properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
-    assert properties == (names - ELSEWHERE) | BESIDES
+    assert properties == {infos[name].property_of(name) for name in names - ELSEWHERE} | BESIDES
     found, expected = export(scene).settings, RenderSettings()
     for name in names - {"passes"}:
         assert getattr(found, name) == pytest.approx(getattr(expected, name)) if name == "alpha" else True
@@ -35,7 +38,7 @@ def test_every_property_has_a_description(scene):
 
 
 def test_values_are_exported(scene):
-    scene.rppm.iterations = 7
+    scene.rppm.samples = 7
     scene.rppm.photons = 1234
     scene.rppm.alpha = 0.5
     scene.rppm.direct_light = "PHOTONS"
@@ -56,7 +59,7 @@ def test_a_viewport_has_settings_of_its_own(scene):
     assert settings.iterations > default.iterations
     assert settings.photons < default.photons_for(256, 256)
     scene.rppm.time_limit, scene.rppm.alpha = 5.0, 0.5
-    scene.rppm.viewport_iterations, scene.rppm.viewport_photons = 3, 77
+    scene.rppm.preview_samples, scene.rppm.preview_photons = 3, 77
     layer = scene.view_layers[0]
     layer.rppm.use_pass_deep_cubemap = layer.use_pass_z = True
     viewport, final = export_settings(scene, layer, viewport=True), export_settings(scene, layer)
@@ -75,17 +78,22 @@ def test_what_scripts_and_presets_set_is_exported(scene):
         if item.type in {"INT", "FLOAT", "BOOLEAN"} and item.identifier not in BESIDES | {"cubemap_resolution"}:
             others = {"INT": item.default + 1, "FLOAT": 0.25, "BOOLEAN": not item.default}
             setattr(scene.rppm, item.identifier, others[item.type])
-            assert getattr(export(scene).settings, item.identifier) == others[item.type], item.identifier
+            wanted = RenderSettings().with_properties({item.identifier: others[item.type]})
+            assert wanted != RenderSettings()
+            found = export(scene).settings
+            infos = settings_of(RenderSettings).items()
+            (name,) = (name for name, info in infos if info.property_of(name) == item.identifier)
+            assert getattr(found, name) == getattr(wanted, name), item.identifier
     scene.rppm.direct_light = "PHOTONS"
     assert export(scene).settings.direct_light is DirectLight.PHOTONS
     scene.rppm.density_estimation = "RASTERIZED"
     assert export(scene).settings.density_estimation is DensityEstimation.RASTERIZED
     scene.rppm.first_photon_hits = "TRACED"
     assert export(scene).settings.first_photon_hits is FirstPhotonHits.TRACED
-    scene.rppm.cubemap_centre_object = lamp
+    scene.rppm.cubemap_center_object = lamp
     assert export(scene).cubemap_centre == pytest.approx([0.0, 0.0, 3.0])
-    lamp.data.rppm.photon_share = 3.0
-    assert (before.lights[0].photon_share, export(scene).lights[0].photon_share) == (1.0, 3.0)
+    lamp.data.rppm.photon_weight = 3.0
+    assert (before.lights[0].photon_weight, export(scene).lights[0].photon_weight) == (1.0, 3.0)
 
 
 def test_the_ranges_of_the_properties_are_valid_settings(scene):
@@ -93,7 +101,7 @@ def test_the_ranges_of_the_properties_are_valid_settings(scene):
         if item.type in {"INT", "FLOAT"} and item.identifier != "cubemap_resolution":
             for value in (item.hard_min, min(item.hard_max, 1e9)):
                 kind = int if item.type == "INT" else float
-                settings = RenderSettings(**{item.identifier.removeprefix("viewport_"): kind(value)})
+                settings = RenderSettings().with_properties({item.identifier.removeprefix("preview_"): kind(value)})
                 if item.identifier == "radius_minimum":
                     settings.radius_maximum = 0.0
                 settings.validate()
@@ -106,7 +114,7 @@ def test_the_cubemap_centre_follows_its_object(scene):
         scene.collection.objects.link(thing)
     empty.parent = parent
     parent.location, empty.location = (1, 2, 3), (0.5, 0, 0)
-    scene.rppm.cubemap_centre_object = empty
+    scene.rppm.cubemap_center_object = empty
     bpy.context.view_layer.update()
     assert export(scene).cubemap_centre == pytest.approx([1.5, 2, 3])
 
@@ -121,7 +129,7 @@ def test_an_animated_seed_is_another_one_in_each_frame(scene):
         return found
 
     assert set(seeds(5)) == {5}
-    scene.rppm.animate_seed = True
+    scene.rppm.use_animated_seed = True
     first, second = seeds(5), seeds(6)
     assert first == seeds(5)
     assert len({*first, *second}) == len(first) + len(second)

@@ -15,7 +15,7 @@ GRACE = 20
 def test_sixty_frames_hold_no_more_than_twenty(lit, tmp_path, persistent):
     """Geometry, its amount, objects, a material and a light change all the time."""
     lit.render.resolution_x = lit.render.resolution_y = 16
-    lit.rppm.iterations, lit.rppm.photons = 1, 256
+    lit.rppm.samples, lit.rppm.photons = 1, 256
     lit.render.use_persistent_data = persistent
     row = add_mesh(lit, "Row", location=(0.0, 0.0, 0.5), scale=(0.1, 0.1, 1.0))
     row.modifiers.new("Array", "ARRAY")

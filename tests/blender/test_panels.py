@@ -68,7 +68,7 @@ def test_light_panels(scene, kind):
     light = bpy.data.lights.new("Light", kind)
     records = drawn_panels(panels.data.CLASSES, context_of(scene, light=light))
     shown = {name for record in records.values() for name in record.properties}
-    assert {"energy", "color", "photon_share", "use_nodes"} <= shown
+    assert {"energy", "color", "photon_weight", "use_nodes"} <= shown
     assert ("spot_size" in shown) == (kind == "SPOT") and ("spread" in shown) == (kind == "AREA")
     assert ("use_soft_falloff" in shown) == (kind in {"POINT", "SPOT"})
     light.use_nodes = True
@@ -133,7 +133,7 @@ def test_material_and_world_panels_edit_the_output_that_is_exported(scene):
 def test_ray_visibility(scene):
     panel = panels.shading.RPPM_PT_ray_visibility
     of_mesh = drawn(panel, context_of(scene, object=add_mesh(scene))).properties
-    assert of_mesh[-3:] == ["visible_shadow", "is_shadow_catcher", "is_holdout"]
+    assert of_mesh[-3:] == ["visible_shadow", "is_holdout", "is_shadow_catcher"]
     of_light = drawn(panel, context_of(scene, object=add_light(scene, "POINT"))).properties
     assert of_light == of_mesh[:4] == [f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission")]
     assert not panel.poll(context_of(scene, object=add_object(scene, "Empty", None)))
@@ -142,18 +142,18 @@ def test_ray_visibility(scene):
 def test_the_radius_is_that_of_equations_2_and_3(scene):
     """A first disk over as many pixels as the square of the scale has, that alpha shrinks."""
     scene.render.resolution_x = scene.render.resolution_y = 2048  # twice the side of a megapixel
-    scene.rppm.radius_scale, scene.rppm.alpha, scene.rppm.iterations = 12.0, 0.5, 40
-    scene.rppm.viewport_iterations = 10
+    scene.rppm.radius_scale, scene.rppm.alpha, scene.rppm.samples = 12.0, 0.5, 40
+    scene.rppm.preview_samples = 10
     first = 24.0 / np.sqrt(np.pi)
     ratio = np.prod([np.sqrt((k + 0.5) / (k + 1)) for k in range(1, 40)])
     labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
     assert f"{first:.2f} pixels" in labels
-    assert f"{first * ratio:.2f} pixels ({ratio:.0%}) after 40 iterations" in labels
-    assert f"{shrinkage(10, 0.5):.0%} after 10 iterations" in labels
+    assert f"{first * ratio:.2f} pixels ({ratio:.0%}) after 40 samples" in labels
+    assert f"{shrinkage(10, 0.5):.0%} after 10 samples" in labels
     scene.unit_settings.system = "METRIC"
     reports.record(scene.session_uid, report(RenderKind.VIEWPORT))
     labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
-    assert labels[-2:] == ["Last Viewport", "1.2 cm in iteration 8"]
+    assert labels[-2:] == ["Last Viewport", "1.2 cm in sample 8"]
 
 
 def test_expected_memory(scene):
@@ -162,7 +162,7 @@ def test_expected_memory(scene):
     scene.render.use_border = True
     scene.render.border_min_x, scene.render.border_max_x = 0.0, 0.5
     scene.render.border_min_y, scene.render.border_max_y = 0.0, 1.0
-    scene.rppm.photons, scene.rppm.photon_path_length = 5000, 3
+    scene.rppm.photons, scene.rppm.max_photon_bounces = 5000, 2
     layer = bpy.context.view_layer
     layer.use_pass_z = layer.use_pass_normal = True  # as those of the report
     expected = expected_memory(16, 32, 5000, 3)
@@ -193,8 +193,8 @@ def test_rates_and_the_last_renders(scene):
         reports.record(scene.session_uid, report(photons=8000 * number, warnings=("a", "b")))
     status = drawn(panels.performance.RPPM_PT_status, context_of(scene)).labels
     assert status.index("Viewport") < status.index("Final")
-    assert "1 iterations, 250 photons" in status and "2 iterations, 6.00 k photons" in status
-    assert status.count("3.00 k an iteration") == 1 and status.count("250 an iteration") == 1
+    assert "1 samples, 250 photons" in status and "2 samples, 6.00 k photons" in status
+    assert status.count("3.00 k a sample") == 1 and status.count("250 a sample") == 1
     assert "8 of 8" in status and "200.0 MiB" in status
     assert status.count("Density Estimation") == status.count("Photon Grid") == 1
     table = drawn(panels.performance.RPPM_PT_last_renders, context_of(scene)).labels
@@ -207,12 +207,12 @@ def test_shares_of_lights(scene):
     """Power times factor as it is now; lights that no render knows yet come last."""
     lamp = add_light(scene, "POINT", "Lamp")
     add_light(scene, "SUN", "Late")
-    lamp.data.rppm.photon_share = 3.0
+    lamp.data.rppm.photon_weight = 3.0
     watts = {source_name("Lamp"): 10.0, source_name("Gone"): 10.0, SURFACES: 20.0, SURROUNDINGS: 60.0}
     photons = {source_name("Lamp"): 500, source_name("Gone"): 0, SURFACES: 250, SURROUNDINGS: 250}
     panel = panels.lights.RPPM_PT_light_shares
     record = drawn(panel, context_of(scene))
-    assert record.properties == ["photon_share"] * 2 and "once the scene was rendered" in record.labels[-1]
+    assert record.properties == ["photon_weight"] * 2 and "once the scene was rendered" in record.labels[-1]
     reports.record(scene.session_uid, report(source_watts=watts, source_photons=photons))
     rows = panels.lights.source_rows(scene)
     assert [row.name for row in rows] == ["World", "Lamp", SURFACES, "Gone", "Late"]
@@ -241,7 +241,7 @@ def test_presets_set_what_they_say(scene):
     for name, path in files.items():
         for setting in presets.SETTINGS:
             scene.rppm.property_unset(setting)
-        scene.rppm.iterations, scene.rppm.seed = 3, 7
+        scene.rppm.samples, scene.rppm.seed = 3, 7
         bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RPPM_PT_presets")
         settings = export_settings(scene)
         settings.validate()
@@ -252,10 +252,10 @@ def test_presets_set_what_they_say(scene):
         assert settings.photons == RenderSettings().photons
         if name == "Balanced":
             for setting in presets.SETTINGS:
-                expected = getattr(RenderSettings(), setting)
-                assert getattr(settings, setting) == (
-                    pytest.approx(expected, rel=1e-6) if isinstance(expected, float) else expected
-                )
+                stored = RenderSettings().with_properties({setting: getattr(scene.rppm, setting)})
+                for field, expected in vars(RenderSettings()).items():
+                    near = pytest.approx(expected, rel=1e-6) if isinstance(expected, float) else expected
+                    assert getattr(stored, field) == near, field
     assert iterations["Draft"] * 4 == iterations["Balanced"] == iterations["Final"] // 4
 
 
@@ -276,5 +276,5 @@ def test_the_pause_button_shows_in_rendered_viewports(scene):
         viewport_header.draw_pause(header, context_of(scene, engine=engine, space_data=space))
         return header.layout.record.properties
 
-    assert shown("RPPM", "RENDERED") == ["viewport_paused"]
+    assert shown("RPPM", "RENDERED") == ["preview_pause"]
     assert shown("RPPM", "SOLID") == shown("CYCLES", "RENDERED") == []

@@ -113,14 +113,14 @@ def test_errors_reach_the_user(lit, windowed):
         for child in {int(pid) for thread in task.iterdir() for pid in (thread / "children").read_text().split()}:
             os.kill(child, signal.SIGKILL)
 
-    lit.rppm.iterations = 1000
+    lit.rppm.samples = 1000
     observer = Observer(kill)
     with observing(observer), pytest.raises(RuntimeError, match="SIGKILL"):
         bpy.ops.render.render()
     assert len(observer.errors) == 1 and str(windowed.log_path) in observer.errors[0]
     assert windowed.state is ProcessState.FAILED and windowed.restarts == 2
     windowed.restart()
-    lit.rppm.iterations = 2
+    lit.rppm.samples = 2
     assert rendered().frames
 
 

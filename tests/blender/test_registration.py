@@ -50,7 +50,7 @@ def test_unregister_leaves_nothing(scene):
         assert "RPPM" not in engines or scene.render.engine != "RPPM"
     finally:
         rppm_addon.register()
-    assert bpy.context.scene.rppm.iterations > 0
+    assert bpy.context.scene.rppm.samples > 0
 
 
 def test_the_package_is_importable_without_blender():

@@ -35,8 +35,8 @@ def facing(scene):
     """A white quad that an orthographic camera faces and that fills the picture, 2 m across."""
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 2.0
     add_mesh(scene, "Quad")
-    scene.rppm.iterations, scene.rppm.photons, scene.rppm.photon_path_length = 1, 4000, 1
-    scene.rppm.filter_width, scene.rppm.final_gather = 0.0, False
+    scene.rppm.samples, scene.rppm.photons, scene.rppm.max_photon_bounces = 1, 4000, 0
+    scene.rppm.filter_width, scene.rppm.use_final_gather = 0.0, False
     set_world(scene)
     return scene
 
@@ -49,7 +49,7 @@ def rendered(scene) -> RenderReport:
 def test_the_radius_that_is_shown_is_the_one_that_is_used(facing):
     """All surfaces face the camera: r_max is Eq. 3's radius, as wide as the panel's pixels are on the quad."""
     add_light(facing, "SUN")
-    facing.rppm.iterations, facing.rppm.photons, facing.rppm.alpha = 7, 64, 0.6
+    facing.rppm.samples, facing.rppm.photons, facing.rppm.alpha = 7, 64, 0.6
     facing.rppm.radius_scale = 90.0  # of a megapixel: 2.8 pixels of these
     report = rendered(facing)
     shown = radius_reading(export_settings(facing), 32, 32)
@@ -62,7 +62,7 @@ def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
     factors = {"POINT": 1.0, "SPOT": 2.5, "SUN": 0.25, "AREA": 1.0}
     for kind, factor in factors.items():
         lamp = add_light(facing, kind, f"The {kind}", energy=3.0 if kind == "SUN" else 40.0)
-        lamp.data.rppm.photon_share = factor
+        lamp.data.rppm.photon_weight = factor
     tree = bpy.data.objects["The AREA"].data
     tree.use_nodes = True
     tree.node_tree.nodes["Emission"].inputs["Strength"].default_value = 2.0
@@ -80,7 +80,7 @@ def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
         assert row.sent == sent / 4000
         assert 4000 * row.share == pytest.approx(sent, abs=1.0) and sent > 10, name
     # Other factors change the shares before anything is rendered again, and the next render agrees.
-    bpy.data.lights["The SUN"].rppm.photon_share = 4.0
+    bpy.data.lights["The SUN"].rppm.photon_weight = 4.0
     expected = {row.name: row.share for row in panels.lights.source_rows(facing)}
     assert expected["The SUN"] > 2 * shares["The SUN"].share
     rendered(facing)
@@ -100,7 +100,7 @@ def test_the_memory_that_is_expected_is_the_one_that_is_used(facing):
 
 def test_what_a_final_render_reports(facing):
     add_light(facing, "SUN")
-    facing.rppm.iterations = 3
+    facing.rppm.samples = 3
     report = rendered(facing)
     assert report.kind is RenderKind.FINAL and (report.width, report.height) == (32, 32)
     assert (report.iterations, report.photons, report.triangles) == (3, 12000, 2)
@@ -115,12 +115,12 @@ def test_what_a_final_render_reports(facing):
 
 def test_an_error_is_shown_until_a_render_succeeds(facing):
     lamp = add_light(facing, "SUN")
-    lamp.data.rppm.photon_share = 0.0
+    lamp.data.rppm.photon_weight = 0.0
     with pytest.raises(RuntimeError, match="photon share 0"):
         bpy.ops.render.render()
     panel, context = panels.warnings.RPPM_PT_warnings, context_of(facing)
     assert panel.poll(context) and "all lights have photon share 0" in " ".join(drawn(panel, context).labels)
-    lamp.data.rppm.photon_share = 1.0
+    lamp.data.rppm.photon_weight = 1.0
     rendered(facing)
     assert not panel.poll(context)
 

@@ -65,7 +65,7 @@ scene.frame_set(1)
 scene.camera = camera
 scene.render.engine = "RPPM"
 scene.render.resolution_x, scene.render.resolution_y = 16, 12
-scene.rppm.iterations, scene.rppm.photons = 3, 1024
+scene.rppm.samples, scene.rppm.photons = 3, 1024
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[1])
 scene.camera = None
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])

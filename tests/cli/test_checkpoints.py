@@ -48,7 +48,7 @@ def uninterrupted(two_floors):
 def render(scene, checkpoint, iterations, *more, status=0):
     """Render to so many iterations; returns what the program said on standard error."""
     picture = checkpoint.with_name("picture.exr")
-    command = ["render", scene, "-o", picture, "--checkpoint", checkpoint, "--iterations", iterations, *more]
+    command = ["render", scene, "-o", picture, "--checkpoint", checkpoint, "--samples", iterations, *more]
     with start_rppm(*command) as process:
         _, errors = process.communicate(timeout=120)
     assert process.returncode == status, errors
@@ -126,20 +126,20 @@ def test_what_cannot_be_gone_on_with_is_refused(tmp_path, rppm, two_floors, save
         assert (status, errors.count("\n") <= 2) == (1, True), errors
         return errors
 
-    again = ("--checkpoint", checkpoint, "--iterations", 3)
+    again = ("--checkpoint", checkpoint, "--samples", 3)
     before = checkpoint.read_bytes()
     assert "is there already; go on from it with --resume" in refusal(two_floors, *again)
     assert "of another scene than this render (other instances, lights)" in refusal(saved_scene, *again, "--resume")
     assert "(other camera)" in refusal(two_floors, *again, "--resume", "--resolution", "8x8")
     settings = refusal(two_floors, *again, "--resume", "--photons", 999, "--set", "rppm.alpha=0.6")
     assert "(photons 1024 instead of 999, alpha 0.7 instead of 0.6)" in settings
-    fewer = refusal(two_floors, "--checkpoint", checkpoint, "--iterations", 1, "--resume")
-    assert "has 2 iterations already" in fewer
+    fewer = refusal(two_floors, "--checkpoint", checkpoint, "--samples", 1, "--resume")
+    assert "has 2 samples already" in fewer
     assert checkpoint.read_bytes() == before
     checkpoint.write_bytes(before[:-100])
     assert "was cut short" in refusal(two_floors, *again, "--resume")
     assert "--resume needs a checkpoint" in refusal(two_floors, "--resume")
-    assert "both name" in refusal(two_floors, "--checkpoint", picture, "--iterations", 3)
+    assert "both name" in refusal(two_floors, "--checkpoint", picture, "--samples", 3)
 
 
 def test_parts_merge_into_the_picture_of_one_run(tmp_path, rppm, two_floors, uninterrupted):
@@ -147,13 +147,13 @@ def test_parts_merge_into_the_picture_of_one_run(tmp_path, rppm, two_floors, uni
     ranges = [(0, 5), (5, 18), (18, LAST)]
     parts = [tmp_path / f"part_{first}.exr" for first, _ in ranges]
     for (first, end), part in zip(ranges, parts):
-        status, output, errors = rppm("render", two_floors, "--iterations-range", f"{first}:{end}", "-o", part)
+        status, output, errors = rppm("render", two_floors, "--samples-range", f"{first}:{end}", "-o", part)
         assert status == 0, errors
-        assert f"{end - first} iterations" in output and str(part) in output
+        assert f"{end - first} samples" in output and str(part) in output
     merged = tmp_path / "merged.exr"
     status, output, errors = rppm("merge", *reversed(parts), "-o", merged, "-o", tmp_path / "merged.png")
     assert status == 0, errors
-    assert f"{LAST} iterations, 19.5 k photons of 3 parts" in output
+    assert f"{LAST} samples, 19.5 k photons of 3 parts" in output
     state, picture = uninterrupted[1].state, read_exr(merged)
     np.testing.assert_allclose(picture.combined, state.radiance, rtol=1e-6, atol=1e-30)
     np.testing.assert_allclose(picture.layer("Normal"), state.passes["Normal"], rtol=1e-6, atol=1e-6)
@@ -161,7 +161,7 @@ def test_parts_merge_into_the_picture_of_one_run(tmp_path, rppm, two_floors, uni
     assert picture.metadata["iterations"] == str(LAST)
     status, _, errors = rppm("merge", parts[0], parts[2], "-o", merged)
     assert status == 1
-    assert "iterations 5:18 are in no part" in errors
+    assert "samples 5:18 are in no part" in errors
 
 
 def test_a_part_is_kept_and_gone_on_with_too(tmp_path, rppm, two_floors, uninterrupted):
@@ -169,22 +169,22 @@ def test_a_part_is_kept_and_gone_on_with_too(tmp_path, rppm, two_floors, uninter
     part = tmp_path / "part.exr"
     keep = ("-o", part, "--checkpoint", part, "--resume")
     for end in (19, LAST + 1):
-        status, _, errors = rppm("render", two_floors, "--iterations-range", f"18:{end}", *keep)
+        status, _, errors = rppm("render", two_floors, "--samples-range", f"18:{end}", *keep)
         assert status == 0, errors
     summary, pause = read_checkpoint(part)
     assert (summary.left_out, summary.iteration) == (18, LAST + 1)
     np.testing.assert_array_equal(pause.state.tallies, uninterrupted[1].state.tallies)
     status, _, errors = rppm("render", two_floors, "-o", tmp_path / "a.exr", "--checkpoint", part, "--resume")
     assert status == 1
-    assert "go on with --iterations-range 18:B" in errors
+    assert "go on with --samples-range 18:B" in errors
 
 
 def test_ranges_that_make_no_sense(tmp_path, rppm, two_floors):
     for text in ("5:5", "a:b"):
-        status, _, errors = rppm("render", two_floors, "-o", tmp_path / "a.exr", f"--iterations-range={text}")
-        assert (status, "is not a range of iterations" in errors) == (2, True)
+        status, _, errors = rppm("render", two_floors, "-o", tmp_path / "a.exr", f"--samples-range={text}")
+        assert (status, "is not a range of samples" in errors) == (2, True)
     for outputs in (["-o", tmp_path / "a.png"], ["-o", tmp_path / "a.exr", "-o", tmp_path / "b.exr"]):
-        status, _, errors = rppm("render", two_floors, *outputs, "--iterations-range", "0:2")
+        status, _, errors = rppm("render", two_floors, *outputs, "--samples-range", "0:2")
         assert (status, "give one -o PART.exr" in errors) == (1, True)
 
 
@@ -193,13 +193,13 @@ def test_stills_of_a_blend_file(tmp_path, rppm, blend_files):
     view = ("--set", "view_settings.view_transform=AgX", "--set", "view_settings.exposure=1.5", "--frame", 1)
     checkpoint = tmp_path / "still.exr"
     exr, png = tmp_path / "out.exr", tmp_path / "out.png"
-    for more in (("--iterations", 2), ("--iterations", 4, "--resume")):
+    for more in (("--samples", 2), ("--samples", 4, "--resume")):
         status, _, errors = rppm(
             "render", blend_files[0], *view, "-o", exr, "-o", png, "--checkpoint", checkpoint, *more
         )
         assert status == 0, errors
     part = tmp_path / "part.exr"
-    status, _, errors = rppm("render", blend_files[0], *view, "-o", part, "--iterations-range", "0:4")
+    status, _, errors = rppm("render", blend_files[0], *view, "-o", part, "--samples-range", "0:4")
     assert status == 0, errors
     assert_bit_for_bit(read_checkpoint(part)[1].state, read_checkpoint(checkpoint)[1].state)
     merged_exr, merged_png = tmp_path / "merged.exr", tmp_path / "merged.png"

@@ -72,7 +72,7 @@ def test_names_of_frames(name, frame, expected):
         (("floor.blend", "--frames", "1..3", "-o", "out_#.exr", "-o", "out.png"), 1, "-o out_####.png"),
         (("floor.blend", "--frames", "1..3", "--frame", "1", "-o", "out_#.exr"), 1, "leave one out"),
         (("floor.blend", "--frames", "1..3", "--checkpoint", "c.exr", "-o", "out_#.exr"), 1, "are for stills"),
-        (("floor.blend", "--frames", "1..3", "--iterations-range", "0:2", "-o", "o#.exr"), 1, "are for stills"),
+        (("floor.blend", "--frames", "1..3", "--samples-range", "0:2", "-o", "o#.exr"), 1, "are for stills"),
         (("floor.npz", "--frames", "1..3", "-o", "out_#.exr"), 1, "needs a .blend file"),
         (("floor.blend", "-o", "out_####.exr"), 1, "say which frame"),
     ],
@@ -119,7 +119,7 @@ def test_frames_are_those_of_single_renders(tmp_path, rppm, blend_files):
 
     written = {path: path.stat().st_mtime_ns for path in exr.parent.iterdir()}
     (tmp_path / "out_0002.png").unlink()
-    seeds = ("--set", "rppm.animate_seed=true", "--set", "rppm.seed=5")
+    seeds = ("--set", "rppm.use_animated_seed=true", "--set", "rppm.seed=5")
     status, output, errors = rppm(*arguments[:3], "1..2,7", *arguments[4:], "--resume", *seeds)
     assert status == 0, errors
     assert output.splitlines()[0] == "2 of 3 frames are there already" and "Frame 2: " in output
@@ -137,7 +137,7 @@ def test_frames_are_those_of_single_renders(tmp_path, rppm, blend_files):
 @pytest.mark.parametrize(("number", "expected"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
 def test_whoever_ends_it_leaves_whole_files(tmp_path, blend_files, number, expected):
     frames = tmp_path / "out_####.exr"
-    arguments = ("render", blend_files[0], "--frames", "6..4000", "--iterations", 20, "-o", frames)
+    arguments = ("render", blend_files[0], "--frames", "6..4000", "--samples", 20, "-o", frames)
     with start_rppm(*arguments) as process:
         deadline = time.monotonic() + 90.0
         while len(list(tmp_path.glob("out_*.exr"))) < 3 and time.monotonic() < deadline:

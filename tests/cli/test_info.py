@@ -8,7 +8,7 @@ def test_the_memory_of_a_saved_scene(tmp_path, rppm, saved_scene):
     report = tmp_path / "new" / "info.json"
     status, output, errors = rppm(
         "info", "--scene", saved_scene, "--resolution", "40x30", "--json", report,
-        "--set", "rppm.photons=2000", "--set", "rppm.photon_path_length=3",
+        "--set", "rppm.photons=2000", "--set", "rppm.max_photon_bounces=2",
     )  # fmt: skip
     assert status == 0, errors
     told = json.loads(report.read_text())

@@ -27,7 +27,7 @@ def test_a_saved_scene_renders_to_exr_png_and_json(tmp_path, rppm, saved_scene):
     centres = ("--set", "rppm.filter_width=0")
     status, output, errors = rppm("render", saved_scene, "-o", exr, "-o", png, "--json", report, *centres)
     assert (status, "Traceback" in errors) == (0, False), errors
-    assert "3 iterations" in output
+    assert "3 samples" in output
     assert "3.07 k photons" in output
 
     picture = read_exr(exr)
@@ -58,7 +58,7 @@ def test_a_saved_scene_renders_to_exr_png_and_json(tmp_path, rppm, saved_scene):
 def test_options_reach_the_renderer(tmp_path, rppm, saved_scene):
     exr, report = tmp_path / "out.exr", tmp_path / "out.json"
     status, _, errors = rppm(
-        "render", saved_scene, "-o", exr, "--json", report, "--iterations", 2, "--photons", 500,
+        "render", saved_scene, "-o", exr, "--json", report, "--samples", 2, "--photons", 500,
         "--resolution", "24x8", "--set", "rppm.alpha=0.6", "--set", "rppm.direct_light=photons",
     )  # fmt: skip
     assert status == 0, errors
@@ -121,7 +121,7 @@ def test_interrupting_keeps_what_is_there(tmp_path, saved_scene):
 def test_a_blend_file_renders_inside_blender(tmp_path, rppm, blend_files):
     exr, png, report = tmp_path / "out.exr", tmp_path / "out.png", tmp_path / "out.json"
     status, output, errors = rppm(
-        "render", blend_files[0], "-o", exr, "-o", png, "--json", report, "--snapshots", 1, "--iterations", 5
+        "render", blend_files[0], "-o", exr, "-o", png, "--json", report, "--snapshots", 1, "--samples", 5
     )
     assert status == 0, errors
     assert output.count("\n") == 1, output
@@ -170,14 +170,14 @@ def test_an_exported_scene_renders_like_its_blend_file(tmp_path, rppm, blend_fil
         (["render", "{npz}"], 2, "-o"),
         (["render", "{npz}", "-o", "a.tif"], 2, "not the name of an .exr or .png"),
         (["render", "{npz}", "-o", "a.exr", "--seconds", "0"], 2, "above 0"),
-        (["render", "{npz}", "-o", "a.exr", "--seconds", "3", "--iterations", "2"], 2, "not allowed with"),
+        (["render", "{npz}", "-o", "a.exr", "--seconds", "3", "--samples", "2"], 2, "not allowed with"),
         (["render", "{npz}", "-o", "a.exr", "--snapshots", "3,2"], 2, "ascending"),
         (["render", "{npz}", "-o", "a.exr", "--resolution", "0x9"], 2, "640x480"),
         (["render", "{npz}", "-o", "/dev/null/a.exr"], 1, "cannot be written"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--frame", "3"], 1, "one frame"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--set", "render.fps=3"], 1, "needs a .blend"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--set", "rppm.alfa=3"], 1, "no setting alfa"),
-        (["render", "{npz}", "-o", "{tmp}/a.exr", "--set", "rppm.alpha=3"], 1, "between 0 and 1"),
+        (["render", "{npz}", "-o", "{tmp}/a.exr", "--set", "rppm.alpha=3"], 1, "set it to 0.01 to 0.999999"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--photons", "99999999"], 1, "photons"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--device", "77"], 1, "device"),
         (["render", "{tmp}/absent.npz", "-o", "{tmp}/a.exr"], 1, "absent.npz"),

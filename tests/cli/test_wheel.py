@@ -72,5 +72,5 @@ def test_an_installed_rppm_renders(wheel, tmp_path, saved_scene):
     folder = run(sys.executable, "-c", "from rppm_addon.gl.sources import SHADER_FOLDER; print(SHADER_FOLDER)")
     assert Path(folder.strip()) == target / "rppm_addon" / "shaders"
     assert "OpenGL" in run(target / "bin" / "rppm", "info")
-    run(target / "bin" / "rppm", "render", saved_scene, "-o", tmp_path / "floor.exr", "--set", "rppm.iterations=1")
+    run(target / "bin" / "rppm", "render", saved_scene, "-o", tmp_path / "floor.exr", "--set", "rppm.samples=1")
     assert (tmp_path / "floor.exr").stat().st_size > 0

@@ -21,7 +21,7 @@ from .conftest import ROOT, dask, renders_below, start_rppm, wait_for, workers_o
 
 def farm(blend, folder, *options):
     """Arguments of a farm of four frames on two workers."""
-    frames = ("--frames", "1..4", "-o", folder / "####.exr", "--iterations", 6)
+    frames = ("--frames", "1..4", "-o", folder / "####.exr", "--samples", 6)
     return "farm", blend, *frames, *(() if "--workers" in options else ("--workers", 2)), *options
 
 
@@ -49,7 +49,7 @@ def test_a_killed_worker_costs_no_frame(tmp_path, rppm, blend_files):
     assert left_over(farmed) == []
     wait_for("the lost worker's render to end", lambda: not render.is_running())
 
-    status, _, errors = rppm("render", blend_files[0], "--frame", 1, "--iterations", 6, "-o", single)
+    status, _, errors = rppm("render", blend_files[0], "--frame", 1, "--samples", 6, "-o", single)
     assert status == 0, errors
     assert np.array_equal(read_exr(farmed / "0001.exr").combined, read_exr(single).combined)
 
@@ -95,12 +95,12 @@ def test_interrupting_a_farm_leaves_finished_work_only(tmp_path, blend_files):
 
 
 def test_a_failing_frame_of_a_chunk_is_told_and_the_others_are_made(tmp_path, rppm, blend_files):
-    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 1, "--chunk", 3)
+    options = ("-o", tmp_path / "####.exr", "--samples", 2, "--retries", 1, "--chunk", 3)
     status, output, errors = rppm("farm", blend_files[0], "--frames", "4..6", *options)
     assert status == 1
     assert "Traceback" not in errors
     assert re.search(r"rppm: frame 5 failed on \S+: frame 5: .*radius_maximum", errors)
-    assert f"rppm render {blend_files[0]} --iterations 2 --frames 5 -o '{tmp_path}/####.exr'" in errors
+    assert f"rppm render {blend_files[0]} --samples 2 --frames 5 -o '{tmp_path}/####.exr'" in errors
     assert "1 of 3 frames failed: frame 5" in errors
     assert [path.name for path in pictures(tmp_path)] == ["0004.exr", "0006.exr"]
     assert all(map(is_whole, pictures(tmp_path)))
@@ -108,7 +108,7 @@ def test_a_failing_frame_of_a_chunk_is_told_and_the_others_are_made(tmp_path, rp
 
 def test_a_picture_that_cannot_be_put_in_place_is_told(tmp_path, rppm, blend_files):
     (tmp_path / "0006.exr").mkdir()
-    options = ("-o", tmp_path / "####.exr", "--iterations", 2, "--retries", 0)
+    options = ("-o", tmp_path / "####.exr", "--samples", 2, "--retries", 0)
     status, _, errors = rppm("farm", blend_files[0], "--frames", "6", *options)
     assert status == 1
     assert re.search(r"rppm: frame 6 failed on \S+: .*0006.exr", errors)
@@ -119,8 +119,8 @@ def test_a_picture_that_cannot_be_put_in_place_is_told(tmp_path, rppm, blend_fil
     [
         (("a.npz", "--frames", "1..2"), "needs a .blend"),
         (("a.blend", "--frames", "1..2", "--frame", "3"), "--frames alone"),
-        (("a.blend", "--parts", "2"), "--iterations"),
-        (("a.blend", "--frames", "1..2", "--set", "rppm.iterations=0"), "iterations"),
+        (("a.blend", "--parts", "2"), "--samples"),
+        (("a.blend", "--frames", "1..2", "--set", "rppm.samples=0"), "samples"),
         (("a.blend", "--frames", "1..2", "--scheduler", "tcp://h:1", "--device", "1"), "RPPM_DEVICE"),
         (("a.blend", "--frames", "1..2"), "does not exist"),
         (("a.blend", "--frames", "1..2", "-o", "all.exr"), "####"),
@@ -136,9 +136,9 @@ def test_wrong_calls_are_one_line(tmp_path, rppm, arguments, words):
 
 def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
     whole, merged = tmp_path / "whole.exr", tmp_path / "merged.exr"
-    status, _, errors = rppm("render", saved_scene, "-o", whole, "--iterations", 40)
+    status, _, errors = rppm("render", saved_scene, "-o", whole, "--samples", 40)
     assert status == 0, errors
-    still = ("farm", saved_scene, "--iterations", 40, "--parts", 3, "-o", merged, "-o", tmp_path / "merged.png")
+    still = ("farm", saved_scene, "--samples", 40, "--parts", 3, "-o", merged, "-o", tmp_path / "merged.png")
     status, output, errors = rppm(*still, "--workers", 2)
     assert status == 0, errors
     assert output.count(" s on ") == 4  # three parts and the merge
@@ -160,7 +160,7 @@ def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
 def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_scene, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
     whole, merged, folder = tmp_path / "whole.exr", tmp_path / "merged.exr", tmp_path / "merged.farm"
-    still = ("farm", saved_scene, "--iterations", 1200, "--parts", 1, "-o", merged)
+    still = ("farm", saved_scene, "--samples", 1200, "--parts", 1, "-o", merged)
     ours, theirs = pty.openpty()  # on a terminal progress is told at once
     with start_rppm(*still, errors=theirs) as process, open(ours, errors="replace", newline="") as terminal:
         os.close(theirs)
@@ -170,21 +170,21 @@ def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_s
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
     assert process.returncode == 130
-    assert [path.name for path in folder.glob("iterations_*")] == ["iterations_0_1200.checkpoint.exr"]
-    begun = read_summary(folder / "iterations_0_1200.checkpoint.exr").iteration
+    assert [path.name for path in folder.glob("samples_*")] == ["samples_0_1200.checkpoint.exr"]
+    begun = read_summary(folder / "samples_0_1200.checkpoint.exr").iteration
     assert 0 < begun < 1200
 
     status, output, errors = rppm(*still)
     assert status == 0, errors
     assert output.count(" s on ") == 2
-    status, _, errors = rppm("render", saved_scene, "-o", whole, "--iterations", 1200)
+    status, _, errors = rppm("render", saved_scene, "-o", whole, "--samples", 1200)
     assert status == 0, errors
     np.testing.assert_allclose(read_exr(merged).combined, read_exr(whole).combined, rtol=1e-6, atol=1e-7)
 
 
 @pytest.mark.long
 def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
-    frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
+    frames = ("--frames", "1..2", "--samples", 6, "-o", tmp_path / "####.exr")
     with start_rppm("farm", blend_files[0], *frames, "--retries", 1) as process:
         lost = None
         for _ in range(2):
@@ -203,7 +203,7 @@ def test_a_task_that_loses_too_many_workers_is_given_up(tmp_path, blend_files):
 @pytest.mark.long
 def test_a_worker_that_dies_while_it_starts_is_replaced(tmp_path, blend_files):
     """Dask alone may not start it again."""
-    frames = ("--frames", "1..2", "--iterations", 6, "-o", tmp_path / "####.exr")
+    frames = ("--frames", "1..2", "--samples", 6, "-o", tmp_path / "####.exr")
     with start_rppm("farm", blend_files[0], *frames) as process:
         worker = wait_for("a render", lambda: renders_below(process))[0].parent()
         worker.kill()
@@ -233,7 +233,7 @@ def test_workers_of_a_scheduler_need_the_same_rppm(tmp_path, blend_files):
         with distributed.Client(address) as client:
             wait_for("both workers", lambda: len(client.scheduler_info()["workers"]) == 2)
         farm = ("farm", blend_files[0], "--frames", "1..2", "--scheduler", address)
-        with start_rppm(*farm, "--iterations", 2, "-o", tmp_path / "####.exr") as process:
+        with start_rppm(*farm, "--samples", 2, "-o", tmp_path / "####.exr") as process:
             output, errors = process.communicate(timeout=120)
         assert process.returncode == 0, errors
         assert re.search(r"workers must run the same RPPM .* left out: tcp\S+: no RPPM here", errors)

@@ -16,7 +16,7 @@ from rppm_addon.commands.picture_files import is_whole, write_png
 from rppm_addon.pictures import write_exr
 from rppm_addon.scene.errors import SettingsError
 
-JOB = {"scene": ["/a.blend", 1, 2], "options": ["--iterations", "4"], "split": None, "RPPM": "0.1.0+12345678"}
+JOB = {"scene": ["/a.blend", 1, 2], "options": ["--samples", "4"], "split": None, "RPPM": "0.1.0+12345678"}
 
 
 def write_picture(path):
@@ -54,7 +54,7 @@ def test_parts_are_all_iterations_once(iterations, parts):
     outputs = [Path("/o.exr"), Path("/o.png")]
     tasks, merge = still_tasks(Path("/a.npz"), iterations, parts, outputs, Path("/o.farm"), ["--photons", "5"])
     ranges = [tuple(map(int, task.arguments[3].split(":"))) for task in tasks]
-    assert [task.arguments[:3] for task in tasks] == [("render", "/a.npz", "--iterations-range")] * parts
+    assert [task.arguments[:3] for task in tasks] == [("render", "/a.npz", "--samples-range")] * parts
     assert [iteration for first, end in ranges for iteration in range(first, end)] == list(range(iterations))
     assert max(end - first for first, end in ranges) - min(end - first for first, end in ranges) <= 1
     files = [str(task.outputs[0]) for task in tasks]

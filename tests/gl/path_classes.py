@@ -97,7 +97,7 @@ def scene_of(
     settings = RenderSettings(
         iterations=iterations, photons=photons, direct_light=mode, photon_path_length=photon_path_length,
         camera_path_length=camera_path_length, radius_minimum=0.03, radius_maximum=0.03, filter_width=0.0,
-        specular_roughness=CUT, final_gather=False,
+        specular_roughness=CUT, use_final_gather=False,
         radius_scale=100.0,  # bounds the wide radius in pixels, which are few here
     )  # fmt: skip
     return Scene(

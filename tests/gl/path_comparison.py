@@ -96,7 +96,7 @@ def gathering(case: Case, monkeypatch: pytest.MonkeyPatch, found: bool) -> Case:
     """The case with final gather, nothing shared; ``found``: its last surface gets its light by the gathering ray."""
     monkeypatch.setattr(final_gather, "SHARED_RADIUS", 0.0)
     settings = case.scene.settings
-    changed = settings.with_values(final_gather=True, camera_path_length=settings.camera_path_length + 1)
+    changed = settings.with_values(use_final_gather=True, camera_path_length=settings.camera_path_length + 1)
     scene = dataclasses.replace(case.scene, settings=changed)
     if found:  # seldom: what the rays look for is small
         traced_only(scene, 64, 64 if settings.direct_light is DirectLight.RAYS else 2048)

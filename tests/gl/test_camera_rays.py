@@ -274,7 +274,7 @@ def test_clip_distances_follow_the_ray_through_the_lens_centre(context, library)
 
 SETTINGS = {
     "gathering": {},
-    "photons_only": {"direct_light": DirectLight.PHOTONS, "final_gather": False},
+    "photons_only": {"direct_light": DirectLight.PHOTONS, "use_final_gather": False},
     "direct_light_by_photons": {"direct_light": DirectLight.PHOTONS},
 }
 

@@ -65,7 +65,7 @@ def test_a_factor_multiplies_the_radius_of_its_pixel(mapper):
     """Of importons that gathering rays did not lead to."""
     seen = {}
     for adaptive in (False, True):
-        mapper.build(many_photons(adaptive_radius=adaptive, camera_path_length=1))
+        mapper.build(many_photons(use_adaptive_radius=adaptive, camera_path_length=1))
         factors = run_until(mapper, 2).radius_factors.reshape(-1)
         mapper.iterate()
         count = mapper._count
@@ -79,7 +79,7 @@ def test_a_factor_multiplies_the_radius_of_its_pixel(mapper):
 
 def test_without_adaptive_radius_limits_are_those_given(mapper):
     """Automatic limits, given as the user's, are Eq. 3's to the bit."""
-    mapper.build(many_photons(adaptive_radius=False))
+    mapper.build(many_photons(use_adaptive_radius=False))
     plain = run_until(mapper, 3)
     low, high = mapper._limits
     mapper.build(many_photons(radius_minimum=low, radius_maximum=high))

@@ -104,7 +104,7 @@ def divided_furnace(mode: DirectLight, seed: int, final_gather: bool) -> Scene:
     ]
     settings = RenderSettings(
         iterations=6, photons=16384, direct_light=mode, photon_path_length=14, camera_path_length=3, seed=seed,
-        filter_width=0.0, final_gather=final_gather, radius_minimum=0.1, radius_maximum=0.1,
+        filter_width=0.0, use_final_gather=final_gather, radius_minimum=0.1, radius_maximum=0.1,
     )  # fmt: skip
     camera = Camera(scenes.looking((0, -0.8, 0), (0, 1, 0)), (-0.5, 0.5, -0.5, 0.5), 16, 16)
     instances = [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])]

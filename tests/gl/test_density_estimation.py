@@ -37,7 +37,7 @@ def wide(scene: Scene, **settings: object) -> Scene:
 
 def busy(**settings: object) -> Scene:
     """Caustics, light between walls, rough and glossy paths, a pane that ends some paths."""
-    return wide(busy_room(), **{"photons": 2000, "splat_roulette": False, "radius_scale": 40.0, **settings})
+    return wide(busy_room(), **{"photons": 2000, "use_splat_roulette": False, "radius_scale": 40.0, **settings})
 
 
 def panorama() -> Scene:
@@ -117,10 +117,10 @@ def scaled(factor: float) -> Scene:
 SCENES = {
     "room": lambda: wide(scenes.room(8, photons=2000)),
     "busy": busy,
-    "roulette": lambda: busy(splat_roulette=True),
+    "roulette": lambda: busy(use_splat_roulette=True),
     "photons for direct light": lambda: busy(direct_light=DirectLight.PHOTONS),
-    "without final gather": lambda: busy(final_gather=False, direct_light=DirectLight.PHOTONS),
-    "roulette without final gather": lambda: busy(final_gather=False, splat_roulette=True),
+    "without final gather": lambda: busy(use_final_gather=False, direct_light=DirectLight.PHOTONS),
+    "roulette without final gather": lambda: busy(use_final_gather=False, use_splat_roulette=True),
     "one segment": lambda: busy(camera_path_length=1),
     "wide radius": lambda: busy(radius_scale=400.0),
     "radii far apart": lambda: busy(radius_minimum=0.001, radius_maximum=0.3, direct_light=DirectLight.PHOTONS),

@@ -83,9 +83,9 @@ def shown_by(kind: str) -> Scene:
     glow = np.random.default_rng(0).integers(0, 255, (4, 4, 4), np.uint8)
     scene.images = [Image("glow", glow, "SRGB")]
     if kind == "splat roulette":
-        settings.splat_roulette = True
+        settings.use_splat_roulette = True
     elif kind == "photons alone":
-        settings.direct_light, settings.final_gather = DirectLight.PHOTONS, False
+        settings.direct_light, settings.use_final_gather = DirectLight.PHOTONS, False
     elif kind == "panorama in a world":
         scene.world = image_world(0)
         scene.camera.window = (0.0, 1.0, 0.0, 1.0)
@@ -124,6 +124,7 @@ def outcome(mapper, scene: Scene) -> dict[str, np.ndarray]:
         result[f"photons {iteration}"] = photons.view(np.uint8)
         result[f"flux {iteration}"] = np.array(list(mapper.flux_balance().values()))
     state = dataclasses.asdict(mapper.state())
+    state |= state.pop("passes")
     return result | {name: np.asarray(value) for name, value in state.items()}
 
 

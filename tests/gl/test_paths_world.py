@@ -96,7 +96,7 @@ def test_rays_and_photons_find_what_photons_do(mapper, name):
     scene = corner(1.0, WALLS[name], photons=16384, iterations=iterations, radius_minimum=0.025, radius_maximum=0.025)
     pixels = np.random.default_rng(3).uniform(0.0, 1.0, (8, 16, 4)).astype(np.float32) ** 2 * 3.0
     scene.images, scene.world = [Image("world", pixels)], image_world(0)
-    alone = dataclasses.replace(scene, settings=scene.settings.with_values(final_gather=False))
+    alone = dataclasses.replace(scene, settings=scene.settings.with_values(use_final_gather=False))
     by_both, by_photons = (blocks(picture_by_seed(mapper, name, each)) for each in (scene, alone))
     level = by_photons.mean(axis=0)
     # Direct light is the same in both, noise included.

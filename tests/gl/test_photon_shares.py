@@ -12,13 +12,15 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.scene import Light, LightKind, World
 
-SETTINGS = {"photons": 4000, "photon_path_length": 1, "camera_path_length": 1, "iterations": 1, "final_gather": False}
+SETTINGS = {
+    "photons": 4000, "photon_path_length": 1, "camera_path_length": 1, "iterations": 1, "use_final_gather": False,
+}  # fmt: skip
 
 
 def test_sources_have_their_power_and_photons(renderer):
     """An area light of 12 pi / 4 W, a lamp of half of that with four times its photons, a glowing ball and the sky."""
     scene = scenes.room(8, **SETTINGS)
-    lamp = Light("light", LightKind.POINT, np.eye(4), np.full(3, 12 / 32), photon_share=4.0)
+    lamp = Light("light", LightKind.POINT, np.eye(4), np.full(3, 12 / 32), photon_weight=4.0)
     scene.lights.append(dataclasses.replace(lamp, name="lamp"))
     scene.lights.append(dataclasses.replace(lamp, name="lamp", strength=np.zeros(3)))  # gives no light
     scene.materials[3] = material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0)))

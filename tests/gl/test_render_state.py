@@ -26,7 +26,7 @@ def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
     whose photons are of less use."""
     scene = scenes.room(
         16, direct_light=direct_light, photons=4096, camera_path_length=4, photon_path_length=4, radius_scale=100.0,
-        splat_roulette=True,
+        use_splat_roulette=True,
     )  # fmt: skip
     rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)
     scene.materials[1] = material("rough", rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1)))

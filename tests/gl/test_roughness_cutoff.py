@@ -65,7 +65,7 @@ def mean(renderer, *arguments, final_gather: bool = True) -> tuple[float, float]
     Splats make neighbours alike, so that the error is too small for pictures by photons.
     """
     scene = glossy_floor(*arguments)
-    scene.settings = scene.settings.with_values(final_gather=final_gather)
+    scene.settings = scene.settings.with_values(use_final_gather=final_gather)
     picture = renderer.render(scene).frame.combined[..., :3].mean(axis=2, dtype=np.float64)
     return float(picture.mean()), float(np.diff(picture, axis=1).std() / np.sqrt(2 * picture.size))
 
@@ -79,7 +79,7 @@ def assert_alike(first: tuple[float, float], second: tuple[float, float]) -> Non
 @pytest.mark.parametrize("roughness", [0.35, 0.6])
 def test_traced_and_stored_lobes_shine_alike(renderer, light, roughness):
     lobe = Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=roughness)
-    stored = mean(renderer, light, lobe, 0.0, DirectLight.RAYS, final_gather=False)  # shadow rays alone
+    stored = mean(renderer, light, lobe, 0.0, DirectLight.RAYS, use_final_gather=False)  # shadow rays alone
     traced = mean(renderer, light, lobe, 1.0, DirectLight.RAYS)  # those and scattering together
     print(f"{light} roughness {roughness}: stored {stored} traced {traced} ratio {traced[0] / stored[0]:.4f}")
     assert_alike(traced, stored)
@@ -141,7 +141,7 @@ def swept_sheet(path: str, kind: LobeKind, mode: DirectLight, roughness: float, 
     settings = RenderSettings(
         iterations=32 if alone else 8, photons=64 if alone else 4096 if path == "LGDE" else 16384,
         direct_light=mode, photon_path_length=3, camera_path_length=3,
-        radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0, specular_roughness=cut, final_gather=False,
+        radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0, specular_roughness=cut, use_final_gather=False,
     )  # fmt: skip
     materials = [material("sheet", lobe), scenes.diffuse(0.8, 0.8, 0.8)]
     meshes, instances = [sheet], [Instance(0, np.eye(4), [0])]

@@ -165,7 +165,7 @@ def test_a_caustic_is_the_mean_of_those_at_moments(renderer):
         [Instance(0, np.eye(4), [0]), Instance(1, scenes.placed(0, 0, 1.0, 0.4), [1])],
         [scenes.diffuse(0.6, 0.6, 0.6), material("glass", Lobe(LobeKind.GLASS, ior=1.5))],
         [Light("lamp", LightKind.SPOT, scenes.placed(0, 0, 4), np.full(3, 20.0), radius=0.4, spot_angle=1.0)],
-        settings=RenderSettings(photons=4096, photon_path_length=5, camera_path_length=3, final_gather=False),
+        settings=RenderSettings(photons=4096, photon_path_length=5, camera_path_length=3, use_final_gather=False),
     )
     scene = open_for(still, instances=[way(1, still.instances[1].matrix, 1.0, 0.3, 0.2)])
     moving, parts = MovingScene(scene), 16

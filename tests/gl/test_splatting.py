@@ -52,7 +52,7 @@ def diffuse_room(**settings):
         "photons": 4096, "direct_light": DirectLight.PHOTONS, "radius_scale": 60.0, "filter_width": 0.0,
         "density_estimation": DensityEstimation.RASTERIZED,
     }  # fmt: skip
-    scene = scenes.room(24, **{"final_gather": False, **fixed, **settings})
+    scene = scenes.room(24, **{"use_final_gather": False, **fixed, **settings})
     scene.instances = scene.instances[:5] + scene.instances[6:]  # the mirror stays
     return scene
 
@@ -101,7 +101,7 @@ def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
 @pytest.mark.parametrize("route", ROUTES)
 def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
     """First hits take what came straight or by the mirror; where the gathering rays end, all photons count."""
-    mapper.build(diffuse_room(camera_path_length=2, final_gather=True, density_estimation=route))
+    mapper.build(diffuse_room(camera_path_length=2, use_final_gather=True, density_estimation=route))
     count, first = 24 * 24, []
     direct_splatting = mapper._direct_splatting
 
@@ -145,7 +145,7 @@ def test_sums_do_not_depend_on_what_they_count_in(mapper, monkeypatch, shift, ro
 def test_splat_roulette_keeps_the_mean(mapper):
     """Half of the pairs are left out and the others count twice: the picture's mean stays, its noise grows."""
     full = gathered_picture(mapper)
-    halves = [gathered_picture(mapper, splat_roulette=True, seed=0) for _ in range(2)]
+    halves = [gathered_picture(mapper, use_splat_roulette=True, seed=0) for _ in range(2)]
     assert (halves[0] == halves[1]).all()
     assert (abs(halves[0] - full) > 0.01 * full.mean()).mean() > 0.5
     assert halves[0].mean() == pytest.approx(full.mean(), rel=0.01)

@@ -42,7 +42,7 @@ def test_engines_and_files_change(open_blender):
         blender.step("assign", path="scene.render.engine", value=engine)
     blender.step("open_file", 60.0, path="/mnt/endless.blend")
     assert blender.step("evaluate", text="scene.render.engine") == "RPPM"
-    assert blender.step("evaluate", text="scene.rppm.iterations") == 1000000
+    assert blender.step("evaluate", text="scene.rppm.samples") == 1000000
     blender.quit()
 
 

@@ -59,19 +59,19 @@ def test_preferences_show_the_device(open_blender):
 def test_the_viewport_reports_and_pauses(open_blender):
     """The panels learn of its iterations and lights; paused, it does no more of them."""
     blender = open_blender("small.blend", 1280, 900)
-    blender.step("assign", path="scene.rppm.viewport_iterations", value=100000)
+    blender.step("assign", path="scene.rppm.preview_samples", value=100000)
     blender.shrink("VIEW_3D", 300, 200)
     blender.step("properties_tab", name="RENDER")
     blender.step("shading", kind="RENDERED")
     found = blender.wait_until("readings", 180.0, lambda found: found and found["iterations"] >= 2)
     assert list(found["watts"]) == ['Light "Lamp"'] and found["watts"]['Light "Lamp"'] > 0.0
     shot(blender, "status")
-    blender.step("assign", path="scene.rppm.viewport_paused", value=True)
+    blender.step("assign", path="scene.rppm.preview_pause", value=True)
     time.sleep(5.0)  # what is under way comes to its end
     before = blender.step("readings")["iterations"]
     time.sleep(5.0)
     assert blender.step("readings")["iterations"] == before
     blender.screenshot("paused")
-    blender.step("assign", path="scene.rppm.viewport_paused", value=False)
+    blender.step("assign", path="scene.rppm.preview_pause", value=False)
     blender.wait_until("readings", 60.0, lambda found: found["iterations"] > before)
     blender.quit()

@@ -27,9 +27,9 @@ def viewport(open_blender):
     """A window whose viewport is about to be rendered, from the camera."""
     blender = open_blender("small.blend")
     arrange(blender)
-    for name in ("iterations", "viewport_iterations"):
+    for name in ("iterations", "preview_samples"):
         blender.step("assign", path=f"scene.rppm.{name}", value=ITERATIONS)
-    for name in ("photons", "viewport_photons"):
+    for name in ("photons", "preview_photons"):
         blender.step("assign", path=f"scene.rppm.{name}", value=PHOTONS)
     blender.step("camera_view")
     return blender
@@ -73,7 +73,7 @@ def test_the_window_answers_while_it_renders(viewport):
     viewport.step("tick")
     time.sleep(3.0)
     idle = summary(viewport.step("gaps"))
-    viewport.step("assign", path="scene.rppm.viewport_iterations", value=100000)
+    viewport.step("assign", path="scene.rppm.preview_samples", value=100000)
     viewport.step("free_view")
     show_rendered(viewport)
     time.sleep(2.0)
@@ -153,7 +153,7 @@ def play(blender, seconds):
 
 def test_the_viewport_outlives_renders_engines_and_files(viewport):
     show_rendered(viewport)
-    viewport.step("assign", path="scene.rppm.iterations", value=1000000)
+    viewport.step("assign", path="scene.rppm.samples", value=1000000)
     viewport.press("F12")
     viewport.wait_until("rendering", 60.0)
     time.sleep(3.0)
@@ -170,7 +170,7 @@ def test_the_viewport_outlives_renders_engines_and_files(viewport):
         viewport.step("assign", 60.0, path="scene.render.engine", value="RPPM")
     wait_for_rest(viewport)
     again = viewport.screenshot("after_engines", "VIEW_3D")
-    viewport.step("assign", path="scene.rppm.iterations", value=ITERATIONS)
+    viewport.step("assign", path="scene.rppm.samples", value=ITERATIONS)
     report(viewport, **assert_alike(again, final_render(viewport, "final")))
     viewport.step("open_file", 60.0, path="/mnt/endless.blend")
     viewport.wait_until("ready", 30.0)
@@ -205,7 +205,7 @@ def test_the_viewport_survives_its_renderer(viewport):
 
 
 def test_nothing_outlives_a_killed_blender(viewport):
-    viewport.step("assign", path="scene.rppm.viewport_iterations", value=100000)
+    viewport.step("assign", path="scene.rppm.preview_samples", value=100000)
     show_rendered(viewport)
     viewport.machine.kill(viewport.pid)
     nothing_left(viewport.machine)

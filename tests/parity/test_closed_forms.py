@@ -66,7 +66,7 @@ def test_white_glass_that_stores_photons_vanishes_in_a_white_sky(renderer):
     new_scene(resolution=32, world=1.0)
     ball(1.0, material(GLASS, "MULTI_GGX", Color=1.0, Roughness=0.6, IOR=1.5), segments=48)
     camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 18.0)
-    settings = {"specular_roughness": 0.0, "final_gather": False, "camera_path_length": 2, "photon_path_length": 24}
+    settings = {"specular_roughness": 0.0, "use_final_gather": False, "camera_path_length": 2, "photon_path_length": 24}
     # Many seeds: of three, chance alone made the error twice what it is.
     pictures = render_rppm(renderer, seeds=12, photons=16384, iterations=3, **settings).pictures
     means = pictures.mean(axis=(1, 2, 3))

@@ -47,7 +47,7 @@ def sheet_in_a_corner(name: str) -> None:
 
 MODES = {
     "rays": {"direct_light": "RAYS", "photons": 8192, "iterations": 16},
-    "photons": {"direct_light": "PHOTONS", "photons": 65536, "iterations": 10, "final_gather": False},
+    "photons": {"direct_light": "PHOTONS", "photons": 65536, "iterations": 10, "use_final_gather": False},
 }
 
 

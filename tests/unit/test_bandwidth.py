@@ -46,7 +46,7 @@ def test_radius_follows_the_frame():
 
 def test_radii_that_the_user_gives_are_exact():
     assert most_radius_factor(RenderSettings()) > 1.0
-    for exact in ({"adaptive_radius": False}, {"radius_minimum": 0.1}, {"radius_maximum": 0.1}):
+    for exact in ({"use_adaptive_radius": False}, {"radius_minimum": 0.1}, {"radius_maximum": 0.1}):
         assert most_radius_factor(RenderSettings(**exact)) == 1.0
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import checkpoints
 import numpy as np
 import pytest
-from full_scene import full_scene
+from support.full_scene import full_scene
 
 from rppm_addon.commands.checkpoints import still_render
 from rppm_addon.integrator.state import RenderState

@@ -39,15 +39,15 @@ def test_the_mean_over_all_iterations(part):
 
 def test_iterations_that_are_missing(part):
     paths = [part(2, 4), part(7, 9)]
-    with pytest.raises(CheckpointError, match="iterations 0:2 and 4:7 are in no part; .*--iterations-range 0:2"):
+    with pytest.raises(CheckpointError, match="samples 0:2 and 4:7 are in no part; .*--samples-range 0:2"):
         merge_parts(paths, incomplete=False)
     assert merge_parts(paths, incomplete=True).iterations == 4
 
 
 def test_iterations_that_are_there_twice(part):
-    with pytest.raises(CheckpointError, match="part_0_5.exr and .*part_3_9.exr both have the iterations 3:5"):
+    with pytest.raises(CheckpointError, match="part_0_5.exr and .*part_3_9.exr both have the samples 3:5"):
         merge_parts([part(0, 5), part(3, 9)], incomplete=True)
-    with pytest.raises(CheckpointError, match="both have the iterations 0:5"):
+    with pytest.raises(CheckpointError, match="both have the samples 0:5"):
         merge_parts([part(0, 5), part(0, 5)], incomplete=False)
 
 

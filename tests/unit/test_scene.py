@@ -20,8 +20,11 @@ from rppm_addon.scene import (
     Scene,
     load_scene,
     save_scene,
+    storage,
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
+from rppm_addon.scene.setting_info import settings_of
+from tools import settings_table
 
 
 def test_a_stored_scene_comes_back_whole(tmp_path):
@@ -61,6 +64,17 @@ def test_other_files_are_refused_in_one_line(tmp_path):
         assert "\n" not in str(error.value)
 
 
+def test_what_another_version_saved_is_refused_in_one_line(tmp_path, monkeypatch):
+    path = tmp_path / "scene.npz"
+    save_scene(full_scene(), path)
+    monkeypatch.setattr(storage, "decode", lambda *given: {}["an old setting"])
+    with pytest.raises(SceneError, match="an old setting.*export it again"):
+        load_scene(path)
+    monkeypatch.setattr(storage, "FORMAT", storage.FORMAT + 1)
+    with pytest.raises(SceneError, match="scene format 3, not 4; export it again"):
+        load_scene(path)
+
+
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -70,7 +84,8 @@ def test_other_files_are_refused_in_one_line(tmp_path):
     ],
 )  # fmt: skip
 def test_bad_settings_are_named(name, value):
-    with pytest.raises(SettingsError, match=f"^{name} is .*; set it to"):
+    shown = settings_of(RenderSettings)[name].property_of(name)
+    with pytest.raises(SettingsError, match=f"^{shown} is .*; set it to"):
         dataclasses.replace(RenderSettings(), **{name: value}).validate()
 
 
@@ -102,10 +117,46 @@ def test_settings_from_text():
     assert settings.direct_light is DirectLight.PHOTONS and settings.film_transparent is True
     with pytest.raises(SettingsError, match="there is no setting nonsense"):
         RenderSettings().with_values(nonsense=1)
-    with pytest.raises(SettingsError, match="iterations cannot be 'many'"):
-        RenderSettings().with_values(iterations="many")
+
+
+def test_settings_by_the_names_of_users():
+    settings = RenderSettings().with_properties(
+        {"samples": "3", "max_camera_bounces": "4", "max_photon_bounces": 0, "passes": "Depth, UV"}
+    )
+    assert (settings.iterations, settings.camera_path_length, settings.photon_path_length) == (3, 5, 1)
+    assert settings.passes == ("Depth", "UV")
+    with pytest.raises(SettingsError, match="there is no setting iterations; the settings are samples, "):
+        RenderSettings().with_properties({"iterations": 1})
+    with pytest.raises(SettingsError, match="samples cannot be 'many'"):
+        RenderSettings().with_properties({"samples": "many"})
+    with pytest.raises(SettingsError, match="^max_camera_bounces is 64; set it to 0 to 63$"):
+        RenderSettings().with_properties({"max_camera_bounces": 64}).validate()
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("iterations", "1 or more"), ("photons", "0 (automatic) or 1 to 4194304"), ("alpha", "0.01 to 0.999999"),
+        ("time_limit", "0 (no limit) or seconds"), ("radius_maximum", "0 (automatic) or meters"),
+        ("filter_width", "0 to 20 pixels"),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_ranges(name, words):
+    assert settings_of(RenderSettings)[name].range_text == words
+
+
+def test_single_precision_is_in_the_range():
+    settings = RenderSettings(alpha=float(np.float32(0.01)), radius_scale=float(np.float32(0.01)))
+    settings.validate()
+    assert not settings_of(RenderSettings)["alpha"].accepts(0.00999)
 
 
 def test_radius_limits_must_be_in_order():
     with pytest.raises(SettingsError, match="raise it"):
         RenderSettings(radius_minimum=2.0, radius_maximum=1.0).validate()
+
+
+def test_the_page_of_settings_is_that_of_the_code():
+    text = settings_table.PAGE.read_text(encoding="utf-8")
+    assert text == settings_table.page(text), "run python tools/settings_table.py"
+    assert "| Samples | `samples` | 128 | 1 or more |" in text

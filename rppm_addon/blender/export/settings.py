@@ -6,8 +6,9 @@ import dataclasses
 import bpy
 import numpy as np
 
-from ...scene import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
+from ...scene import RenderSettings
 from ...scene.passes import COMBINED
+from ...scene.setting_info import settings_of
 from .passes import passes_of_layer
 
 
@@ -30,16 +31,12 @@ def export_settings(
         settings.passes = tuple(entry.name for entry in passes_of_layer(layer))
     stored = getattr(scene, "rppm", None)
     if stored is not None:
-        for field in dataclasses.fields(settings):
-            if hasattr(stored, field.name):
-                setattr(settings, field.name, getattr(stored, field.name))
-        settings.direct_light = DirectLight[stored.direct_light]
-        settings.density_estimation = DensityEstimation[stored.density_estimation]
-        settings.first_photon_hits = FirstPhotonHits[stored.first_photon_hits]
-        if stored.animate_seed:
+        names = [info.property_of(name) for name, info in settings_of(RenderSettings).items() if not info.where]
+        settings = settings.with_properties({name: getattr(stored, name) for name in names})
+        if stored.use_animated_seed:
             settings.seed = seed_of_frame(stored.seed, scene.frame_current)
         if viewport:
-            settings.iterations, settings.photons = stored.viewport_iterations, stored.viewport_photons
+            settings.iterations, settings.photons = stored.preview_samples, stored.preview_photons
     if viewport:
         settings.time_limit = 0.0
     return settings
@@ -74,7 +71,7 @@ def preview_settings(settings: RenderSettings) -> RenderSettings:
 def export_cubemap_centre(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
     """(3,) metres where the chosen object is in this frame; None where none is chosen."""
     stored = getattr(depsgraph.scene, "rppm", None)
-    chosen = None if stored is None else stored.cubemap_centre_object
+    chosen = None if stored is None else stored.cubemap_center_object
     return None if chosen is None else np.array(chosen.evaluated_get(depsgraph).matrix_world.translation, float)
 
 

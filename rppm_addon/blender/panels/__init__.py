@@ -5,6 +5,7 @@ import bpy
 
 from . import (
     borrowed,
+    cycles_settings,
     data,
     lights,
     motion,
@@ -21,6 +22,7 @@ from . import (
 )
 
 CLASSES = (
+    *cycles_settings.CLASSES,
     *presets.CLASSES,
     *warnings.CLASSES,
     *sampling.CLASSES,
@@ -30,7 +32,6 @@ CLASSES = (
     *lights.CLASSES,
     *simplify.CLASSES,
     *performance.CLASSES,
-    *render.ADVANCED,
     *view_layer.CLASSES,
     *data.CLASSES,
     *shading.CLASSES,

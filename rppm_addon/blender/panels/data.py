@@ -41,7 +41,7 @@ class RPPM_PT_light(RppmLightPanel, bpy.types.Panel):
                 column.prop(light, "size_y", text="Y")
             column.prop(light, "spread")
         column.separator()
-        column.prop(light.rppm, "photon_share")
+        column.prop(light.rppm, "photon_weight")
 
 
 class RPPM_PT_light_beam(RppmLightPanel, bpy.types.Panel):

@@ -43,7 +43,7 @@ def source_rows(scene: bpy.types.Scene) -> list[SourceRow]:
     if report is not None:
         # By name rather than by all of the scene's objects, which may be many thousands.
         lights = {name: _light_of(name) for name in report.source_watts}
-        factors = {name: light.rppm.photon_share for name, light in lights.items() if light is not None}
+        factors = {name: light.rppm.photon_weight for name, light in lights.items() if light is not None}
         shares = photon_shares(report.source_watts, factors)
         emitted = max(sum(report.source_photons.values()), 1)
         for name in report.source_watts:
@@ -87,7 +87,7 @@ class RPPM_PT_light_shares(RppmPanel, bpy.types.Panel):
             line = column.row()
             line.label(text=source.name, icon=source.icon)
             if source.light is not None:
-                line.prop(source.light.rppm, "photon_share", text="")
+                line.prop(source.light.rppm, "photon_weight", text="")
             else:
                 line.label(text="")
             if known:

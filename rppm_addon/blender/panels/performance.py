@@ -31,6 +31,18 @@ class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
         reading(column, "Expected Memory", bytes_text(memory.total_bytes))
 
 
+class RPPM_PT_deep_cubemap(RppmPanel, bpy.types.Panel):
+    bl_label = "Deep Cubemap"
+    bl_parent_id = "RPPM_PT_performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        column.prop(settings, "cubemap_resolution", text="Resolution")
+        column.prop(settings, "cubemap_center_object", text="Center")
+
+
 class RPPM_PT_status(RppmPanel, bpy.types.Panel):
     bl_label = "Status"
 
@@ -47,12 +59,12 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 
 
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
-    reading(column, "Iterations", f"{report.iterations} of {report.settings.iterations}")
-    reading(column, "Photons", f"{count_text(report.photons_per_iteration)} an iteration")
+    reading(column, "Samples", f"{report.iterations} of {report.settings.iterations}")
+    reading(column, "Photons", f"{count_text(report.photons_per_iteration)} a sample")
     radius = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_metres, precision=4)
     reading(column, "Largest Radius", radius)
     reading(column, "Memory", bytes_text(report.memory_bytes))
-    rates = f"{rate_text(report.iterations_per_second)} iterations, {rate_text(report.photons_per_second)} photons"
+    rates = f"{rate_text(report.iterations_per_second)} samples, {rate_text(report.photons_per_second)} photons"
     reading(column, "Per Second", rates)
     reading(column, "Time", f"{seconds_text(report.seconds)}, {seconds_text(report.build_seconds)} of it building")
     if report.density_estimation:
@@ -83,12 +95,12 @@ class RPPM_PT_last_renders(RppmPanel, bpy.types.Panel):
 
 _COMPARED = (
     ("Resolution", lambda report: f"{report.width} x {report.height}"),
-    ("Iterations", lambda report: str(report.iterations)),
+    ("Samples", lambda report: str(report.iterations)),
     ("Photons", lambda report: count_text(report.photons)),
     ("Time", lambda report: seconds_text(report.seconds)),
     ("Building", lambda report: seconds_text(report.build_seconds)),
     ("Photons/s", lambda report: rate_text(report.photons_per_second)),
-    ("Iterations/s", lambda report: rate_text(report.iterations_per_second)),
+    ("Samples/s", lambda report: rate_text(report.iterations_per_second)),
     ("Memory", lambda report: bytes_text(report.memory_bytes)),
     ("Triangles", lambda report: count_text(report.triangles)),
     ("Warnings", lambda report: str(report.warning_count)),
@@ -97,4 +109,4 @@ _COMPARED = (
 
 
 STATUS = (RPPM_PT_status,)
-CLASSES = (RPPM_PT_performance, RPPM_PT_last_renders)
+CLASSES = (RPPM_PT_performance, RPPM_PT_deep_cubemap, RPPM_PT_last_renders)

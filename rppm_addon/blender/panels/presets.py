@@ -10,12 +10,12 @@ from bl_ui.utils import PresetPanel
 FOLDER = Path(__file__).resolve().parents[1]
 """Holds ``presets/rppm``, where Blender looks for the presets that come with the extension."""
 SETTINGS = (
-    "iterations",
+    "samples",
     "photons",
     "direct_light",
-    "final_gather",
-    "camera_path_length",
-    "photon_path_length",
+    "use_final_gather",
+    "max_camera_bounces",
+    "max_photon_bounces",
     "radius_scale",
     "alpha",
 )

@@ -84,9 +84,9 @@ class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
             column.prop(thing, f"visible_{name}", text=name.capitalize())
         if thing.type != "LIGHT":
             column.prop(thing, "visible_shadow", text="Shadow")
-            column.separator()
-            column.prop(thing, "is_shadow_catcher")
-            column.prop(thing, "is_holdout")
+            mask = column.column(heading="Mask")
+            mask.prop(thing, "is_holdout")
+            mask.prop(thing, "is_shadow_catcher")
 
 
 _VISIBLE_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "LIGHT"}

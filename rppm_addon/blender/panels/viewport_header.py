@@ -11,7 +11,7 @@ def draw_pause(self: bpy.types.Header, context: bpy.types.Context) -> None:
     space = context.space_data
     if context.engine == ENGINE and space.type == "VIEW_3D" and space.shading.type == "RENDERED":
         settings = context.scene.rppm
-        self.layout.prop(settings, "viewport_paused", text="", icon="PLAY" if settings.viewport_paused else "PAUSE")
+        self.layout.prop(settings, "preview_pause", text="", icon="PLAY" if settings.preview_pause else "PAUSE")
 
 
 def register() -> None:

@@ -34,8 +34,8 @@ def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         refuse_blend_options(options, data_values)
     if options.frames and options.frame is not None:
         raise SettingsError("--frame is for a still; name the frames of an animation with --frames alone")
-    if options.parts and options.iterations is None:
-        raise SettingsError("a still in --parts needs --iterations, those of all parts together")
+    if options.parts and options.samples is None:
+        raise SettingsError("a still in --parts needs --samples, those of all parts together")
     if options.scheduler and options.device:
         raise SettingsError("--device is for workers here; set RPPM_DEVICE where the workers of a scheduler start")
     if options.parts:
@@ -44,13 +44,13 @@ def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         check_places(options.output, options.frames)
     for path in options.output:
         make_folder(path)
-    names = ["frame", "photons", *(["iterations", "seconds"] if options.frames else [])]
+    names = ["frame", "photons", *(["samples", "seconds"] if options.frames else [])]
     request = FarmRequest(
         file=options.file.absolute(),
         outputs=[path.absolute() for path in options.output],
         options=_task_options(options, names),
         frames=options.frames or (),
-        iterations=options.iterations or 0,
+        iterations=options.samples or 0,
         parts=options.parts or 0,
         chunk=options.chunk,
         scheduler=options.scheduler,

@@ -11,7 +11,7 @@ from ...scene.errors import SettingsError
 from ..frame_numbers import path_of_frame
 from ..picture_files import is_whole
 
-PART = "iterations_"
+PART = "samples_"
 """Begins the names of the parts of a still and of their checkpoints."""
 
 
@@ -95,13 +95,13 @@ def still_tasks(
         options: of rppm render.
     """
     if parts > iterations:
-        raise SettingsError(f"{iterations} iterations cannot be shared out in {parts} parts; ask for fewer --parts")
+        raise SettingsError(f"{iterations} samples cannot be shared out in {parts} parts; ask for fewer --parts")
     marks = [iterations * part // parts for part in range(parts + 1)]
     tasks = []
     for first, end in pairwise(marks):
         part = folder / f"{PART}{first}_{end}.exr"
-        words = ["--iterations-range", f"{first}:{end}", "--checkpoint", str(part.with_suffix(".checkpoint.exr"))]
+        words = ["--samples-range", f"{first}:{end}", "--checkpoint", str(part.with_suffix(".checkpoint.exr"))]
         arguments = ("render", str(file), *words, "--resume", *options)
-        tasks.append(Task(arguments, (part,), words=f"iterations {first} to {end - 1}"))
+        tasks.append(Task(arguments, (part,), words=f"samples {first} to {end - 1}"))
     merge = Task(("merge", *(str(task.outputs[0]) for task in tasks)), tuple(outputs), words="merge")
     return tasks, merge

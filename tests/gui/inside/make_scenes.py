@@ -17,14 +17,14 @@ assert scene.render.engine == "RPPM", scene.render.engine
 render = scene.render
 render.resolution_x, render.resolution_y, render.resolution_percentage = *SIZE, 100
 render.image_settings.file_format, render.dither_intensity = "PNG", 0.0
-scene.rppm.iterations, scene.rppm.photons, scene.rppm.time_limit = 4, 4096, 0.0
-scene.rppm.viewport_iterations = scene.rppm.iterations
-scene.rppm.viewport_photons = scene.rppm.photons
+scene.rppm.samples, scene.rppm.photons, scene.rppm.time_limit = 4, 4096, 0.0
+scene.rppm.preview_samples = scene.rppm.samples
+scene.rppm.preview_photons = scene.rppm.photons
 save("small")
-scene.rppm.iterations = scene.rppm.viewport_iterations = 1000000
+scene.rppm.samples = scene.rppm.preview_samples = 1000000
 save("endless")
-scene.rppm.iterations, scene.rppm.photons = 2, 1024
-scene.rppm.animate_seed = False
+scene.rppm.samples, scene.rppm.photons = 2, 1024
+scene.rppm.use_animated_seed = False
 camera, shown = scene.camera, next(thing for thing in scene.objects if thing.type == "MESH")
 for frame in range(1, 8):
     for thing, step in (camera, 0.05), (shown, 0.1):

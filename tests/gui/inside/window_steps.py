@@ -73,7 +73,7 @@ def evaluate(text: str) -> object:
 
 
 def assign(path: str, value: object) -> None:
-    """Set an attribute: ``scene.rppm.iterations`` or any path from bpy."""
+    """Set an attribute: ``scene.rppm.samples`` or any path from bpy."""
     owner, name = path.rsplit(".", 1)
     setattr(evaluate(owner), name, value)
 

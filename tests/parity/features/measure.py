@@ -21,7 +21,7 @@ LIGHT = {
 }  # fmt: skip
 VALUES = {
     "iterations": 1, "photons": 64, "camera_path_length": 1, "photon_path_length": 1, "filter_width": 0.0,
-    "final_gather": False,
+    "use_final_gather": False,
 }  # fmt: skip
 SAMPLES = 32
 WRONG = 0.002

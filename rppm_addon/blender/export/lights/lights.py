@@ -32,7 +32,7 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
         strength=power,
         visibility=visibility_of(light_object),
         graph=graph,
-        photon_share=data.rppm.photon_share if hasattr(data, "rppm") else 1.0,
+        photon_weight=data.rppm.photon_weight if hasattr(data, "rppm") else 1.0,
     )
     normalize = getattr(data, "normalize", True)
     if light.kind in {LightKind.POINT, LightKind.SPOT}:

@@ -4,11 +4,11 @@ import bpy
 
 settings = bpy.context.scene.rppm
 
-settings.iterations = 128
+settings.samples = 128
 settings.photons = 0
 settings.direct_light = "RAYS"
-settings.final_gather = True
-settings.camera_path_length = 8
-settings.photon_path_length = 8
+settings.use_final_gather = True
+settings.max_camera_bounces = 7
+settings.max_photon_bounces = 7
 settings.radius_scale = 10.0
 settings.alpha = 0.7

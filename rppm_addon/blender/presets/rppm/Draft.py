@@ -4,11 +4,11 @@ import bpy
 
 settings = bpy.context.scene.rppm
 
-settings.iterations = 32
+settings.samples = 32
 settings.photons = 0
 settings.direct_light = "RAYS"
-settings.final_gather = True
-settings.camera_path_length = 6
-settings.photon_path_length = 6
+settings.use_final_gather = True
+settings.max_camera_bounces = 5
+settings.max_photon_bounces = 5
 settings.radius_scale = 15.0
 settings.alpha = 0.7

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings that RPPM and Cycles both have, copied from one to the other."""
+
+import bpy
+
+SHARED = {
+    "samples": "samples",
+    "preview_samples": "preview_samples",
+    "time_limit": "time_limit",
+    "seed": "seed",
+    "use_animated_seed": "use_animated_seed",
+    "filter_width": "filter_width",
+    "max_camera_bounces": "max_bounces",
+}
+"""RPPM's properties and Cycles' that stand for the same; exposure and transparent film are one property for both."""
+_FILTER = "BLACKMAN_HARRIS"
+"""RPPM's pixel filter."""
+
+
+def _clamped(owner: bpy.types.bpy_struct, name: str, value: float) -> float:
+    item = owner.bl_rna.properties[name]
+    return min(max(value, item.hard_min), item.hard_max) if item.type in {"INT", "FLOAT"} else value
+
+
+class _CopySettings(bpy.types.Operator):
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Where Cycles is enabled."""
+        return hasattr(context.scene, "cycles")
+
+
+class RPPM_OT_copy_from_cycles(_CopySettings):
+    """Take samples, bounces, time limit, seed and filter width from Cycles' settings"""
+
+    bl_idname = "rppm.copy_from_cycles"
+    bl_label = "Copy from Cycles"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Copy; photons take as many bounces as the camera's paths."""
+        own, cycles = context.scene.rppm, context.scene.cycles
+        for name, other in SHARED.items():
+            setattr(own, name, _clamped(own, name, getattr(cycles, other)))
+        own.max_photon_bounces = own.max_camera_bounces
+        if cycles.pixel_filter_type != _FILTER:
+            self.report({"INFO"}, "RPPM's pixel filter is Blackman-Harris; the width was taken")
+        return {"FINISHED"}
+
+
+class RPPM_OT_copy_to_cycles(_CopySettings):
+    """Give Cycles the samples, bounces, time limit, seed and pixel filter of these settings"""
+
+    bl_idname = "rppm.copy_to_cycles"
+    bl_label = "Copy to Cycles"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Copy."""
+        own, cycles = context.scene.rppm, context.scene.cycles
+        for name, other in SHARED.items():
+            setattr(cycles, other, _clamped(cycles, other, getattr(own, name)))
+        cycles.pixel_filter_type = _FILTER
+        return {"FINISHED"}
+
+
+CLASSES = (RPPM_OT_copy_from_cycles, RPPM_OT_copy_to_cycles)
