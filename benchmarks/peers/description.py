@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A scene as every renderer can be given it: triangles, three materials, four lights, a gray world, a pinhole camera.
 
-Lengths in metres, Z up, colors and radiance scene-linear Rec.709. NumPy only: adapters import this in their own
+Lengths in meters, Z up, colors and radiance scene-linear Rec.709. NumPy only: adapters import this in their own
 environments.
 """
 
@@ -146,7 +146,7 @@ class Camera:
 
     @property
     def frame(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Unit vectors: right, up, and back towards the viewer."""
+        """Unit vectors: right, up, and back toward the viewer."""
         back = np.array(self.position) - np.array(self.target)
         back = back / np.linalg.norm(back)
         right = np.cross((0.0, 0.0, 1.0), back)

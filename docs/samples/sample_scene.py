@@ -36,7 +36,7 @@ def add_faces(name, points, faces, surface):
 
 
 def color_world(scene, color, strength):
-    """A world of one colour."""
+    """A world of one color."""
     scene.world = bpy.data.worlds.new("World")
     if bpy.app.version < (5, 0):
         scene.world.use_nodes = True

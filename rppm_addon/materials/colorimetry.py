@@ -4,7 +4,7 @@
 import numpy as np
 
 WAVELENGTHS = np.arange(380.0, 781.0, 20.0) * 1e-9
-"""(21,) metres."""
+"""(21,) meters."""
 
 COLOR_MATCHING = 1e-6 * np.array(
     [
@@ -48,6 +48,6 @@ BOLTZMANN = 1.380649e-23
 
 
 def black_body(wavelength: np.ndarray, temperature: float) -> np.ndarray:
-    """Radiance of a black body in W/(m^2 sr) per metre of wavelength (metres), at a temperature in kelvin."""
+    """Radiance of a black body in W/(m^2 sr) per meter of wavelength (meters), at a temperature in kelvin."""
     energy = PLANCK * LIGHT_SPEED / (wavelength * BOLTZMANN * temperature)
     return 2.0 * PLANCK * LIGHT_SPEED**2 / (wavelength**5 * np.expm1(energy))

@@ -16,7 +16,7 @@ from .node_kinds import FLOAT, SHADER, NodeKind, SocketType
 from .nodes import KINDS
 
 LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
-"""Rec.709: how a colour becomes a number, measured in Cycles."""
+"""Rec.709: how a color becomes a number, measured in Cycles."""
 
 MIX_SHADER, ADD_SHADER, BUMP = "mix_shader", "add_shader", "bump"
 """Kinds that the compiler itself knows: two share out weights, one evaluates its input three times."""
@@ -56,7 +56,7 @@ NEUTRAL_TEXT = """void evaluate_material(Surface surface, uint first, inout Clos
     builder.closure.diffuse = vec3(0.8);
 }
 """
-"""What stands in for a graph that cannot be compiled: a grey surface."""
+"""What stands in for a graph that cannot be compiled: a gray surface."""
 
 
 class _Scope:

@@ -36,7 +36,7 @@ def profile_table(text: str) -> np.ndarray:
         raise ProfileError(f"its photometric type is {kind}, not 1, 2 or 3")
     horizontal, vertical, intensity = convert(horizontal, vertical, intensity)
     around, down = (np.radians(angles).astype(np.float32) for angles in (horizontal, vertical))
-    # As Cycles does, whose comparison with a whole turn fails by rounding: no neighbours across 360 degrees.
+    # As Cycles does, whose comparison with a whole turn fails by rounding: no neighbors across 360 degrees.
     rows = [0, *range(len(around)), max(len(around) - 2, 0)]
     above = min(1, len(down) - 1) if down[0] < 1e-7 else 0
     columns = [above, *range(len(down)), len(down) - 1]

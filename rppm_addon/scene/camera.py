@@ -34,11 +34,11 @@ class Panorama:
     field_of_view: float = math.pi
     """Radians across the circle of a fisheye."""
     lens: float = 10.5
-    """Focal length, millimetres (FISHEYE_EQUISOLID)."""
+    """Focal length, millimeters (FISHEYE_EQUISOLID)."""
     sensor: tuple[float, float] = (36.0, 36.0)
-    """Width and height of what the frame covers, millimetres (FISHEYE_EQUISOLID, FISHEYE_LENS_POLYNOMIAL)."""
+    """Width and height of what the frame covers, millimeters (FISHEYE_EQUISOLID, FISHEYE_LENS_POLYNOMIAL)."""
     polynomial: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
-    """k0 to k4: minus the angle off the axis, radians, by powers of millimetres (FISHEYE_LENS_POLYNOMIAL)."""
+    """k0 to k4: minus the angle off the axis, radians, by powers of millimeters (FISHEYE_LENS_POLYNOMIAL)."""
 
     @property
     def angle(self) -> float:
@@ -74,7 +74,7 @@ class Camera:
     matrix: np.ndarray
     """(4, 4) float64, camera to world, a rigid motion (scale removed)."""
     window: tuple[float, float, float, float]
-    """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1), metres
+    """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1), meters
     (orthographic), or shares of the frame, 0 to 1 without a shift (panorama)."""
     width: int
     """Pixels of the whole frame."""
@@ -92,7 +92,7 @@ class Camera:
 
     @property
     def pixel_size(self) -> float:
-        """Of a pixel's width: metres (orthographic) or radians; of projections that stretch, the mean."""
+        """Of a pixel's width: meters (orthographic) or radians; of projections that stretch, the mean."""
         across = self.window[1] - self.window[0]
         if self.panorama is not None:
             across *= self.panorama.angle

@@ -21,7 +21,7 @@ class MeshAttribute:
 
     domain: AttributeDomain
     values: np.ndarray
-    """(elements of the domain, 1 to 4) float32; colours are linear Rec.709."""
+    """(elements of the domain, 1 to 4) float32; colors are linear Rec.709."""
 
 
 @dataclass
@@ -33,7 +33,7 @@ class Mesh:
 
     name: str
     positions: np.ndarray
-    """(vertices, 3) float32, metres."""
+    """(vertices, 3) float32, meters."""
     corner_vertices: np.ndarray
     """(corners,) int32, the vertex of each corner."""
     corner_normals: np.ndarray
@@ -96,7 +96,7 @@ class Instance:
     object_name: str = ""
     object_index: int = 0
     color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
-    """The object's colour and alpha, for the Object Info node."""
+    """The object's color and alpha, for the Object Info node."""
     random: float = 0.0
     """0 to 1, one number for each instance."""
     particle: Particle | None = None

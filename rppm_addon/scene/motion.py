@@ -27,7 +27,7 @@ class Deformation:
     times: np.ndarray
     """(keys,) float64, as those of a Movement."""
     positions: np.ndarray
-    """(keys, vertices, 3) float32, metres."""
+    """(keys, vertices, 3) float32, meters."""
     corner_normals: np.ndarray
     """(keys, corners, 3) float32, unit."""
 

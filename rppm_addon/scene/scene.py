@@ -19,7 +19,7 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class Scene:
-    """What is to be rendered, in a right-handed world in metres."""
+    """What is to be rendered, in a right-handed world in meters."""
 
     camera: Camera
     meshes: list[Mesh] = field(default_factory=list)
@@ -32,7 +32,7 @@ class Scene:
     exposure: float = 1.0
     """Factor on every radiance of the film (Cycles' film exposure)."""
     cubemap_centre: np.ndarray | None = None
-    """(3,) metres where the deep cubemap's centre goes; None is automatic."""
+    """(3,) meters where the deep cubemap's center goes; None is automatic."""
     shutter: Shutter | None = None
     """What moves while the picture is taken; None is nothing."""
     warnings: list[str] = field(default_factory=list)

@@ -18,15 +18,15 @@ class Sky:
     sun_elevation: float = math.radians(15.0)
     """Angle of the sun above the horizon, radians; scattering types only, as all up to ozone_density."""
     sun_rotation: float = 0.0
-    """Angle from +Y towards +X, radians."""
+    """Angle from +Y toward +X, radians."""
     sun_disc: bool = True
     """Whether the sun itself is seen."""
     sun_size: float = math.radians(0.545)
-    """Full angle under which the disc is seen, radians; the sun's irradiance does not depend on it."""
+    """Full angle under which the disk is seen, radians; the sun's irradiance does not depend on it."""
     sun_intensity: float = 1.0
     """Factor of the disc's radiance; the sky's light stays as it is."""
     altitude: float = 100.0
-    """Height of the viewer above the sea, metres."""
+    """Height of the viewer above the sea, meters."""
     air_density: float = 1.0
     """Density of air molecules as a share of the Earth's."""
     aerosol_density: float = 1.0

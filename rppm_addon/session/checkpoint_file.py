@@ -2,7 +2,7 @@
 """Checkpoints of stills in OpenEXR files: the picture so far, and beside it all that it takes to go on bit for bit.
 
 The first part of a file is the film as any viewer shows it (before exposure), with the numbers of iterations that each
-pixel's passes are of and the factor of its radius; the second has what the guide of the photons learnt. Numbers are
+pixel's passes are of and the factor of its radius; the second has what the guide of the photons learned. Numbers are
 JSON in the attribute ``rppm.checkpoint``. After the EXR's own end come a mark and the SHA-256 of all before it, so
 that a file that was cut short or damaged is known before it is parsed: OpenEXR reads pixels that are damaged without
 an error.

@@ -20,7 +20,7 @@ from .results import Frame, Progress, RenderResult, RenderStatistics, empty_resu
 log = logging.getLogger(__name__)
 
 STRAY = 0.5
-"""Radii of the scene by which the camera of an animation may leave the deep cubemap's centre before it is built anew.
+"""Radii of the scene by which the camera of an animation may leave the deep cubemap's center before it is built anew.
 Measured in a room of 100 k triangles, so far off rays cost a tenth more, building a third of an iteration."""
 
 
@@ -84,7 +84,7 @@ class SlicedRender:
         """
         mapper, settings = self._mapper, self._scene.settings
         mapper.timers.reset()
-        # The pass pictures the deep cubemap: there the centre is not free.
+        # The pass pictures the deep cubemap: there the center is not free.
         inspected = DEEP_CUBEMAP.name in settings.passes
         mapper.update(self._scene, stray=0.0 if inspected else STRAY)
         if inspected:

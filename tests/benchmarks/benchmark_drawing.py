@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Style, colours and axes that all figures share."""
+"""Style, colors and axes that all figures share."""
 
 import matplotlib
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measurements of the estimator, after the paper's Figs. 9, 10, 12 and 13: values for a line in a figure's JSON.
 
-Times are seconds, lengths metres. A point's ``seconds`` are those of an iteration by stage; their sum
+Times are seconds, lengths meters. A point's ``seconds`` are those of an iteration by stage; their sum
 is the iteration's time.
 """
 

@@ -125,7 +125,7 @@ def rays(subject: Subject, clock: Clock, quick: bool) -> dict:
 
 
 def placement(subject: Subject, clock: Clock, quick: bool) -> dict:
-    """Trace times by where the centre lies, relative to the automatic place."""
+    """Trace times by where the center lies, relative to the automatic place."""
     cubemap = make_cubemap(subject)
     stride = _PLACEMENT_STRIDE if clock.is_software and not quick else 1
     places = []
@@ -223,7 +223,7 @@ def _build_embree(triangles: np.ndarray, clock: Clock, quick: bool) -> float:
 
 
 def _centres(subject: Subject, quick: bool) -> list[tuple[str, np.ndarray]]:
-    """Names and (3,) points, metres: the automatic place first."""
+    """Names and (3,) points, meters: the automatic place first."""
     rng = np.random.default_rng(3)
     low, high = np.asarray(subject.geometry.bounds_low), np.asarray(subject.geometry.bounds_high)
     middle, radius = 0.5 * (low + high), subject.geometry.radius

@@ -89,7 +89,7 @@ class Subject:
 
     @cached_property
     def host_triangles(self) -> np.ndarray:
-        """(n, 3, 3) float32, world space, metres."""
+        """(n, 3, 3) float32, world space, meters."""
         return triangles(self.mapper)
 
     @cached_property
@@ -109,7 +109,7 @@ class Subject:
 
     @cached_property
     def emitters(self) -> np.ndarray:
-        """(n, 3) points on lights within the bounds that photons leave from, metres."""
+        """(n, 3) points on lights within the bounds that photons leave from, meters."""
         points = photon_origins(self.mapper)
         low, high = self.geometry.bounds_low, self.geometry.bounds_high
         return points[np.all((points >= low) & (points <= high), axis=1)]
@@ -124,7 +124,7 @@ class Subject:
         return found
 
     def build(self, cubemap: DeepCubemap, centre=None, resolution: int = 0) -> None:
-        """Build a cubemap of the scene; at the mapper's centre where none is given. Resolution 0 is automatic."""
+        """Build a cubemap of the scene; at the mapper's center where none is given. Resolution 0 is automatic."""
         centre = np.asarray(self.automatic_centre if centre is None else centre, float)
         cubemap.build(
             self.geometry.triangles.buffer,
@@ -204,7 +204,7 @@ class SceneStore:
 
 
 def room_scene(triangle_count: int) -> Scene:
-    """room_with_meshes of the deep cubemap's tests in one grey material, lit by a square under the ceiling."""
+    """room_with_meshes of the deep cubemap's tests in one gray material, lit by a square under the ceiling."""
     corners = room_with_meshes(triangle_count)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)

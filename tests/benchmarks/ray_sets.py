@@ -32,7 +32,7 @@ def record_rays(mapper: ProgressivePhotonMapper, count: int, seed: int = 0) -> d
         directions = np.stack([u, v, -np.ones(count)], 1) @ axes.T
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
         origins = position + camera.clip_start * directions
-    # neighbours in the buffer are neighbours in the picture, as pixels are
+    # neighbors in the buffer are neighbors in the picture, as pixels are
     rows = np.lexsort([u, np.floor((v - bottom) / (top - bottom) * np.sqrt(count) / 4)])
     rays["origin"], rays["direction"] = origins[rows], directions[rows]
     rays["maximum_distance"], rays["source_triangle"] = 1e30, NO_TRIANGLE
@@ -72,7 +72,7 @@ def trace(mapper: ProgressivePhotonMapper, rays: np.ndarray) -> np.ndarray:
 
 
 def photon_origins(mapper: ProgressivePhotonMapper) -> np.ndarray:
-    """(n, 3) where an iteration's photons leave the lights, metres; sunlight starts outside of the scene."""
+    """(n, 3) where an iteration's photons leave the lights, meters; sunlight starts outside of the scene."""
     return _record_photons(mapper, 1)[0]["origin"].astype(float)
 
 

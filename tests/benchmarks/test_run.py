@@ -162,7 +162,7 @@ def test_both_radii_follow_the_factor(documents):
 
 def test_roulette_has_times_and_variances(documents):
     (line,) = documents["roulette"]["scenes"]
-    # No camera path goes on from the grey walls: where that is known, nothing is splatted there.
+    # No camera path goes on from the gray walls: where that is known, nothing is splatted there.
     assert line["seconds_without"]["direct splatting"] > 0 and line["seconds_with"]["direct splatting"] > 0
     assert line["relative_variance"] > 0 and line["iterations_at_equal_time"] >= 1
     ratio, error = line["variance_ratio"]["with"]

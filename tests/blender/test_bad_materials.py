@@ -192,7 +192,7 @@ SHADERS = [
 
 @pytest.mark.parametrize("kind", SHADERS)
 def test_extreme_sliders(scene, renderer, kind):
-    """All inputs at once; zero roughness with zero IOR and negative colours are among them."""
+    """All inputs at once; zero roughness with zero IOR and negative colors are among them."""
     material = new_material()
     node = add_node(material.node_tree, kind)
     to_surface(material, node)

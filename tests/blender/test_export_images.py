@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Image textures on colours, and what happens where an image is missing."""
+"""Image textures on colors, and what happens where an image is missing."""
 
 import bpy
 import numpy as np

@@ -281,7 +281,7 @@ def test_every_node_of_blender_is_known_by_its_sockets(scene):
 
 @pytest.mark.parametrize("output", range(8))
 def test_every_node_compiles_as_it_is_added(scene, output):
-    """Each output of each node, shown as a colour: whatever is not rendered is named, and nothing else."""
+    """Each output of each node, shown as a color: whatever is not rendered is named, and nothing else."""
     material = new_material()
     tree = material.node_tree
     for node in shader_nodes(tree):

@@ -13,7 +13,7 @@ from rppm_addon.blender.export.motion import step_times
 
 @pytest.fixture
 def quad(scene):
-    """A quad that moves along X, a metre in each frame up to FRAME and two in each one after it."""
+    """A quad that moves along X, a meter in each frame up to FRAME and two in each one after it."""
     set_world(scene)
     made = add_mesh(scene, "Quad")
     animate(made, "location", (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tangents of UV maps and colours of other spaces."""
+"""Tangents of UV maps and colors of other spaces."""
 
 import numpy as np
 import pytest

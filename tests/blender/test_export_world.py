@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The surroundings: a colour or an image, seen in the direction that Cycles sees it in."""
+"""The surroundings: a color or an image, seen in the direction that Cycles sees it in."""
 
 import bpy
 import numpy as np

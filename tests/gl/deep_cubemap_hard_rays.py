@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rays that are hard for a cubemap and for float32, made from a scene's own triangles and the centre."""
+"""Rays that are hard for a cubemap and for float32, made from a scene's own triangles and the center."""
 
 import numpy as np
 from deep_cubemap_device import ray_records
@@ -27,7 +27,7 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 
 
 class HardRays:
-    """Makes RAY records for (n, 3, 3) float32 ``triangles`` and a centre."""
+    """Makes RAY records for (n, 3, 3) float32 ``triangles`` and a center."""
 
     def __init__(self, triangles: np.ndarray, centre, seed: int) -> None:
         self.triangles = triangles
@@ -89,7 +89,7 @@ class HardRays:
             axis = rng.integers(0, 3, count)
             directions[index, axis] = rng.choice([-1.0, 1.0], count)
             origins = self._in_box(count)
-            # in the planes and lines of vertices, or of the centre
+            # in the planes and lines of vertices, or of the center
             vertices = self._corners(count)[index, rng.integers(0, 3, count)]
             vertices[::3] = centre
             exact = rng.random((count, 3)) < 0.6

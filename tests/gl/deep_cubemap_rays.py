@@ -38,7 +38,7 @@ def make_rays(kind: str, count: int, centre, seed: int) -> tuple[np.ndarray, np.
         directions = np.zeros((count, 3))
         directions[index, rng.integers(0, 3, count)] = rng.choice([-1.0, 1.0], count)
     elif kind == "in cell borders":
-        # in planes through the centre that separate faces (ratio 1) or cells
+        # in planes through the center that separate faces (ratio 1) or cells
         axis = rng.integers(0, 3, count)
         other = (axis + 1) % 3
         ratio = rng.choice([-1.0, 1.0], count) * rng.choice([1.0, 0.0, 0.5, -0.25], count)

@@ -6,7 +6,7 @@ import numpy as np
 SPHERE_CENTRE = (-0.45, -0.55, -0.3)
 TABLE_TOP = -0.25
 
-# Where a cubemap's centre may lie in the scenes below, the awkward places first of all.
+# Where a cubemap's center may lie in the scenes below, the awkward places first of all.
 CENTRES = {
     "plain": (0.05, 0.1, 0.15),
     "symmetric": (0.0, 0.0, 0.0),

@@ -49,7 +49,7 @@ class Structure:
         return 1 << int(self.state["root_exponent"])
 
     def codes(self, depths: np.ndarray) -> np.ndarray:
-        """Codes of depths (float64, metres): the bits of the float, clamped to half of the core's radius."""
+        """Codes of depths (float64, meters): the bits of the float, clamped to half of the core's radius."""
         least = np.float32(0.5) * self.state["core_radius"]
         return np.maximum(depths.astype(np.float32), least).view(np.uint32).astype(np.int64)
 
@@ -70,7 +70,7 @@ class Structure:
         return ((used_before << cut) + (part & ((1 << cut) - 1))) >> join
 
     def rows_of(self, points: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
-        """Rows of the cells that points about the centre lie in, by level from the roots down, and their depths.
+        """Rows of the cells that points about the center lie in, by level from the roots down, and their depths.
 
         Beyond a point's leaf the row is -1.
         """

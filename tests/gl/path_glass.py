@@ -16,9 +16,9 @@ from rppm_addon.scene import Mesh
 
 AIR, INDEX = 1.0, 1.5
 INTERFACE = 0.6
-"""Height of an interface above the floor, metres; all below is glass."""
+"""Height of an interface above the floor, meters; all below is glass."""
 SLAB = 0.6, 0.8
-"""Heights of a slab's faces above the floor, metres."""
+"""Heights of a slab's faces above the floor, meters."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def transmittance(index_before: float, index_behind: float, sine_before: np.ndar
 
 
 def through(layers: Sequence[Layer], sine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How far rays that start with a sine to the vertical go sideways, metres, and the transmittance of flux."""
+    """How far rays that start with a sine to the vertical go sideways, meters, and the transmittance of flux."""
     aside, passed = np.zeros_like(sine), np.ones_like(sine)
     before = layers[0].index
     for layer in layers:

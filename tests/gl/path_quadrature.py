@@ -3,7 +3,7 @@
 
 Nothing here is shared with the shaders. Points, directions and normals are (..., 3) arrays; directions have unit
 length and point away from the surface; planes have the normal on the side where the light is. Surfaces are white:
-the caller multiplies by their colours, which is exact for lobes whose reflectance is constant.
+the caller multiplies by their colors, which is exact for lobes whose reflectance is constant.
 """
 
 from collections.abc import Callable
@@ -113,7 +113,7 @@ class Spot:
         return cls(position, axis, float(light.strength[0]), np.cos(light.spot_angle / 2), light.radius)
 
     def along(self, directions: np.ndarray) -> np.ndarray:
-        """W/sr towards directions (Blender's smooth step in the cosine)."""
+        """W/sr toward directions (Blender's smooth step in the cosine)."""
         x = np.clip((directions @ self.axis - self.cosine) / (1 - self.cosine), 0, 1)
         return self.intensity * x**2 * (3 - 2 * x)
 
@@ -174,7 +174,7 @@ class Spot:
 
 
 def camera_rays(camera: Camera) -> tuple[np.ndarray, np.ndarray]:
-    """Origin (3,) and directions (H, W, 3) through pixel centres, row 0 at the bottom."""
+    """Origin (3,) and directions (H, W, 3) through pixel centers, row 0 at the bottom."""
     left, right, bottom, top = camera.window
     x = left + (right - left) * (np.arange(camera.width) + 0.5) / camera.width
     y = bottom + (top - bottom) * (np.arange(camera.height) + 0.5) / camera.height
@@ -188,7 +188,7 @@ def camera_rays(camera: Camera) -> tuple[np.ndarray, np.ndarray]:
 def lit(
     spot: Spot, scatter: Scatter, normal: np.ndarray, points: np.ndarray, viewers: np.ndarray, detail: int = 6
 ) -> np.ndarray:
-    """Radiance towards viewers of points (..., 3) that the spot lights: L x E."""
+    """Radiance toward viewers of points (..., 3) that the spot lights: L x E."""
     to_light, irradiance = spot.towards(points, detail)
     cosine = np.maximum(dot(to_light, normal), 0.0)
     return (scatter(normal, to_light, viewers[..., None, :]) * cosine * irradiance).sum(-1)
@@ -204,7 +204,7 @@ def relit(
     viewers: np.ndarray,
     detail: int = 3,
 ) -> np.ndarray:
-    """Radiance towards viewers of points (..., 3) lit by a first surface that holds all of the spot's cone: L x x E."""
+    """Radiance toward viewers of points (..., 3) lit by a first surface that holds all of the spot's cone: L x x E."""
     origins, directions, flux = spot.beams(detail)
     sources = first.hit(origins, directions)
     shape, points, viewers = points.shape[:-1], points.reshape(-1, 3), viewers.reshape(-1, 3)
@@ -229,7 +229,7 @@ def gathered(
     points: np.ndarray,
     viewers: np.ndarray,
 ) -> np.ndarray:
-    """Radiance towards viewers of points (n, 3) lit by diffuse patches (m, 3) that reflect so much flux (m,) W."""
+    """Radiance toward viewers of points (n, 3) lit by diffuse patches (m, 3) that reflect so much flux (m,) W."""
     to_patch = patches - points[:, None]
     distance2 = dot(to_patch, to_patch)
     to_patch /= np.sqrt(distance2)[..., None]

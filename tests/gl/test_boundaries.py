@@ -131,7 +131,7 @@ def test_sheets_a_millimetre_apart(renderer, radius, leaks):
 
 
 def marginal(x: np.ndarray) -> np.ndarray:
-    """Share of the kernel 2 (1 - x^2) / pi beyond a line at x radii from its centre: integral of
+    """Share of the kernel 2 (1 - x^2) / pi beyond a line at x radii from its center: integral of
     8 / (3 pi) (1 - u^2)^1.5."""
     u = np.clip(x, -1, 1)
     return 0.5 - (u * (5 - 2 * u**2) * np.sqrt(1 - u**2) + 3 * np.arcsin(u)) / (3 * np.pi)

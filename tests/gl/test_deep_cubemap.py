@@ -265,7 +265,7 @@ def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshe
             assert max(scene.cubemap.memory_bytes.values()) <= limit
             assert scene.cubemap.counts["tile"] < tiles
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
-            scene.build(0)  # again, starting with what was learnt
+            scene.build(0)  # again, starting with what was learned
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
     assert scene.cubemap.resolution < finest
     assert "allows 0 MiB in one buffer" in caplog.text and "for now cells stay at a resolution" in caplog.text

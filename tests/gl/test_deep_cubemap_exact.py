@@ -22,7 +22,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from bounding_volumes import BoundingVolumes, build_nodes
 
 RAYS = 6600
-"""Of each kind about each centre: more than two million in all."""
+"""Of each kind about each center: more than two million in all."""
 _CHUNK = 30_000  # triangles that are tested one by one in a dispatch; llvmpipe ends loops after 65535 rounds
 
 
@@ -55,7 +55,7 @@ LARGE = {
     "sponza_dabrovic_1M": "in the middle",
     "grass_instances": "on a vertex",
 }
-"""The one centre of scenes that take long to build."""
+"""The one center of scenes that take long to build."""
 
 
 def centres(triangles: np.ndarray) -> dict[str, np.ndarray]:

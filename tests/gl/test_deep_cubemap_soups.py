@@ -54,7 +54,7 @@ def test_soups_about_any_point(context, library, triangles, centre, origins, tar
 
 @st.composite
 def hard_triangles(draw):
-    """Slivers, huge triangles, needles through the centre, duplicates, degenerate ones; and the centre."""
+    """Slivers, huge triangles, needles through the center, duplicates, degenerate ones; and the center."""
     seed = draw(st.integers(0, 2**32 - 1))
     kinds = draw(
         st.lists(

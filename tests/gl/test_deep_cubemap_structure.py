@@ -140,7 +140,7 @@ def distinct(structure: Structure) -> np.ndarray:
 
 
 def clipped_extent(triangle: np.ndarray, face: int) -> np.ndarray | None:
-    """Least and greatest position, 0 to 1, of a triangle about the centre as seen on a face; None if it is not."""
+    """Least and greatest position, 0 to 1, of a triangle about the center as seen on a face; None if it is not."""
     axis = face >> 1
     turned = triangle[:, [(axis + 1) % 3, (axis + 2) % 3, axis]] * [1, 1, -1 if face & 1 else 1]
     polygon = list(turned)
@@ -200,7 +200,7 @@ def test_cells_that_hold_much_are_divided_where_that_gains(context, library, nam
                 extents[face, triangle] = clipped_extent(about[triangle], face)
             found.append(extents[face, triangle])
         if any(extent is None for extent in found):
-            continue  # touched by the margin only, or near the centre
+            continue  # touched by the margin only, or near the center
         side = structure.root_side << (2 * int(structure.level[row]))
         x, y = structure.x[row], structure.y[row]
         least_gain = int(structure.state["least_gain"])

@@ -146,7 +146,7 @@ def chain_footprints(mapper, surfaces: list, meshes: list, position: tuple, targ
     right, up, forward = camera.matrix[:3, 0], camera.matrix[:3, 1], -camera.matrix[:3, 2]
     step = 2 * half / SIZE
     x, y = np.meshgrid(*2 * [step * (np.arange(SIZE) + 0.5) - half])
-    # The pixel's centre, and points a tenth of a pixel beside it.
+    # The pixel's center, and points a tenth of a pixel beside it.
     x = x.ravel() + step * np.array([0, 0.1, -0.1, 0, 0])[:, None]
     y = y.ravel() + step * np.array([0, 0, 0, 0.1, -0.1])[:, None]
     aside = x[..., None] * right + y[..., None] * up

@@ -251,7 +251,7 @@ def test_the_variance_beside_an_emissive_wall_is_bounded(mapper, library):
         received = sample["weight"][:, 0] * sample["direction"][:, 2]
         expected = irradiance(corners - point, np.array([0, 0, 1.0]))
         assert abs(received.mean() - expected) < 4.5 * received.std() / math.sqrt(SAMPLES) + 1e-4 * expected
-        # Second moment by area, over cells that shrink towards the point's foot.
+        # Second moment by area, over cells that shrink toward the point's foot.
         edges = np.concatenate([-np.geomspace(0.6, 1e-5, 400), np.geomspace(1e-5, 0.4, 400)])
         heights = np.concatenate([[0], np.geomspace(1e-5, 1, 800)])
         y, z = np.meshgrid((edges[1:] + edges[:-1]) / 2, (heights[1:] + heights[:-1]) / 2)

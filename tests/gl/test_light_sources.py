@@ -67,7 +67,7 @@ IRRADIANCE = {  # on the floor straight below, W/m^2
     "sun": 2.0,
     "wide sun": 2.0,
     "disk": 5 * math.pi * 0.16 / (4 + 0.16),
-    # Straight down, the mean of the colours 0.5, 0.5 and 1 is 2/3.
+    # Straight down, the mean of the colors 0.5, 0.5 and 1 is 2/3.
     "mapped point": 3 / 4 * 2 / 3,
     "mapped spot": 3 / 4 * 2 / 3,
 }

@@ -64,7 +64,7 @@ WITHOUT_EXTENT: dict[str, Build] = {
 """No scattered path meets such a light: by rays alone."""
 
 CEILING, PATCHES = 0.7, 28
-"""Height of the ceiling between two glossy surfaces, metres, and quadrature nodes along a side of it."""
+"""Height of the ceiling between two glossy surfaces, meters, and quadrature nodes along a side of it."""
 
 
 def glossy_diffuse_glossy(roughness: float, mode: DirectLight) -> Case:

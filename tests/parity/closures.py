@@ -80,7 +80,7 @@ INSIDE_OUT = View((0.0, -1.0, -1.6), (0.3, 0.4, 1.2))
 
 
 def _camera_rays(view: View) -> np.ndarray:
-    """(pixels, 3) points of the plane at the pixels' centres."""
+    """(pixels, 3) points of the plane at the pixels' centers."""
     camera(view.camera, (0.0, 0.0, 0.0), ANGLE)
     bpy.context.view_layer.update()
     matrix = np.array(bpy.context.scene.camera.matrix_world)

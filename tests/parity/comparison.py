@@ -34,7 +34,7 @@ def block_means(pictures: np.ndarray) -> np.ndarray:
 
 
 def _smooth(values: np.ndarray) -> np.ndarray:
-    """Mean over the 3x3 neighbours: few seeds tell a block's variance only together with its neighbours'."""
+    """Mean over the 3x3 neighbors: few seeds tell a block's variance only together with its neighbours'."""
     padded = np.pad(values, 1, mode="edge")
     rows, columns = values.shape
     return sum(padded[i : i + rows, j : j + columns] for i in range(3) for j in range(3)) / 9.0
@@ -109,7 +109,7 @@ def compare(
 
 
 def write_pair(name: str, rppm: np.ndarray, reference: np.ndarray, folder: Path = OUTPUT) -> None:
-    """RPPM | reference | difference (grey is none, full range is a fifth of white) to out/parity/ or a folder."""
+    """RPPM | reference | difference (gray is none, full range is a fifth of white) to out/parity/ or a folder."""
     white = np.percentile(reference, 99) or 1.0
 
     def shown(values: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 
 FOLDER holds .blend files with materials; OUT gets the sheets sheet_01.png, ... and table.txt. As many materials as
 --count says are drawn at random, always the same ones for a --seed, and put on monkeys with texture coordinates over
-a checkered floor, under an area light and a grey world, ten in a picture. Each sheet has RPPM's row of pictures above
+a checkered floor, under an area light and a gray world, ten in a picture. Each sheet has RPPM's row of pictures above
 Cycles'. The table says for each material RPPM's mean over Cycles' by channel, the difference of 8x8 blocks as a
 share of Cycles' mean, and the warnings. --names renders the materials of those names only (with commas between them).
 """

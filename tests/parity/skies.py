@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cycles' Sky Texture as numbers: renders of nothing but the world, a value per pixel centre."""
+"""Cycles' Sky Texture as numbers: renders of nothing but the world, a value per pixel center."""
 
 import math
 from collections.abc import Iterable, Iterator

@@ -32,7 +32,7 @@ PHOTONS = {"photons": 4096, "photon_path_length": 6, "iterations": 24, "seeds": 
 
 
 def room() -> bpy.types.Object:
-    """A box of coloured sides with a ball in it, and a camera in its middle, looking along Y, tilted."""
+    """A box of colored sides with a ball in it, and a camera in its middle, looking along Y, tilted."""
     new_scene(world=0.0)
     box((2.0, 2.5, 1.5), material(DIFFUSE, Color=(0.4, 0.4, 0.4)))
     for at, turn, color in (

@@ -45,7 +45,7 @@ def _glass_and_metal():
 def _glowing_quad():
     plane(2.0, material(DIFFUSE, Color=0.5))
     plane(0.5, material(EMISSION, Color=1.0, Strength=4.0), place(at=(0.0, 0.0, 1.0)))
-    return 2 * math.pi * 4.0  # both sides of a square metre
+    return 2 * math.pi * 4.0  # both sides of a square meter
 
 
 @pytest.mark.parametrize("build", [_open_floor, _closed_box, _glass_and_metal, _glowing_quad])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values of the nodes that compute numbers, vectors and colours, against Cycles'."""
+"""Values of the nodes that compute numbers, vectors and colors, against Cycles'."""
 
 from collections.abc import Callable
 
@@ -244,7 +244,7 @@ def set_ramp(interpolation: str, color_mode: str = "RGB") -> Callable:
 
 
 def set_stepped_hue(node: bpy.types.Node) -> None:
-    """An interpolation that the user no longer sees, since the colours are mixed as HSV."""
+    """An interpolation that the user no longer sees, since the colors are mixed as HSV."""
     set_ramp("CONSTANT")(node)
     node.color_ramp.color_mode = "HSV"
 

@@ -43,7 +43,7 @@ def context():
 
 
 def brightest_beside(pixels: np.ndarray) -> np.ndarray:
-    """The maximum of each pixel and its eight neighbours."""
+    """The maximum of each pixel and its eight neighbors."""
     square = pixels.reshape(closures.SIZE, closures.SIZE, 3)
     padded = np.pad(square, ((1, 1), (1, 1), (0, 0)), mode="edge")
     size = closures.SIZE
@@ -55,7 +55,7 @@ def assert_alike(
 ) -> None:
     """Every pixel's channels agree within a share of the brightest beside it, or of a fiftieth of all.
 
-    The neighbours count because Cycles looks anywhere in a pixel's middle hundredth.
+    The neighbors count because Cycles looks anywhere in a pixel's middle hundredth.
     """
     points, cycles = closures.by_cycles(kind, BL_IDNAMES[kind], view, options, inputs, normal)
     with context.moderngl:
@@ -231,7 +231,7 @@ FILMS = {
 def test_thin_films(context, tmp_path, name, thickness):
     """The mean of each channel: one angle stands for all microfacets, and Gaussians for the eye's sensitivities.
 
-    On black glass a bare surface would be grey; the film's colours part by more than the tolerance.
+    On black glass a bare surface would be gray; the film's colors part by more than the tolerance.
     """
     kind, inputs = FILMS[name]
     inputs = inputs | {"thin_film_thickness": thickness}

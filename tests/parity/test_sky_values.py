@@ -88,7 +88,7 @@ def test_hosek_wilkie(elevation, azimuth, turbidity, albedo):
 def _compare(sky: Sky, mean: float, pixel: float) -> None:
     """mean: allowed difference of each channel's mean; pixel: of each pixel's channel, and a hundredth of it of the
     mean and of the pixel's brightest channel. They cover Cycles' single precision: heights above the sea are whole half
-    metres, and a channel near the end of Rec.709's gamut is a small difference of X, Y and Z."""
+    meters, and a channel near the end of Rec.709's gamut is a small difference of X, Y and Z."""
     reference, directions = panorama(sky)
     ours = sky_radiance(sky, directions)
     level, brightest = reference.mean(axis=0), reference.max(axis=1, keepdims=True)
@@ -113,7 +113,7 @@ SUNS = [
 @pytest.mark.parametrize("sky_type", [SINGLE, MULTIPLE])
 @pytest.mark.parametrize("elevation, size, altitude, densities", SUNS)
 def test_sun_disc(sky_type, elevation, size, altitude, densities):
-    """Cycles with the disc less Cycles without it."""
+    """Cycles with the disk less Cycles without it."""
     sky = _sky(sky_type, elevation, altitude, densities, rotation=25.0, sun_size=math.radians(size), sun_intensity=1.5)
     angle = 1.2 * sky.sun_size
     with_disc, directions = close_up(sky, angle)

@@ -36,7 +36,7 @@ OBJECTS = [
 
 @pytest.mark.parametrize(("flag", "mode"), OBJECTS)
 def test_objects_that_some_rays_do_not_see(renderer, flag, mode):
-    """A red ball between a grey floor and a mirror."""
+    """A red ball between a gray floor and a mirror."""
     new_scene()
     plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7)))
     plane(3.0, material(GLOSSY, Color=(0.9, 0.9, 0.9), Roughness=0.0), place(at=(0.0, 1.5, 1.0), turn=(90.0, 0.0, 0.0)))
@@ -83,7 +83,7 @@ def test_falloff_of_lamps(renderer, kind, output, mode):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_emission_that_varies_over_a_mesh(renderer, mode):
-    """A square of two triangles with a coarse checker of two colours, which also fades towards grazing angles."""
+    """A square of two triangles with a coarse checker of two colors, which also fades toward grazing angles."""
     new_scene()
     plane(3.0, material(DIFFUSE, Color=(0.8, 0.8, 0.8)))
     camera((0.0, -1.0, 6.0), (0.0, 0.0, 0.0), 30.0)

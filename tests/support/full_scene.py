@@ -30,7 +30,7 @@ from support.lobes import Lobe, LobeKind, image_world, material
 
 
 def graph_of_everything() -> NodeGraph:
-    """Links, numbers, colours, options of both kinds, a table, an image and an attribute."""
+    """Links, numbers, colors, options of both kinds, a table, an image and an attribute."""
     graph = NodeGraph()
     place = graph.add("uvmap", "uv", attribute="UVMap")
     image = graph.add("tex_image", "color", name="Picture", image=0, vector=place, options={"interpolation": "Cubic"})

@@ -10,7 +10,7 @@ from rppm_addon.scene import Link, Material, NodeGraph, World
 
 
 class LobeKind(enum.Enum):
-    """Shader nodes, with the names of their colour and of their output."""
+    """Shader nodes, with the names of their color and of their output."""
 
     DIFFUSE = "bsdf_diffuse"
     GLOSSY = "bsdf_glossy"

@@ -15,7 +15,7 @@ def random_leaves(count: int, two_sided: bool) -> np.ndarray:
     emissive["radiance"], emissive["area"] = generator.random((count, 3)), generator.random(count)
     leaves = triangle_leaves(emissive, corners)
     leaves["two_sided"] = two_sided
-    # Neighbours that face nearly alike, so that not all cones are whole spheres.
+    # Neighbors that face nearly alike, so that not all cones are whole spheres.
     leaves["axis"] = [0, 0, 1] + 0.4 * generator.normal(size=(count, 3))
     leaves["axis"] /= np.linalg.norm(leaves["axis"], axis=1, keepdims=True)
     if two_sided:

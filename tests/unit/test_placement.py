@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the deep cubemap's centre goes."""
+"""Where the deep cubemap's center goes."""
 
 from types import SimpleNamespace
 

@@ -30,7 +30,7 @@ def test_no_air_no_sky(sky_type):
 
 
 def test_a_black_body_gives_the_solar_constant():
-    """All wavelengths together give sigma T^4 / pi, and the sun's disc about 1361 W/m^2 of it."""
+    """All wavelengths together give sigma T^4 / pi, and the sun's disk about 1361 W/m^2 of it."""
     wavelength = np.geomspace(5e-8, 1e-3, 20001)
     between = 0.5 * (black_body(wavelength[1:], SUN_TEMPERATURE) + black_body(wavelength[:-1], SUN_TEMPERATURE))
     radiance = (between * np.diff(wavelength)).sum()
@@ -40,7 +40,7 @@ def test_a_black_body_gives_the_solar_constant():
 
 @pytest.mark.parametrize("sky_type", SCATTERING)
 def test_limb_darkening_takes_a_fifth(sky_type):
-    """The mean of 1 - 0.6 (1 - sqrt(1 - x^2)) over a disc is 0.8, and size does not change the irradiance."""
+    """The mean of 1 - 0.6 (1 - sqrt(1 - x^2)) over a disk is 0.8, and size does not change the irradiance."""
     elevation = math.radians(90.0)
     small = sun_disc(Sky(sky_type, elevation, sun_size=0.02))
     large = sun_disc(Sky(sky_type, elevation, sun_size=0.04))
@@ -80,7 +80,7 @@ def test_unknown_types_are_refused():
 
 
 def test_picture_is_laid_out_as_environments_are():
-    """u = 1/2 - azimuth / 2 pi from +X towards +Y: +Y is a quarter across. Rows go up."""
+    """u = 1/2 - azimuth / 2 pi from +X toward +Y: +Y is a quarter across. Rows go up."""
     height = 64
     sky = Sky(sun_elevation=0.6, sun_rotation=0.0)
     picture = sky_picture(sky, height)

@@ -2,7 +2,7 @@
 """Shader nodes.
 
 Stand-ins: GGX for the distribution of Ashikhmin and Shirley; diffuse for subsurface scattering and
-for toon shading, whose glossy part is GGX; for hair, GGX stretched across the fibre and translucency; for the physical
+for toon shading, whose glossy part is GGX; for hair, GGX stretched across the fiber and translucency; for the physical
 conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
 """
 

@@ -5,7 +5,7 @@ Light scattered once is summed along each direction, in four wavelengths. The li
 rest of the atmosphere is a fitted function of the sun's height there, that from the ground is that of a diffuse
 plane below (after Hillaire 2020; fits and constants are those of Fernando Garcia Linan's spectral sky, 2023, on
 which Cycles' is built: spectra of the sun by the NREL, Rayleigh scattering by Bucholtz 1995, ozone by Gorshelev 2014,
-a city's aerosols by Hess 1998). Lengths here are in kilometres.
+a city's aerosols by Hess 1998). Lengths here are in kilometers.
 """
 
 import numpy as np
@@ -46,7 +46,7 @@ _LINAN_TO_REC709 = np.array(
         (8.572844237945445, -11.103384660054624, 117.47585277566478),
     ]
 )
-"""(4, 3) weights of the four wavelengths in Rec.709, fitted to colours of spectra."""
+"""(4, 3) weights of the four wavelengths in Rec.709, fitted to colors of spectra."""
 _HIS_XYZ_TO_REC709 = np.array(
     [
         (3.2404542, -1.5371385, -0.4985314),
@@ -74,20 +74,20 @@ def _coefficients(height: np.ndarray, sky: Sky) -> tuple[np.ndarray, np.ndarray,
 
 
 def viewer_radius(sky: Sky) -> np.ndarray:
-    """() float64 distance of the viewer to the Earth's centre, km, to half a metre: as Cycles' single precision has it,
+    """() float64 distance of the viewer to the Earth's center, km, to half a meter: as Cycles' single precision has it,
     which shows in what a viewer near the ground sees below."""
     return np.float64(np.float32(EARTH_RADIUS + np.clip(sky.altitude * 1e-3, LOWEST, HIGHEST)))  # type: ignore[return-value]
 
 
 def _to_space(radius: np.ndarray, cosine: np.ndarray) -> np.ndarray:
-    """Way from a distance to the Earth's centre to space, km; rays go through the Earth."""
+    """Way from a distance to the Earth's center to space, km; rays go through the Earth."""
     return -radius * cosine + np.sqrt(np.maximum(radius**2 * (cosine**2 - 1.0) + ATMOSPHERE_RADIUS**2, 0.0))
 
 
 def transmittance(radius: np.ndarray, cosine: np.ndarray, sky: Sky) -> np.ndarray:
     """(..., 4) share of light that comes from space to a point.
 
-    radius: distance to the Earth's centre, km; cosine: of the angle to the zenith; they broadcast.
+    radius: distance to the Earth's center, km; cosine: of the angle to the zenith; they broadcast.
     """
     step = _to_space(radius, cosine) / STEPS
     depth = 0.0

@@ -26,7 +26,7 @@ _FORMULAS = {"PREETHAM": sky_preetham.radiance, "HOSEK_WILKIE": sky_hosek_wilkie
 def sky_radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
     """(n, 3) float32 radiance in W/(m^2 sr), linear Rec.709, in unit directions (n, 3) with +Z up.
 
-    Without the sun's disc, which ``sun_disc`` gives, and before the strength of the Background node. Raises
+    Without the sun's disk, which ``sun_disc`` gives, and before the strength of the Background node. Raises
     ValueError where the sky's type is unknown.
     """
     if sky.sky_type not in SKY_TYPES:
@@ -39,10 +39,10 @@ def sky_radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
 def sky_picture(sky: Sky, height: int = 256) -> np.ndarray:
     """(height, 2 height, 4) float32 equirectangular pixels as scene.Image and World take them, row 0 looking down.
 
-    Each pixel is the radiance in its middle; the horizon lies between two rows. Without the sun's disc, which would
+    Each pixel is the radiance in its middle; the horizon lies between two rows. Without the sun's disk, which would
     be smaller than a pixel: a sun light has to stand in for it.
     """
-    azimuth = (0.5 - (np.arange(2 * height) + 0.5) / (2 * height)) * 2.0 * np.pi  # from +X towards +Y
+    azimuth = (0.5 - (np.arange(2 * height) + 0.5) / (2 * height)) * 2.0 * np.pi  # from +X toward +Y
     elevation = (((np.arange(height) + 0.5) / height - 0.5) * np.pi)[:, None]
     along = np.cos(elevation)
     x, y, z = along * np.cos(azimuth), along * np.sin(azimuth), np.sin(elevation) + 0.0 * azimuth

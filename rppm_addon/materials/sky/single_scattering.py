@@ -3,7 +3,7 @@
 
 Air, aerosols and ozone lie around a spherical Earth. Along each direction sunlight is scattered in STEPS places, and
 absorbed on its way there and from there. 21 wavelengths. Constants are those that make the pictures equal Cycles':
-the sun is a black body, Rayleigh's law holds without dispersion, aerosols are grey, ozone has measured spectra.
+the sun is a black body, Rayleigh's law holds without dispersion, aerosols are gray, ozone has measured spectra.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from .table import ROWS, azimuths_from_sun, mirrored, row_elevations
 EARTH_RADIUS = 6360e3
 ATMOSPHERE_RADIUS = 6420e3
 LOWEST, HIGHEST = 1.0, 59999.0
-"""Where the viewer is held, metres above the sea."""
+"""Where the viewer is held, meters above the sea."""
 AIR_SCALE_HEIGHT = 8000.0
 AEROSOL_SCALE_HEIGHT = 1200.0
 STEPS = 32
@@ -69,12 +69,12 @@ _NODES = _NODES / 25.0
 
 
 def viewer_radius(sky: Sky) -> np.ndarray:
-    """() float64 distance of the viewer to the Earth's centre, metres; Cycles keeps it inside the atmosphere."""
+    """() float64 distance of the viewer to the Earth's center, meters; Cycles keeps it inside the atmosphere."""
     return np.float64(EARTH_RADIUS + np.clip(sky.altitude, LOWEST, HIGHEST))  # type: ignore[return-value]
 
 
 def _densities(height: np.ndarray, sky: Sky) -> list[np.ndarray]:
-    """Densities of air, aerosols and ozone at heights in metres, each of the height's shape."""
+    """Densities of air, aerosols and ozone at heights in meters, each of the height's shape."""
     ozone = np.minimum(height / 15e3 - 2.0 / 3.0, 8.0 / 3.0 - height / 15e3)
     return [
         sky.air_density * np.exp(height / -AIR_SCALE_HEIGHT),
@@ -84,9 +84,9 @@ def _densities(height: np.ndarray, sky: Sky) -> list[np.ndarray]:
 
 
 def _depths(radius: np.ndarray, cosine: np.ndarray, sky: Sky) -> np.ndarray:
-    """(..., 3) lengths of air, aerosols and ozone at sea level's density, in metres, from a point to space.
+    """(..., 3) lengths of air, aerosols and ozone at sea level's density, in meters, from a point to space.
 
-    radius: the point's distance to the Earth's centre, metres; cosine: of the ray's angle to the zenith.
+    radius: the point's distance to the Earth's center, meters; cosine: of the ray's angle to the zenith.
     """
     length = -radius * cosine + np.sqrt(np.maximum(radius**2 * (cosine**2 - 1.0) + ATMOSPHERE_RADIUS**2, 0.0))
     depths = np.zeros((3, *np.shape(radius)), np.float32)
@@ -106,7 +106,7 @@ def sky_table(sky: Sky) -> np.ndarray:
     elevation = row_elevations(0.0)
     upper = elevation[ROWS // 2 :]
     table = mirrored(_upper_half(sky, upper))
-    # Below the horizon Cycles lets the horizon's colour fade: there is no ground.
+    # Below the horizon Cycles lets the horizon's color fade: there is no ground.
     fade = np.maximum(1.0 + 2.5 * np.sin(elevation[: ROWS // 2]), 0.0) ** 3
     return np.concatenate([fade[:, None, None].astype(np.float32) * table[0], table])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sun's disc in a simulated sky, with the radiance that Cycles gives it."""
+"""The sun's disk in a simulated sky, with the radiance that Cycles gives it."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ SMALLEST = 0.0005
 
 @dataclass(frozen=True)
 class SunDisc:
-    """A disc in the sky. Its light comes on top of the sky's."""
+    """A disk in the sky. Its light comes on top of the sky's."""
 
     direction: np.ndarray
     """(3,) float64 unit vector to the middle."""
@@ -28,10 +28,10 @@ class SunDisc:
     top: np.ndarray
     """(3,) float64 at the upper edge."""
     horizon: float
-    """Elevation in radians below which the Earth hides the disc."""
+    """Elevation in radians below which the Earth hides the disk."""
 
     def radiance(self, directions: np.ndarray) -> np.ndarray:
-        """(n, 3) float32 in unit directions (n, 3); zero beside the disc."""
+        """(n, 3) float32 in unit directions (n, 3); zero beside the disk."""
         directions = np.asarray(directions, np.float64)
         from_middle = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(directions - self.direction, axis=1), 1.0))
         elevation = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))
@@ -43,7 +43,7 @@ class SunDisc:
         return np.where(seen[:, None], limb[:, None] * np.maximum(color, 0.0), 0.0).astype(np.float32)
 
     def irradiance(self, rings: int = 32, sectors: int = 128) -> np.ndarray:
-        """(3,) float64 irradiance on a surface that faces the disc, W/m^2 in Rec.709: the strength of a sun light
+        """(3,) float64 irradiance on a surface that faces the disk, W/m^2 in Rec.709: the strength of a sun light
         that stands in for it. The midpoint rule over so many rings of equal area and sectors; cosines count as 1."""
         radius = 0.5 * self.angle * np.sqrt((np.arange(rings) + 0.5) / rings)
         around = 2.0 * np.pi * (np.arange(sectors) + 0.5) / sectors
@@ -58,7 +58,7 @@ class SunDisc:
 
 
 def sun_disc(sky: Sky) -> SunDisc | None:
-    """The disc of a sky whose type has one; None where it is switched off or the Earth hides it."""
+    """The disk of a sky whose type has one; None where it is switched off or the Earth hides it."""
     if not sky.scatters or not sky.sun_disc or sky.sun_intensity <= 0.0:
         return None
     angle = max(sky.sun_size, SMALLEST)
@@ -70,7 +70,7 @@ def sun_disc(sky: Sky) -> SunDisc | None:
     horizon = -np.arccos(model.EARTH_RADIUS / model.viewer_radius(sky))
     if above <= (max(horizon, 0.0) if single else horizon):
         return None
-    if single:  # Cycles does not look at the sun below 0 there, but lets the disc hang over the edge.
+    if single:  # Cycles does not look at the sun below 0 there, but lets the disk hang over the edge.
         below = max(below, 0.0)
     # Cycles' single precision, which makes the usual sun 0.1 % darker.
     solid_angle = 2.0 * np.pi * float(np.float32(1.0) - np.cos(np.float32(angle) / np.float32(2.0)))

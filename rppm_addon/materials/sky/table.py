@@ -34,7 +34,7 @@ def mirrored(half: np.ndarray) -> np.ndarray:
 def look_up(table: np.ndarray, directions: np.ndarray, sun_rotation: float) -> np.ndarray:
     """(n, 3) float32 bilinear values of a table (ROWS, COLUMNS, 3) in unit directions (n, 3), z up.
 
-    sun_rotation: the sun's azimuth from +Y towards +X, radians.
+    sun_rotation: the sun's azimuth from +Y toward +X, radians.
     """
     directions = np.asarray(directions, np.float64)
     horizontal = np.hypot(directions[:, 0], directions[:, 1])

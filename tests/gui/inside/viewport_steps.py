@@ -116,7 +116,7 @@ def move_object(name: str, offset: list[float]) -> None:
 
 
 def paint(material: str, color: list[float]) -> None:
-    """Give all shader nodes of a material that have a colour this one."""
+    """Give all shader nodes of a material that have a color this one."""
     for node in bpy.data.materials[material].node_tree.nodes:
         for name in ("Base Color", "Color"):
             if name in node.inputs:
@@ -193,7 +193,7 @@ def drawn() -> bool:
 
 
 def changed() -> float | None:
-    """When the watched pixels first were others than at first, and not of one colour; None while they are not."""
+    """When the watched pixels first were others than at first, and not of one color; None while they are not."""
     for when, value, _, spread in _drawn:
         if value != _drawn[0][1] and spread > ONE_COLOR:
             return when

@@ -335,5 +335,5 @@ value("Fresnel", "of a bump", lambda net: net.out("Fresnel", inputs={"Normal": _
 value(
     "Layer Weight", "of a bump", lambda net: net.out("LayerWeight", "Facing", {"Normal": _bump({"Distance": 0.3})(net)})
 )
-value("Wireframe", "metres", lambda net: net.out("Wireframe", inputs={"Size": 0.06}), 1.0, 0.1)
+value("Wireframe", "meters", lambda net: net.out("Wireframe", inputs={"Size": 0.06}), 1.0, 0.1)
 value("Wireframe", "pixels", lambda net: net.out("Wireframe", inputs={"Size": 2.0}, use_pixel_size=True), 1.0, 0.1)

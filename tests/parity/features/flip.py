@@ -32,7 +32,7 @@ def _opponent(linear: np.ndarray) -> np.ndarray:
 
 
 def _lab(opponent: np.ndarray) -> np.ndarray:
-    """CIELAB of filtered pictures, their colours brought into the gamut, chroma scaled by lightness (Hunt)."""
+    """CIELAB of filtered pictures, their colors brought into the gamut, chroma scaled by lightness (Hunt)."""
     y = (opponent[..., 0] + 16.0) / 116.0
     xyz = np.stack([opponent[..., 1] / 500.0 + y, y, y - opponent[..., 2] / 200.0], axis=-1) * _WHITE
     xyz = np.clip(xyz @ np.linalg.inv(_TO_XYZ).T, 0.0, 1.0) @ _TO_XYZ.T / _WHITE

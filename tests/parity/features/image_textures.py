@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Image textures: projection, extension, interpolation, colour space, alpha, depth, and their use."""
+"""Image textures: projection, extension, interpolation, color space, alpha, depth, and their use."""
 
 import atexit
 import shutil
@@ -27,7 +27,7 @@ def folder() -> Path:
 
 
 def _pixels(width: int, height: int, seed: int) -> np.ndarray:
-    """(H, W, 4) random colours from 0 to 1, alpha from 0.2 to 1."""
+    """(H, W, 4) random colors from 0 to 1, alpha from 0.2 to 1."""
     pixels = np.random.default_rng(seed).random((height, width, 4))
     pixels[..., 3] = 0.2 + 0.8 * pixels[..., 3]
     return pixels
@@ -35,7 +35,7 @@ def _pixels(width: int, height: int, seed: int) -> np.ndarray:
 
 @cache
 def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
-    """A small picture file: png, opaque (png without alpha), grey (png), deep (png with 16 bits), exr."""
+    """A small picture file: png, opaque (png without alpha), gray (png), deep (png with 16 bits), exr."""
     path = folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
     pixels = _pixels(width, height, 5)
     if kind == "premultiplied":
@@ -45,11 +45,11 @@ def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
         OpenEXR.File(header, planes).write(str(path))
     elif kind == "deep":
-        grey = np.uint16(65535 * pixels[..., 0])
-        Image.fromarray(grey).save(path)
+        gray = np.uint16(65535 * pixels[..., 0])
+        Image.fromarray(gray).save(path)
     else:
         shown = np.uint8(np.round(255 * pixels))
-        shown = {"png": shown, "premultiplied": shown, "opaque": shown[..., :3], "grey": shown[..., 0]}[kind]
+        shown = {"png": shown, "premultiplied": shown, "opaque": shown[..., :3], "gray": shown[..., 0]}[kind]
         Image.fromarray(shown).save(path)
     return str(path)
 
@@ -112,9 +112,9 @@ for _blend in (0.2, 1.0):
         texture(projection="BOX", projection_blend=_blend, mapping=("Object", 0.1, 0.8)),
     )
 for _space in ("sRGB", "Non-Color", "Linear Rec.709"):
-    value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"))
+    value(GROUP, f"color space {_space}", texture(space=_space, kind="opaque"))
 for _space in ("ACEScg", "Linear Rec.2020", "Linear CIE-XYZ E", "Display P3", "Rec.1886"):
-    value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.5, 0.8)
+    value(GROUP, f"color space {_space}", texture(space=_space, kind="opaque"), 0.5, 0.8)
 for _space in (
     "Filmic sRGB",
     "Filmic Log",
@@ -123,10 +123,10 @@ for _space in (
     "ACES 2.0 sRGB",
     "Rec.2100-HLG",
 ):
-    value(GROUP, f"colour space {_space}", texture(space=_space, kind="opaque"), 0.05, 0.5)
+    value(GROUP, f"color space {_space}", texture(space=_space, kind="opaque"), 0.05, 0.5)
 value(
     GROUP,
-    "colour space Filmic sRGB, alpha",
+    "color space Filmic sRGB, alpha",
     texture(space="Filmic sRGB"),
     0.1,
     0.5,
@@ -134,11 +134,11 @@ value(
 )
 for _space in ("Linear Rec.709", "Non-Color", "sRGB", "ACEScg"):
     value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3, 0.5)
-value(GROUP, "16 bits, grey", texture(kind="deep"))
-value(GROUP, "8 bits, grey", texture(kind="grey"))
+value(GROUP, "16 bits, gray", texture(kind="deep"))
+value(GROUP, "8 bits, gray", texture(kind="gray"))
 for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"):
     _kind = "premultiplied" if _alpha == "PREMUL" else "png"
-    value(GROUP, f"alpha {_alpha}, colour", texture(alpha=_alpha, kind=_kind))
+    value(GROUP, f"alpha {_alpha}, color", texture(alpha=_alpha, kind=_kind))
     value(GROUP, f"alpha {_alpha}, alpha", texture("Alpha", alpha=_alpha))
 
 
@@ -224,7 +224,7 @@ for _movie, _what in ((False, "sequence"), (True, "movie")):
 
 
 def _image_bump(net):
-    height = texture(kind="grey", interpolation="Cubic")(net)
+    height = texture(kind="gray", interpolation="Cubic")(net)
     return net.out("Bump", inputs={"Height": height, "Distance": 0.1})
 
 
@@ -232,7 +232,7 @@ value("Bump", "image", _image_bump, 0.5, 0.5)
 value(
     "Bump",
     "image, linear",
-    lambda net: net.out("Bump", inputs={"Height": texture(kind="grey")(net), "Distance": 0.05}),
+    lambda net: net.out("Bump", inputs={"Height": texture(kind="gray")(net), "Distance": 0.05}),
     0.5,
     0.5,
 )

@@ -12,12 +12,12 @@ from .net import Net, material
 from .rows import Row, add
 
 IN_VIEW = {"at": (1.25, 0.6, 1.2), "turn": (-70.0, 10.0, 20.0)}
-"""Beside the ball, towards the camera."""
+"""Beside the ball, toward the camera."""
 ABOVE = {"at": (0.7, -0.9, 2.8), "turn": (15.0, 20.0, 0.0)}
 
 
 def lamps(group: str, name: str, make, **members: object) -> None:
-    """A row of a lamp over a grey ball on a grey ground."""
+    """A row of a lamp over a gray ball on a gray ground."""
 
     def build() -> None:
         stage.empty()
@@ -65,7 +65,7 @@ for _group, _rows in LAMPS.items():
 
 
 def lamp_with_nodes(kind, feed, where=None, **properties):
-    """A lamp whose emission is fed by ``feed(net)``: colour and strength; the camera sees it where a place is given."""
+    """A lamp whose emission is fed by ``feed(net)``: color and strength; the camera sees it where a place is given."""
 
     def make() -> None:
         made = light(kind, 60.0, place(**(where or ABOVE)), **properties)
@@ -125,7 +125,7 @@ WHITE = (1.0, 1.0, 1.0)
 
 
 def _by(coordinates):
-    """A colour by a coordinate, from 0 to 1 where that goes from -1 to 1."""
+    """A color by a coordinate, from 0 to 1 where that goes from -1 to 1."""
     return lambda net: (net.scaled(net.out("TexCoord", coordinates), 0.5, 0.5), 1.0)
 
 
@@ -151,23 +151,23 @@ NARROW = {"spot_size": 1.0, "spot_blend": 0.3}
 DISK, SPHERE = {"shadow_soft_size": 0.3}, {"shadow_soft_size": 0.3, "use_soft_falloff": False}
 BY_DIRECTION = {
     "spot, gradient by normal": ("SPOT", _gradient, {"shadow_soft_size": 0.0, "spot_size": 2.0}),
-    "spot, colour by normal": ("SPOT", _by("Normal"), {"shadow_soft_size": 0.1, **NARROW}),
+    "spot, color by normal": ("SPOT", _by("Normal"), {"shadow_soft_size": 0.1, **NARROW}),
     "spot, image": ("SPOT", _image, {"shadow_soft_size": 0.0, **NARROW}),
     "spot, image, wide": ("SPOT", _image, {"shadow_soft_size": 0.0, "spot_size": 2.7}),
-    "spot, sphere, colour by normal": ("SPOT", _by("Normal"), SPHERE | NARROW),
-    "point, colour by normal": ("POINT", _by("Normal"), DISK),
+    "spot, sphere, color by normal": ("SPOT", _by("Normal"), SPHERE | NARROW),
+    "point, color by normal": ("POINT", _by("Normal"), DISK),
     "point, checker by normal": ("POINT", _squares, {"shadow_soft_size": 0.0}),
-    "point, sphere, colour by normal": ("POINT", _by("Normal"), SPHERE),
+    "point, sphere, color by normal": ("POINT", _by("Normal"), SPHERE),
     "point, image": ("POINT", _image, {"shadow_soft_size": 0.2}),
     "point, incoming": ("POINT", _incoming, {"shadow_soft_size": 0.1}),
     "area, image": ("AREA", _image, {"size": 1.6}),
-    "area, ellipse, colour by generated": ("AREA", _by("Generated"), {"shape": "ELLIPSE", "size": 1.6, "size_y": 0.7}),
+    "area, ellipse, color by generated": ("AREA", _by("Generated"), {"shape": "ELLIPSE", "size": 1.6, "size_y": 0.7}),
     "area, incoming": ("AREA", _incoming, {"size": 0.6}),
     "sun, image": ("SUN", _image, {"angle": 0.8}),
 }  # fmt: skip
 for _name, (_kind, _feed, _properties) in BY_DIRECTION.items():
     lamps("Light nodes", _name, lamp_with_nodes(_kind, _feed, **_properties), effort=2)
-for _name in ("spot, image", "spot, sphere, colour by normal", "point, colour by normal", "area, incoming"):
+for _name in ("spot, image", "spot, sphere, color by normal", "point, color by normal", "area, incoming"):
     _kind, _feed, _properties = BY_DIRECTION[_name]
     lamps(
         "Light nodes",
@@ -179,7 +179,7 @@ for _name in ("spot, image", "spot, sphere, colour by normal", "point, colour by
 for _name, _where in {
     "area, image": IN_VIEW,
     "sun, image": {"turn": (-95.0, 10.0, 10.0)},
-    "point, sphere, colour by normal": IN_VIEW,
+    "point, sphere, color by normal": IN_VIEW,
     "point, image": IN_VIEW,
 }.items():
     _kind, _feed, _properties = BY_DIRECTION[_name]
@@ -196,7 +196,7 @@ lamps("Lights", "two of them", _two)
 
 
 def _glowing(feed, half=0.7):
-    """A glowing square over the scene, fed by ``feed(net)``: colour and strength."""
+    """A glowing square over the scene, fed by ``feed(net)``: color and strength."""
 
     def make() -> None:
         surface, net = material("Glow")

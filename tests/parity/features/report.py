@@ -28,7 +28,7 @@ INTRODUCTION = """<!-- SPDX-License-Identifier: GPL-3.0-or-later -->
 Each row is a small scene that RPPM and Cycles render, made by `tests/parity/features`. `make parity` renders them
 anew and writes this page; the tests hold every row to its limits.
 
-*Values* are colours that glow, seen through the middles of pixels: there is no noise, so the difference is that of each
+*Values* are colors that glow, seen through the middles of pixels: there is no noise, so the difference is that of each
 pixel. *Light* is light transport: the difference is that of the picture's mean in the channel where it is largest, with
 its standard error. *Block* is the difference in the 8 x 8 pixels where it is largest beyond noise; of light it is left
 out where it does not exceed four standard errors. FLIP (Andersson et al. 2020) says how different the pictures look
@@ -65,7 +65,7 @@ def line(row: Row, found: Measurement) -> str:
 
 
 def triple(found: Measurement) -> np.ndarray:
-    """(H, 3 W, 3) RPPM | Cycles | difference, where grey is none and full range a fifth of white; row 0 on top."""
+    """(H, 3 W, 3) RPPM | Cycles | difference, where gray is none and full range a fifth of white; row 0 on top."""
     white = white_of(found.cycles)
     difference = np.clip(0.5 + 2.5 * (found.rppm - found.cycles) / white, 0.0, 1.0)
     shown = [encoded(found.rppm, white), encoded(found.cycles, white), difference]

@@ -15,7 +15,7 @@ class Kind(enum.Enum):
     """How a row is rendered and judged."""
 
     VALUES = "values"
-    """Emission seen through pixel centres: no noise, so pixels are compared one by one."""
+    """Emission seen through pixel centers: no noise, so pixels are compared one by one."""
     LIGHT = "light"
     """Light transport: means and blocks are compared beyond their noise."""
 

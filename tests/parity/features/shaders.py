@@ -181,11 +181,11 @@ lit(
     prepare=lambda: _colors(),
 )
 lit("Driven", "Roughness by noise", principled(Roughness=_noise))
-lit("Driven", "Roughness by an image", principled(Roughness=texture(space="Non-Color", kind="grey"), Metallic=1.0))
+lit("Driven", "Roughness by an image", principled(Roughness=texture(space="Non-Color", kind="gray"), Metallic=1.0))
 lit(
     "Driven",
     "Metallic by an image",
-    principled(Metallic=texture(space="Non-Color", kind="grey", interpolation="Closest")),
+    principled(Metallic=texture(space="Non-Color", kind="gray", interpolation="Closest")),
 )
 lit(
     "Driven",
@@ -298,7 +298,7 @@ LIGHT_PATH = (
 for _output in LIGHT_PATH:
     lit(
         "Light Path",
-        f"{_output}, mixing a colour",
+        f"{_output}, mixing a color",
         (
             lambda output: (
                 lambda net: net.out(
@@ -339,7 +339,7 @@ lit(
 )
 lit(
     "Ambient Occlusion",
-    "as a colour",
+    "as a color",
     lambda net: net.out("BsdfDiffuse", 0, {"Color": net.out("AmbientOcclusion")}),
     warns=True,
     mean=0.1,

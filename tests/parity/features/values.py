@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes of numbers, vectors and colours and procedural textures, as they are used; groups, muted nodes, reroutes."""
+"""Nodes of numbers, vectors and colors and procedural textures, as they are used; groups, muted nodes, reroutes."""
 
 import bpy
 
@@ -184,25 +184,25 @@ COLORS = {
     "RGB to BW": ("RGBToBW", "Color", {}),
 }  # fmt: skip
 for _name, (_kind, _socket, _inputs) in COLORS.items():
-    value("Colours", _name, _of_noise(_kind, _socket, 0, _inputs, True))
+    value("Colors", _name, _of_noise(_kind, _socket, 0, _inputs, True))
 for _mode in ("RGB", "HSV", "HSL"):
-    value("Colours", f"Separate and Combine Color, {_mode}", (lambda mode: lambda net: _swapped(net, mode))(_mode))
-value("Colours", "Separate and Combine XYZ", lambda net: _swapped(net, None))
-value("Colours", "RGB", lambda net: net.out("RGB"))
+    value("Colors", f"Separate and Combine Color, {_mode}", (lambda mode: lambda net: _swapped(net, mode))(_mode))
+value("Colors", "Separate and Combine XYZ", lambda net: _swapped(net, None))
+value("Colors", "RGB", lambda net: net.out("RGB"))
 value(
-    "Colours",
-    "colour as a number",
+    "Colors",
+    "color as a number",
     lambda net: net.out("Math", inputs={0: _noise(net, "Color"), 1: 1.0}, operation="MULTIPLY"),
 )
 value(
-    "Colours",
+    "Colors",
     "vector as a number",
     lambda net: net.out("Math", inputs={0: net.out("TexCoord", "Generated"), 1: 1.0}, operation="MULTIPLY"),
 )
 
 
 def _swapped(net, mode):
-    """A colour taken apart and put together the other way round."""
+    """A color taken apart and put together the other way round."""
     if mode is None:
         parts = net.node("SeparateXYZ", {0: _noise(net, "Color")}).outputs
         return net.out("CombineXYZ", inputs={0: parts[2], 1: parts[0], 2: parts[1]})
@@ -251,7 +251,7 @@ value("Vector Rotate", "axis and angle", _of_noise("VectorRotate", 0, 0, {"Angle
 
 
 def _group(name: str, depth: int) -> bpy.types.NodeTree:
-    """A group that multiplies its colour by its value, in groups inside groups."""
+    """A group that multiplies its color by its value, in groups inside groups."""
     tree = bpy.data.node_groups.new(name, "ShaderNodeTree")
     tree.interface.new_socket("Shade", in_out="INPUT", socket_type="NodeSocketColor")
     factor = tree.interface.new_socket("Amount", in_out="INPUT", socket_type="NodeSocketFloat")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Worlds: colours, environment pictures, skies, and nodes by direction and ray."""
+"""Worlds: colors, environment pictures, skies, and nodes by direction and ray."""
 
 import bpy
 
@@ -14,7 +14,7 @@ def _net() -> Net:
 
 
 def world(group: str, name: str, feed, surface=None, kind: Kind = Kind.LIGHT, **members: object) -> None:
-    """A row of a world whose Background is fed by ``feed(net)``: colour and strength."""
+    """A row of a world whose Background is fed by ``feed(net)``: color and strength."""
 
     def build() -> None:
         stage.empty()
@@ -62,7 +62,7 @@ def _environment(mapping=None, projection="EQUIRECTANGULAR", interpolation="Line
     return give
 
 
-world("Background", "colour", lambda net: ((0.4, 0.6, 1.0), 1.2))
+world("Background", "color", lambda net: ((0.4, 0.6, 1.0), 1.2))
 world("Environment Texture", "as it comes", _environment())
 world("Environment Texture", "turned, mirrored", _environment((0.4, -0.5, 1.1)), _shiny, **MIRRORED, **MAPPED)
 world("Environment Texture", "turned", _environment((0.0, 0.0, 1.1)))
