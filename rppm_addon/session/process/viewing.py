@@ -37,8 +37,9 @@ Send = Callable[..., None]
 
 
 def shown_picture(film: Film, scene: Scene) -> np.ndarray:
-    """(height, width, 4) float32: Combined, or the one pass of the scene's settings as colors, a value as gray."""
-    if not film.passes:
+    """(height, width, 4) float32: Combined, or where the scene's settings name a single pass, that as colors, a
+    value as gray."""
+    if len(film.passes) != 1:
         return read_combined(film, scene.exposure)
     (values,) = film.read_passes().values()
     planes = np.atleast_3d(values)
