@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stills that are kept while they are rendered, gone on with later, and rendered in parts."""
 
-import dataclasses
 import logging
 import time
 from collections.abc import Mapping, Sequence
@@ -141,7 +140,7 @@ def still_render(scene: Scene, source: Mapping[str, object]) -> "StillRender":
 
     return StillRender(
         scene_digests(scene),
-        plain_settings(dataclasses.replace(scene.settings, photons=scene.photon_count)),
+        plain_settings(scene.settings),
         float(scene.exposure),
         placement_of(scene.camera),
         dict(source),

@@ -37,11 +37,18 @@ class CausticRadii:
         return self._factors.buffer
 
     def narrow(
-        self, sums: SplatSums, count: int, first_pixel: int, iteration: int, most_factor: float, shrinkage: float
+        self,
+        sums: SplatSums,
+        count: int,
+        first_pixel: int,
+        iteration: int,
+        most_factor: float,
+        shrinkage: float,
+        fewer: float,
     ) -> None:
         """Learn from the photons that a band's pixels took in an iteration, with radii shrunk by so much.
 
-        most_factor: what all pixels had in the first iteration.
+        most_factor: what all pixels had in the first iteration. fewer: photons of the next over those of this one.
         """
         self._program.run(
             count,
@@ -51,7 +58,7 @@ class CausticRadii:
                 "first_pixel": first_pixel,
                 "iteration": iteration,
                 "most_factor": most_factor,
-                "expected": EXPECTED_CAUSTIC_PHOTONS * shrinkage**2 / sums.photons_for_one,
+                "expected": EXPECTED_CAUSTIC_PHOTONS * shrinkage**2 / (fewer * sums.photons_for_one),
             },
         )
 

@@ -103,10 +103,7 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
 
 
 class Emission:
-    """The lights of a scene: buffers for the shaders that include emission/lights.glsl.
-
-    ``photon_flux`` is the mean flux of a photon as it leaves its light, W, the channels' mean.
-    """
+    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         self._program = library.compute("emission/emit.comp")
@@ -126,7 +123,7 @@ class Emission:
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
-        self.photon_flux = 0.0
+        self._power, self._photons, self._most_photons = 0.0, 1, 1
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -186,14 +183,16 @@ class Emission:
         geometry: Geometry,
         materials: MaterialTables,
         resolve: Resolve,
+        photons: int,
         keep_world: bool = False,
         keep_lamps: bool = False,
         keep_learned: bool = False,
     ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        keep_world, keep_lamps: the world, or all light objects, are those of the last call. keep_learned: the lights
-        are those of the last call at another time, and what was learned of them holds.
+        photons: of that iteration, no more than the scene's. keep_world, keep_lamps: the world, or all light objects,
+        are those of the last call. keep_learned: the lights are those of the last call at another time, and what was
+        learned of them holds.
         Raises SceneError when all lights have a photon share of 0.
         """
         radius = max(geometry.radius * 1.001, 1e-6)
@@ -238,8 +237,7 @@ class Emission:
             raise SceneError("all lights have photon share 0; raise the share of one")
 
         kept = self._table if keep_learned and names == self._names else None
-        self._names, self._powers = names, powers
-        self.photon_flux = sum(powers) / scene.photon_count
+        self._names, self._powers, self._power = names, powers, sum(powers)
         # By power, half of it evenly: what does not choose by the point, and MIS weights.
         selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
         table = np.array(entries, LIGHT.dtype)
@@ -247,14 +245,14 @@ class Emission:
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
-        self._table, self._photons = table, scene.photon_count
+        self._table, self._photons, self._most_photons = table, photons, scene.photon_count
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
                 table[column] = kept[column]
             self._lights.upload(table)
         else:
             self._weights = np.array(weights)
-            self.begin()
+            self.begin(photons)
         targets = caustic_targets(scene, geometry)
         self._target_count = len(targets)
         self._targets.upload(targets if len(targets) else np.zeros(4, np.float32))
@@ -280,14 +278,17 @@ class Emission:
         """Have what the lights see rasterized; whether any of them has a view. Raises DeviceError."""
         return gbuffer.build(self._table, geometry.centre, self._parameters["scene_radius"], geometry) > 0
 
-    def begin(self) -> None:
-        """Forget what photons were good for, as before the first iteration."""
-        self._share_photons(self._weights)
-        self.guide.build(self._table, self._photons)
+    def begin(self, photons: int) -> None:
+        """Forget what photons were good for, as before the first iteration, and share so many among the lights."""
+        self._share_photons(self._weights, self._most_photons)
+        self.guide.build(self._table, self._most_photons)
+        if photons != self._most_photons:
+            self._share_photons(self._weights, photons)
         self._lights.upload(self._table)
 
-    def _share_photons(self, weights: np.ndarray) -> None:
-        counts = share_out(weights, self._photons)
+    def _share_photons(self, weights: np.ndarray, photons: int) -> None:
+        self._photons = photons
+        counts = share_out(weights, photons)
         self._table["photon_count"] = counts
         self._table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
@@ -295,24 +296,30 @@ class Emission:
         """Count what an iteration's photons were good for, once they have been splatted."""
         self.guide.tally(photons, self._photons, segments)
 
-    def learn(self) -> float:
-        """Of what has been tallied, learn where to send the photons of the next iterations.
+    def learn(self, photons: int) -> float:
+        """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.
 
         Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
         of use from now on.
         """
         weights, useful = self.guide.learn()
         before = self._table["photon_count"] @ useful[:, 0]
-        self._share_photons(self._weights * weights)
+        self._share_photons(self._weights * weights, photons)
         self._lights.upload(self._table)
         return float(self._table["photon_count"] @ useful[:, 1] / before)
 
-    def restore(self, tallies: np.ndarray, learnt: np.ndarray | None) -> None:
-        """Know what the guide of this scene's lights knew (Guide.restore, which tells what is raised)."""
+    def restore(self, tallies: np.ndarray, learnt: np.ndarray | None, photons: int) -> None:
+        """Know what the guide of this scene's lights knew (Guide.restore, which tells what is raised) when the last
+        iteration had so many photons."""
         weights = self.guide.restore(tallies, learnt)
         if weights is not None:
-            self._share_photons(self._weights * weights)
+            self._share_photons(self._weights * weights, photons)
             self._lights.upload(self._table)
+
+    @property
+    def photon_flux(self) -> float:
+        """Mean flux of the iteration's photons as they leave their lights, W, the channels' mean."""
+        return self._power / self._photons
 
     def run(
         self,

@@ -42,6 +42,7 @@ class Photons:
     of each path the world's radiance where it began, the largest channel, 0 from other lights."""
 
     def __init__(self, context: Context, library: ProgramLibrary, photon_count: int, segments: int) -> None:
+        """photon_count: the most that an iteration has."""
         self._context = context
         self._scatter = library.compute("photons/scatter.comp")
         self._depart = library.compute("photons/depart.comp")
@@ -94,8 +95,9 @@ class Photons:
         buffers = {buffer.name: buffer.size for buffer in self._buffers}
         return buffers | self._living.memory_bytes | self.first_hits.memory_bytes
 
-    def run(self, stages: Stages, iteration: int) -> None:
+    def run(self, stages: Stages, iteration: int, photon_count: int) -> None:
         """Emit the iteration's photons and trace them to the last segment, or to that after which none lives."""
+        self.photon_count = photon_count
         settings, timers = stages.settings, stages.timers
         for segment in range(self.segments):
             if segment == 0:

@@ -52,6 +52,7 @@ from .importons import Importons
 from .inspection import inspect_deep_cubemap
 from .memory import Memory, reckon_memory
 from .overview import FEWEST_HITS, at_pixels, overview_sizes, overviews
+from .photon_counts import PhotonCounts, later_photons
 from .photons import Photons
 from .placement import cubemap_centres, radius_about
 from .primary_rays import PrimaryRays
@@ -104,6 +105,7 @@ class ProgressivePhotonMapper:
         self._views: list = []
         self._views_are_for: tuple | None = None
         self._wide_radius = 0.0
+        self._photon_counts = PhotonCounts(0, 0)
         self._diffused_photons_found: float | None = None
         """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
 
@@ -168,12 +170,13 @@ class ProgressivePhotonMapper:
                     self._geometry,
                     self._materials,
                     self._resolve,
+                    self._photon_count,
                     not changes.world,
                     not changes.lamps,
                     keep_learned,
                 )
         elif not keep_learned:
-            self._emission.begin()
+            self._emission.begin(self._photon_count)
 
     def _move(self) -> None:
         """Take the scene as it is at the iteration's moment, and build anew what rests on what has moved.
@@ -253,6 +256,7 @@ class ProgressivePhotonMapper:
         self.iteration = self._left_out = 0
         self._diffused_photons_found = None
         self._wide_radius = 0.0
+        self._photon_counts = PhotonCounts(scene.photon_count, scene.photon_count)
         self.scene = self._given = scene
 
     def _build_deep_cubemap(self) -> None:
@@ -350,6 +354,7 @@ class ProgressivePhotonMapper:
         return RenderState(
             left_out=self._left_out,
             iteration=self.iteration,
+            photon_counts=self._photon_counts,
             wide_radius=self._wide_radius,
             diffused_photons_found=self._diffused_photons_found,
             radiance=self.film.read_radiance(),
@@ -372,7 +377,7 @@ class ProgressivePhotonMapper:
                 f"not {shape[1]}x{shape[0]}; begin anew"
             )
         try:
-            self._emission.restore(state.tallies, state.learnt)
+            self._emission.restore(state.tallies, state.learnt, state.photon_counts.later)
         except ValueError as error:
             raise CheckpointError(f"the checkpoint is none of this scene's: {error}; begin anew") from error
         try:
@@ -381,6 +386,7 @@ class ProgressivePhotonMapper:
             raise CheckpointError(f"the checkpoint has no pass {error}; begin anew") from error
         self._caustic_radii.restore(state.radius_factors)
         self._left_out, self.iteration = state.left_out, state.iteration
+        self._photon_counts = state.photon_counts
         self._wide_radius, self._diffused_photons_found = state.wide_radius, state.diffused_photons_found
 
     @property
@@ -397,8 +403,13 @@ class ProgressivePhotonMapper:
         return self._limits[1] * self._shrinkage, self._wide_radius * self._shrinkage
 
     @property
-    def photons_emitted(self) -> int:
-        return self.iteration * self.scene.photon_count
+    def _photon_count(self) -> int:
+        """Photons of the current iteration."""
+        return self._photon_counts.of(self.iteration)
+
+    def photons_emitted(self, iterations: int) -> int:
+        """In so many iterations that are in the film."""
+        return self._photon_counts.emitted(self._left_out, iterations)
 
     @property
     def source_watts(self) -> dict[str, float]:
@@ -505,7 +516,7 @@ class ProgressivePhotonMapper:
 
     def _trace_photons(self) -> None:
         """DirectPhotonHits and TracePhotons."""
-        self._photons.run(self._stages, self.iteration)
+        self._photons.run(self._stages, self.iteration, self._photon_count)
         # With next-event rays direct photons would count direct light twice.
         settings, estimator = self.scene.settings, self._density_estimator
         indirect_only = settings.direct_light is DirectLightMode.RAYS
@@ -515,6 +526,7 @@ class ProgressivePhotonMapper:
                 self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, indirect_only
             )
         if self.iteration == 1:
+            self._count_photons(listed.count - listed.diffused_count, listed.count)
             spread = wide_radius(
                 listed.diffused_count, self._expected, self._geometry.bounds_low, self._geometry.bounds_high
             )
@@ -533,12 +545,18 @@ class ProgressivePhotonMapper:
             listed.count - listed.diffused_count,
             listed.diffused_count,
             self._photons.world_radiances.buffer,
-            self.scene.photon_count,
+            self._photon_count,
             self._emission.photon_flux,
             radii,
             float(np.max(np.abs(bounds))),
         )
         estimator.begin(settings.density_estimation, photons)
+
+    def _count_photons(self, caustic: int, listed: int) -> None:
+        """Set how many photons later iterations have, by what the first one stored."""
+        if self.scene.settings.photons == 0:
+            first, pixels = self._photon_counts.first, self.film.width * self.film.height
+            self._photon_counts = PhotonCounts(first, later_photons(first, pixels, caustic, listed))
 
     def _tally(self, diffused_photons: list[np.ndarray]) -> None:
         """Of what use the iteration's photons were, and how many diffused ones pixels found, (pixels,) by band."""
@@ -551,7 +569,7 @@ class ProgressivePhotonMapper:
 
     def _learn(self) -> None:
         """From the iterations before: where photons are of use, and how many diffused ones pixels find."""
-        gain = self._emission.learn()
+        gain = self._emission.learn(self._photon_count)
         shrunk = self._wide_radius * shrinkage(self.iteration - 1, self.scene.settings.alpha)
         # Few photons make bold promises: the radius is at most halved before they are kept.
         fitted = fitted_wide_radius(shrunk, self._expected, self._diffused_photons_found) / math.sqrt(min(gain, 4.0))
@@ -673,6 +691,7 @@ class ProgressivePhotonMapper:
                 self.iteration,
                 self._most_radius_factor,
                 self._shrinkage,
+                self._photon_counts.of(self.iteration + 1) / self._photon_count,
             )
 
     def _share_gathered_light(self) -> None:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .photon_counts import PhotonCounts
+
 
 @dataclass
 class RenderState:
@@ -14,6 +16,8 @@ class RenderState:
     """So many iterations come before those of the film."""
     iteration: int
     """The last that was run, counted from 1: ``iteration - left_out`` are in the film. The radii follow (Eq. 2)."""
+    photon_counts: PhotonCounts
+    """Where automatic, known once the first iteration has been."""
     wide_radius: float
     """Of the first iteration, metres: what diffused photons are spread over."""
     diffused_photons_found: float | None

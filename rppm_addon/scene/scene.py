@@ -46,7 +46,7 @@ class Scene:
 
     @property
     def photon_count(self) -> int:
-        """Photons of an iteration."""
+        """Photons of the first iteration; where automatic, later ones may have fewer."""
         return self.settings.photons_for(*self.camera.resolution)
 
     @property

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
+from ..integrator.photon_counts import PhotonCounts
 from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.errors import CheckpointError
@@ -29,7 +30,7 @@ from .continuation import Pause
 if TYPE_CHECKING:
     import OpenEXR
 
-FORMAT = 3
+FORMAT = 4
 _ATTRIBUTE = "rppm.checkpoint"
 _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
@@ -59,6 +60,7 @@ class CheckpointSummary:
     render: StillRender
     left_out: int
     iteration: int
+    photon_counts: PhotonCounts
     wide_radius: float
     diffused_photons_found: float | None
     device: str
@@ -69,7 +71,7 @@ class CheckpointSummary:
     @property
     def photons(self) -> int:
         """Emitted in the iterations that are in the film."""
-        return (self.iteration - self.left_out) * int(self.render.settings["photons"])
+        return self.photon_counts.emitted(self.left_out, self.iteration - self.left_out)
 
 
 def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, seconds: float) -> None:
@@ -81,6 +83,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         render,
         state.left_out,
         state.iteration,
+        state.photon_counts,
         state.wide_radius,
         state.diffused_photons_found,
         pause.device,
@@ -134,6 +137,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
         state = RenderState(
             summary.left_out,
             summary.iteration,
+            summary.photon_counts,
             summary.wide_radius,
             summary.diffused_photons_found,
             layer(*"RGBA"),
@@ -207,7 +211,11 @@ def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File
                 raise CheckpointError(f"{path} was written by another version of RPPM; begin anew without it")
             render = document.pop("render")
             placement = Placement(**render.pop("placement"))
-            yield file, CheckpointSummary(StillRender(placement=placement, **render), **document)
+            counts = PhotonCounts(**document.pop("photon_counts"))
+            yield (
+                file,
+                CheckpointSummary(StillRender(placement=placement, **render), photon_counts=counts, **document),
+            )
     except FileNotFoundError as error:
         raise CheckpointError(f"{path} does not exist; name a checkpoint that rppm render wrote") from error
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:

@@ -153,7 +153,7 @@ class SlicedRender:
     def progress(self) -> Progress:
         """How far the render is."""
         settings = self._scene.settings
-        photons = self.iterations * self._scene.photon_count
+        photons = self._mapper.photons_emitted(self.iterations)
         return Progress(self.iterations, settings.iterations, self._elapsed, photons, settings.time_limit)
 
     def frame(self) -> Frame:

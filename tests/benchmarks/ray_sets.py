@@ -107,7 +107,7 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
 
     DeepCubemap.trace = take
     try:
-        mapper._photons.run(mapper._stages, iteration)
+        mapper._photons.run(mapper._stages, iteration, mapper.scene.photon_count)
     finally:
         DeepCubemap.trace = plain
     return taken

@@ -35,7 +35,7 @@ def test_disks_shrink_to_what_they_should_hold(context, library, roulette):
         counts = random.poisson(np.linspace(0, 60, pixels)[:, None], (pixels, 2)).astype(np.uint32)
         for begin, end in ((0, first), (first, pixels)):
             sums.photon_counts.write(counts[begin:end].tobytes())
-            radii.narrow(sums, end - begin, begin, iteration, MOST, shrunk)
+            radii.narrow(sums, end - begin, begin, iteration, MOST, shrunk, 1.0)
         held = counts[:, 1] * (2 if roulette else 1) / shrunk**2
         expected *= np.minimum(np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.maximum(held, 1.0)), 1.0)
         expected = np.maximum(expected, 1.0)

@@ -90,6 +90,33 @@ def test_a_state_goes_on_bit_for_bit(mapper, other_mapper, direct_light, stops):
         assert_same(run_until(other_mapper, LAST), whole)
 
 
+@pytest.mark.parametrize("moving", [False, True])
+def test_automatic_photons_are_those_of_the_whole(mapper, other_mapper, moving):
+    """Later iterations have other numbers than the first one, however one comes to them."""
+    scene = busy_room()
+    scene.settings.photons = 0
+    if moving:
+        scene = everything_moves(scene, 1.0)
+    mapper.build(scene)
+    assert mapper.photons_emitted(0) == 0
+    early = [run_until(mapper, stop) for stop in (1, 2)]
+    whole = run_until(mapper, LAST)
+    first, later = scene.photon_count, whole.photon_counts.later
+    assert 256 < later < first == whole.photon_counts.first
+    assert mapper.photons_emitted(3) == first + 2 * later
+    assert sum(mapper.source_photons.values()) == mapper.read_photons().shape[1] == later
+    for state in early:
+        other_mapper.build(scene)
+        other_mapper.resume(state)
+        assert_same(run_until(other_mapper, LAST), whole)
+    other_mapper.update(scene)
+    for _ in other_mapper.leave_out(LEARNING_ITERATIONS + 1):
+        pass
+    part = run_until(other_mapper, LAST)
+    assert_same(part, whole, "iteration", "photon_counts", "wide_radius", "radius_factors", "tallies", "learnt")
+    assert other_mapper.photons_emitted(3) == 3 * later
+
+
 @pytest.mark.parametrize("left_out", [1, 16, 18])
 def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mapper, left_out):
     scene = busy_room()

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many photons later iterations have."""
+
+import pytest
+
+from rppm_addon.integrator.photon_counts import PhotonCounts, later_photons
+
+
+@pytest.mark.parametrize(
+    ("first", "pixels", "caustic", "listed", "later"),
+    [
+        (100_000, 100_000, 0, 5000, 25_000),  # nothing makes caustics
+        (100_000, 100_000, 0, 0, 25_000),  # nothing is stored
+        (100_000, 100_000, 400, 5000, 25_000),
+        (100_000, 100_000, 1000, 5000, 60_000),
+        (100_000, 100_000, 2000, 5000, 100_000),  # never more than in the first iteration
+        (262_144, 4_000_000, 0, 5000, 262_144),  # large pictures have few for a pixel as it is
+        (262_144, 500_000, 0, 5000, 125_000),
+        (8192, 100, 0, 5000, 2048),  # small ones need some for any picture at all
+        (8192, 6000, 2500, 5000, 6000),
+        (1000, 100, 0, 5000, 1000),
+    ],
+)
+def test_later_iterations_follow_the_share_of_caustics(first, pixels, caustic, listed, later):
+    assert later_photons(first, pixels, caustic, listed) == later
+
+
+def test_photons_of_iterations_add_up():
+    counts = PhotonCounts(100, 30)
+    numbers = [counts.of(iteration) for iteration in range(1, 8)]
+    for left_out in range(3):
+        for iterations in range(4):
+            assert counts.emitted(left_out, iterations) == sum(numbers[left_out : left_out + iterations])
