@@ -34,8 +34,8 @@ def pause(left_out: int = 0, iteration: int = 5, learnt: bool = True) -> Pause:
     passes = {"Depth": depth, "Normal": normal}
     tallies, learnt_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
     state = RenderState(
-        left_out, iteration, PhotonCounts(100, 60), 0.1 + random.random(), 3.0 + random.random(), radiance, passes, counts, factors,
-        tallies, learnt_tallies if learnt else None,
+        left_out, iteration, PhotonCounts(100, 60), 0.1 + random.random(), 3.0 + random.random(), radiance, passes,
+        counts, factors, tallies, learnt_tallies if learnt else None,
     )  # fmt: skip
     return Pause(state, "a device", 0.25)
 
