@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-_BY_CAUSTICS = 3.0
+_BY_CAUSTICS = 2.0
 _LEAST_PER_PIXEL, _FEWEST = 0.25, 1 << 11
 
 

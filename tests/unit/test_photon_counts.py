@@ -12,8 +12,9 @@ from rppm_addon.integrator.photon_counts import PhotonCounts, later_photons
         (100_000, 100_000, 0, 5000, 25_000),  # nothing makes caustics
         (100_000, 100_000, 0, 0, 25_000),  # nothing is stored
         (100_000, 100_000, 400, 5000, 25_000),
-        (100_000, 100_000, 1000, 5000, 60_000),
-        (100_000, 100_000, 2000, 5000, 100_000),  # never more than in the first iteration
+        (100_000, 100_000, 1000, 5000, 40_000),
+        (100_000, 100_000, 2000, 5000, 80_000),
+        (100_000, 100_000, 3000, 5000, 100_000),  # never more than in the first iteration
         (262_144, 4_000_000, 0, 5000, 262_144),  # large pictures have few for a pixel as it is
         (262_144, 500_000, 0, 5000, 125_000),
         (8192, 100, 0, 5000, 2048),  # small ones need some for any picture at all
