@@ -3,19 +3,19 @@
 
 from dataclasses import dataclass
 
-_BY_CAUSTICS = 2.0
+_FOR_PHOTONS_ALONE = 2.0
 _LEAST_PER_PIXEL, _FEWEST = 0.25, 1 << 11
 
 
-def later_photons(first: int, pixels: int, caustic: int, listed: int) -> int:
+def later_photons(first: int, pixels: int, by_photons: int, listed: int) -> int:
     """Photons of each iteration after the first, where automatic, from how many photons of the first one importons
-    might take, and how many of these are caustic ones.
+    might take, and how many of these show light that no ray looks for: caustic ones, or all without final gather.
 
-    Caustics are seen by photons alone; other light comes along gathering and shadow rays, whose noise more photons do
-    not lessen. What was measured is in docs/benchmarks/iterations.md.
+    The noise of gathering and shadow rays is not lessened by more photons. What was measured is in
+    docs/benchmarks/iterations.md.
     """
-    share = caustic / listed if listed else 0.0
-    wanted = round(pixels * min(max(_BY_CAUSTICS * share, _LEAST_PER_PIXEL), 1.0))
+    fraction = by_photons / listed if listed else 0.0
+    wanted = round(pixels * min(max(_FOR_PHOTONS_ALONE * fraction, _LEAST_PER_PIXEL), 1.0))
     return min(first, max(wanted, _FEWEST))
 
 

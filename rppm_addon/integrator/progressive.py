@@ -526,7 +526,8 @@ class ProgressivePhotonMapper:
                 self._photons.photons.buffer, self._photons.photon_count * self._photons.segments, indirect_only
             )
         if self.iteration == 1:
-            self._count_photons(listed.count - listed.diffused_count, listed.count)
+            by_photons = listed.count - listed.diffused_count if self._gathers else listed.count
+            self._count_photons(by_photons, listed.count)
             spread = wide_radius(
                 listed.diffused_count, self._expected, self._geometry.bounds_low, self._geometry.bounds_high
             )
@@ -552,11 +553,11 @@ class ProgressivePhotonMapper:
         )
         estimator.begin(settings.density_estimation, photons)
 
-    def _count_photons(self, caustic: int, listed: int) -> None:
+    def _count_photons(self, by_photons: int, listed: int) -> None:
         """Set how many photons later iterations have, by what the first one stored."""
         if self.scene.settings.photons == 0:
             first, pixels = self._photon_counts.first, self.film.width * self.film.height
-            self._photon_counts = PhotonCounts(first, later_photons(first, pixels, caustic, listed))
+            self._photon_counts = PhotonCounts(first, later_photons(first, pixels, by_photons, listed))
 
     def _tally(self, diffused_photons: list[np.ndarray]) -> None:
         """Of what use the iteration's photons were, and how many diffused ones pixels found, (pixels,) by band."""

@@ -117,6 +117,18 @@ def test_automatic_photons_are_those_of_the_whole(mapper, other_mapper, moving):
     assert other_mapper.photons_emitted(3) == 3 * later
 
 
+def test_photons_stay_as_many_where_all_light_is_theirs(mapper):
+    """Without final gather more photons are less noise everywhere."""
+    scene = busy_room()
+    scene.camera = dataclasses.replace(scene.camera, width=96, height=96)
+    later = {}
+    for gathers in (True, False):
+        scene.settings = dataclasses.replace(scene.settings, photons=0, use_final_gather=gathers)
+        mapper.build(scene)
+        later[gathers] = run_until(mapper, 1).photon_counts.later
+    assert later[True] < later[False] == scene.photon_count == 96 * 96
+
+
 @pytest.mark.parametrize("left_out", [1, 16, 18])
 def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mapper, left_out):
     scene = busy_room()

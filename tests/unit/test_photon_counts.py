@@ -7,7 +7,7 @@ from rppm_addon.integrator.photon_counts import PhotonCounts, later_photons
 
 
 @pytest.mark.parametrize(
-    ("first", "pixels", "caustic", "listed", "later"),
+    ("first", "pixels", "by_photons", "listed", "later"),
     [
         (100_000, 100_000, 0, 5000, 25_000),  # nothing makes caustics
         (100_000, 100_000, 0, 0, 25_000),  # nothing is stored
@@ -22,8 +22,8 @@ from rppm_addon.integrator.photon_counts import PhotonCounts, later_photons
         (1000, 100, 0, 5000, 1000),
     ],
 )
-def test_later_iterations_follow_the_share_of_caustics(first, pixels, caustic, listed, later):
-    assert later_photons(first, pixels, caustic, listed) == later
+def test_later_iterations_follow_the_share_of_caustics(first, pixels, by_photons, listed, later):
+    assert later_photons(first, pixels, by_photons, listed) == later
 
 
 def test_photons_of_iterations_add_up():
