@@ -9,6 +9,7 @@ import enum
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 _KEY = "setting"
 _SLACK = 2.0**-23
@@ -48,7 +49,7 @@ class SettingInfo:
         """The name that users know the field ``name`` by."""
         return self.property_name or name
 
-    def shown(self, name: str, value: object) -> str:
+    def shown(self, name: str, value: Any) -> str:
         """What a message says of a field's value."""
         seen = value + self.property_offset if self.property_offset else value
         return f"{self.property_of(name)} is {seen}"
@@ -82,14 +83,9 @@ def _plain(value: float) -> str:
     return str(int(value)) if float(value).is_integer() else f"{value:g}"
 
 
-def setting(default: object, label: str, description: str, **more: object) -> dataclasses.Field:
+def setting(default: Any, label: str, description: str, **more: Any) -> Any:
     """A dataclass field that is a setting; arguments as SettingInfo's."""
     return dataclasses.field(default=default, metadata={_KEY: SettingInfo(label, description, **more)})
-
-
-def info_of(owner: type, name: str) -> SettingInfo:
-    """What is said of a setting of a dataclass. Raises KeyError where there is none."""
-    return settings_of(owner)[name]
 
 
 def settings_of(owner: type) -> dict[str, SettingInfo]:
