@@ -9,6 +9,7 @@ from typing import Any
 import moderngl
 
 from .binary_cache import BinaryCache
+from .constants import Constants
 from .context import Context
 from .sources import CompileError, ShaderError, Source, expand
 from .texel_buffers import TexelBuffers
@@ -18,8 +19,11 @@ log = logging.getLogger(__name__)
 _EMPTY_COMPUTE = "#version 430 core\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
 _EMPTY_VERTEX = "#version 430 core\nvoid main() { gl_Position = vec4(0.0); }\n"
 _EMPTY_FRAGMENT = "#version 430 core\nvoid main() {}\n"
+GROUP_SIZE = 64
+"""Threads of a group, where shaders count groups."""
 GROUPS_PER_ROW = 65535
 """Groups of a dispatch along an axis that every device allows."""
+Constants("Dispatch", GROUP_SIZE=GROUP_SIZE, GROUPS_PER_ROW=GROUPS_PER_ROW)
 
 
 class _Program:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..scene.camera import Camera, Panorama, PanoramaKind
 from ..scene.errors import SceneError
-from .records import CAMERA_VIEW, ORTHOGRAPHIC, PERSPECTIVE
+from .records import CAMERA_VIEW, PROJECTIONS
 
 
 def is_rasterized(camera: Camera) -> bool:
@@ -39,7 +39,7 @@ def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, 
         axes[:, 1],
         -axes[:, 2],
     )
-    view["projection"] = ORTHOGRAPHIC if camera.orthographic else PERSPECTIVE
+    view["projection"] = PROJECTIONS.index("ORTHOGRAPHIC" if camera.orthographic else "PERSPECTIVE")
     start = camera.clip_start if camera.orthographic else max(camera.clip_start, 1e-6)
     view["clip_start"], view["clip_end"] = start, max(camera.clip_end, start * (1 + 1e-3) + 1e-6)
     view["pixel_area"] = pixel_width * pixel_height
@@ -52,7 +52,7 @@ def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, 
 
 
 def _set_panorama(view: np.ndarray, panorama: Panorama) -> None:
-    view["projection"] = ORTHOGRAPHIC + 1 + list(PanoramaKind).index(panorama.kind)
+    view["projection"] = PROJECTIONS.index(panorama.kind.name)
     cylindrical = panorama.kind is PanoramaKind.CENTRAL_CYLINDRICAL
     view["panorama_range"] = *panorama.longitude, *(panorama.height if cylindrical else panorama.latitude)
     view["field_of_view"], view["lens"], view["sensor"] = panorama.field_of_view, panorama.lens, panorama.sensor

@@ -23,14 +23,13 @@ from .guide import Guide
 from .lamp_maps import LampMaps
 from .light_gbuffer import LightGBuffer
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
-from .records import ELLIPSE, LIGHT, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
+from .records import LIGHT, LIGHT_SOFT, LightShape
 from .resolve import Resolve
 from .sources import SURFACES, SURROUNDINGS, source_name
 from .targets import caustic_targets
 
 log = logging.getLogger(__name__)
 
-_SOFT = 32
 _LEARNED = ("photon_count", "first_photon", "cells", "first_cell")
 """Of a light's record, what follows from what photons were good for."""
 
@@ -222,12 +221,12 @@ class Emission:
             add(source_name(light.name), entry, power, light.photon_weight)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"], entry["flags"] = MESH, int(RayVisibility.ALL)
+        entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
         add(SURFACES, entry, self.emitters.power)
         if not keep_world:
             self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"], entry["flags"] = WORLD, int(RayVisibility.ALL)
+        entry["kind"], entry["flags"] = LightShape.WORLD, int(RayVisibility.ALL)
         add(SURROUNDINGS, entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
         if not entries:
             # As in an animation whose lights go out: the picture is black, as Cycles' is.
@@ -244,7 +243,9 @@ class Emission:
         table["selection_probability"] = selection
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
-        self.has_falloff = bool((table["flags"] & _SOFT).any() or table["falloff"].any() or table["smoothing"].any())
+        self.has_falloff = bool(
+            (table["flags"] & LIGHT_SOFT).any() or table["falloff"].any() or table["smoothing"].any()
+        )
         self._table, self._photons, self._most_photons = table, photons, scene.photon_count
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
@@ -266,11 +267,11 @@ class Emission:
             "environment_width": self.environment.width,
             "environment_height": self.environment.height,
             "emissive_triangle_count": self.emitters.count,
-            "mesh_selection": float(selection[table["kind"] == MESH].sum()),
-            "world_selection": float(selection[table["kind"] == WORLD].sum()),
+            "mesh_selection": float(selection[table["kind"] == LightShape.MESH].sum()),
+            "world_selection": float(selection[table["kind"] == LightShape.WORLD].sum()),
             "environment_irradiance": 2 * math.pi * float(np.mean(self.environment.mean_radiance)),
-            "mesh_light": int(np.argmax(table["kind"] == MESH)),
-            "world_light": int(np.argmax(table["kind"] == WORLD)),
+            "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
+            "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
         }
 
@@ -386,15 +387,15 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     entry["strength"] = strength = np.maximum(light.strength, 0.0)
     entry["radius"] = max(light.radius, 0.0)
     soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
-    entry["flags"] = int(light.visibility) | (_SOFT if soft else 0)
+    entry["flags"] = int(light.visibility) | (LIGHT_SOFT if soft else 0)
     if light.kind is LightKind.POINT:
-        entry["kind"] = POINT
+        entry["kind"] = LightShape.POINT
         return entry, 4 * math.pi * strength
     if light.kind is LightKind.SPOT:
         cosine = math.cos(0.5 * min(light.spot_angle, math.pi))
         lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-9)
         # A scaled spot has an elliptic cone: axes divided by their scale relative to the beam's.
-        entry["kind"] = SPOT
+        entry["kind"] = LightShape.SPOT
         entry["axis_u"] = axes[:, 0] / lengths[0] * (lengths[2] / lengths[0])
         entry["axis_v"] = axes[:, 1] / lengths[1] * (lengths[2] / lengths[1])
         entry["cosine_cone"], entry["blend"] = cosine, np.clip(light.spot_blend, 0.0, 1.0)
@@ -403,7 +404,7 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
         entry["spread_scale"] = 1.0 - math.cos(widest) if cosine > 1e-3 else 1.0
         return entry, strength * spot_share(cosine, light.spot_blend)
     if light.kind is LightKind.SUN:
-        entry["kind"] = SUN
+        entry["kind"] = LightShape.SUN
         cosine = math.cos(0.5 * min(max(light.sun_angle, 0.0), math.pi))
         entry["axis_u"], entry["axis_v"] = _unit(axes[:, 0]), _unit(axes[:, 1])
         # The irradiance counts cosines over the disk; GLSL takes radiance times its solid angle.
@@ -412,7 +413,7 @@ def _light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndar
     width, height = light.size if light.shape in ("RECTANGLE", "ELLIPSE") else (light.size[0], light.size[0])
     entry["axis_u"], entry["axis_v"] = 0.5 * width * axes[:, 0], 0.5 * height * axes[:, 1]
     round_shape = light.shape in ("DISK", "ELLIPSE")
-    entry["kind"] = ELLIPSE if round_shape else RECTANGLE
+    entry["kind"] = LightShape.ELLIPSE if round_shape else LightShape.RECTANGLE
     spanned = np.linalg.norm(np.cross(entry["axis_u"], entry["axis_v"]))
     area = (math.pi if round_shape else 4.0) * spanned
     if spanned <= 0:

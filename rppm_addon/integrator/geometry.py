@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
+from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
@@ -18,6 +19,8 @@ from .records import TRIANGLE_ATTRIBUTES
 log = logging.getLogger(__name__)
 
 _NO_UV = 0xFFFFFFFF
+"""In place of where a mesh's UV begin."""
+Constants("MeshArrays", NO_UV=_NO_UV)
 
 INSTANCE_ENTRY = Record(
     "InstanceEntry",

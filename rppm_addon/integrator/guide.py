@@ -11,11 +11,13 @@ import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
+from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
-from .records import ELLIPSE, MESH, POINT, RECTANGLE, SPOT, SUN, WORLD
+from .records import LightShape
 
+Constants("GuideCells", NO_CELL=0xFFFFFFFF)
 Record("LearnParameters", count="uint", segments="uint")
 
 LEARNING_ITERATIONS = 16
@@ -34,13 +36,13 @@ _PRIOR_PHOTONS = 4.0
 """Photons that a cell needs until it is believed more than the cells around it."""
 
 _FINEST = {
-    POINT: (1, 1, 128, 128),
-    SPOT: (1, 1, 128, 128),
-    SUN: (128, 128, 1, 1),
-    RECTANGLE: (8, 8, 16, 16),
-    ELLIPSE: (8, 8, 16, 16),
-    MESH: (16, 1, 32, 32),
-    WORLD: (16, 16, 16, 16),
+    LightShape.POINT: (1, 1, 128, 128),
+    LightShape.SPOT: (1, 1, 128, 128),
+    LightShape.SUN: (128, 128, 1, 1),
+    LightShape.RECTANGLE: (8, 8, 16, 16),
+    LightShape.ELLIPSE: (8, 8, 16, 16),
+    LightShape.MESH: (16, 1, 32, 32),
+    LightShape.WORLD: (16, 16, 16, 16),
 }
 """Cells along the place on the light and the direction, by kind; for MESH the first is the triangle."""
 

@@ -22,7 +22,7 @@ from ..gl.programs import DrawProgram, ProgramLibrary
 from ..gl.records import Record
 from .geometry import Geometry
 from .living_paths import LivingPaths
-from .records import POINT, SPOT, SUN
+from .records import LightShape
 
 LIGHT_VIEW = Record(
     "LightView",
@@ -95,7 +95,7 @@ def _faces() -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
 def light_views(light: np.void, scene_centre: np.ndarray, scene_radius: float) -> np.ndarray:
     """The views (LIGHT_VIEW) that hold all rays of a LIGHT record's photons: six, one, or none."""
     kind = int(light["kind"])
-    if kind == SUN:
+    if kind == LightShape.SUN:
         tip = _SUN_DISTANCE * scene_radius
         sine = math.sqrt(max(0.0, 1.0 - float(light["cosine_cone"]) ** 2))
         views, looks = LIGHT_VIEW.zeros(1), [_look(light["normal"].astype(np.float64))]
@@ -104,8 +104,8 @@ def light_views(light: np.void, scene_centre: np.ndarray, scene_radius: float) -
         slope = sine / max(float(light["cosine_cone"]), 1e-3) + 1.0 / _SUN_DISTANCE
         views["margin"] = scene_radius * (1.02 * slope + _ROUNDING)
         views["least_depth"] = 0.5 * tip
-    elif kind in (POINT, SPOT):
-        cone = math.acos(max(-1.0, 1.0 - float(light["spread_scale"]))) if kind == SPOT else math.pi
+    elif kind in (LightShape.POINT, LightShape.SPOT):
+        cone = math.acos(max(-1.0, 1.0 - float(light["spread_scale"]))) if kind == LightShape.SPOT else math.pi
         narrow = cone < _WIDEST_CONE
         views = LIGHT_VIEW.zeros(1 if narrow else 6)
         looks = [_look(light["normal"].astype(np.float64))] if narrow else _faces()

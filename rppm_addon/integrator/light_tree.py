@@ -13,7 +13,7 @@ import numpy as np
 
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
-from .records import LIGHT_NODE, MESH, POINT, SPOT, SUN, WORLD
+from .records import LIGHT_NODE, LightShape
 
 _MORTON_BITS = 10
 _SLACK = 1e-5
@@ -57,12 +57,12 @@ LIGHT_TREE_PARAMETERS = {
 
 def light_leaves(lights: np.ndarray) -> np.ndarray:
     """Leaves of the light objects that are somewhere: what they give at most in W/sr, by where and which way."""
-    members = np.nonzero(~np.isin(lights["kind"], (SUN, MESH, WORLD)))[0]
+    members = np.nonzero(~np.isin(lights["kind"], (LightShape.SUN, LightShape.MESH, LightShape.WORLD)))[0]
     lights = lights[members]
     leaves = LIGHT_NODE.zeros(len(lights))
     leaves["member"] = members
     leaves["axis"] = lights["normal"]
-    point, spot = lights["kind"] == POINT, lights["kind"] == SPOT
+    point, spot = lights["kind"] == LightShape.POINT, lights["kind"] == LightShape.SPOT
     area = ~(point | spot)
     reach = np.where(area[:, None], np.abs(lights["axis_u"]) + np.abs(lights["axis_v"]), lights["radius"][:, None])
     leaves["low"], leaves["high"] = _widened(lights["position"] - reach, lights["position"] + reach)
@@ -77,7 +77,7 @@ def light_leaves(lights: np.ndarray) -> np.ndarray:
 
 def sun_leaves(lights: np.ndarray) -> np.ndarray:
     """The suns: irradiance W/m^2 as intensity, and the cosine of the disk's radius as that of the normals."""
-    members = np.nonzero(lights["kind"] == SUN)[0]
+    members = np.nonzero(lights["kind"] == LightShape.SUN)[0]
     leaves = LIGHT_NODE.zeros(len(members))
     leaves["member"] = members
     leaves["axis"] = lights["normal"][members]

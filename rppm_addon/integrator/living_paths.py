@@ -8,7 +8,7 @@ import numpy as np
 
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
-from ..gl.programs import GROUPS_PER_ROW, ComputeProgram, ProgramLibrary
+from ..gl.programs import GROUP_SIZE, GROUPS_PER_ROW, ComputeProgram, ProgramLibrary
 from ..gl.records import Record
 from .records import LIVING_PATHS_HEADER
 
@@ -63,7 +63,7 @@ class LivingPaths:
         """List the paths from 0 to below ``paths``."""
         self.require(paths)
         self.most = paths
-        groups = -(-paths // self._keep.local_size)
+        groups = -(-paths // GROUP_SIZE)
         self._begin(self._lists[0], paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
         self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
 

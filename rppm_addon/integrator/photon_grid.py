@@ -9,6 +9,7 @@ in which photons or importons come to lie.
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
+from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
@@ -39,6 +40,7 @@ _FINER_SIDES = (1.0, 1.0 / 3.0, 1.0 / 9.0)
 elsewhere: importons whose radius is that much smaller, since they are near the camera or take many photons, look at
 fewer."""
 _CAUSTIC_GRIDS, _WIDE_GRIDS = 1 + len(_FINER_SIDES), 2
+Constants("PhotonGrids", CAUSTIC_GRIDS=_CAUSTIC_GRIDS)
 _FEWEST_BUCKETS = 1 << 10
 _HEADER, _BUCKET, _SORTED_PHOTON, _VISIT = 16, 8, 16, 8
 _ROUNDING_STEPS = 8.0

@@ -1,9 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Records that stages hand to each other. Lengths in metres, flux in W, radiance in W/(m^2 sr)."""
 
+import enum
+
+from ..gl.constants import Constants
+from ..gl.programs import GROUP_SIZE
 from ..gl.records import Record
+from ..scene.camera import PanoramaKind
+from ..scene.meshes import RayVisibility
 
 NO_TRIANGLE = 0xFFFFFFFF
+INFINITY_DISTANCE = 1e30
+"""Metres, of rays that may go on for ever."""
+Constants("Distances", NO_TRIANGLE=NO_TRIANGLE, INFINITY_DISTANCE=INFINITY_DISTANCE)
+Constants("RayVisibility", RAY=RayVisibility)
+
+
+@enum.unique
+class RandomStage(enum.IntEnum):
+    """What random numbers are for: those of one stage have nothing to do with those of another."""
+
+    EMISSION = 1
+    PHOTONS = 2
+    IMPORTONS = 3
+    DIRECT_LIGHT = 4
+    RESOLVE = 5
+    SPLATTING = 6
+    GATHERING = 7
+    CAMERA = 8
+    SHADOW_CATCHER = 9
+
+
+Constants("RandomStages", STAGE=RandomStage)
 
 RAY = Record("Ray", origin="vec3", source_triangle="uint", direction="vec3", maximum_distance="float")
 """A ray to be traced; maximum_distance <= 0 marks it inactive, source_triangle is never hit."""
@@ -54,8 +82,34 @@ MICROFACET_LOBE = Record(
 over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
 (weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
 ``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
-(common/bsdf/ggx.glsl), ``normal`` octahedral. The kinds, and what tint is to each, are in
-common/bsdf/microfacet.glsl."""
+(common/bsdf/ggx.glsl), ``normal`` octahedral."""
+
+
+class MicrofacetKind(enum.IntEnum):
+    """What a lobe is."""
+
+    NONE = 0
+    MIRROR = 1
+    """Reflects all."""
+    METAL = 2
+    """Schlick's Fresnel from f0 to white; tint is of the edge at 82 degrees."""
+    DIELECTRIC = 3
+    """Reflection of a dielectric, f0 tinted."""
+    GLASS = 4
+    """Reflects and refracts; tint is of the reflectance at normal incidence."""
+    REFRACTION = 5
+    """Refracts only, without Fresnel's loss."""
+    COATED_GLASS = 6
+    """Glass whose reflectance at normal incidence is the tint."""
+    SHEET = 7
+    """Passes all through a sheet without thickness: a mirror's light, on the other side."""
+    SHEEN = 8
+    """f0.xy are the coefficients of sheen_density."""
+    VELVET = 9
+    """f0.x is sigma."""
+
+
+Constants("MicrofacetKinds", LOBE=MicrofacetKind)
 
 CLOSURE = Record(
     "Closure",
@@ -90,12 +144,12 @@ CLOSURE = Record(
 )
 """All that scattering, storing and estimating need to know about a hit. Normals face the arriving
 path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The kind of a lobe
-comes with its tint (common/bsdf/microfacet.glsl), the diffuse roughness with the albedo that its
+comes with its tint (MicrofacetKind), the diffuse roughness with the albedo that its
 interreflection takes (common/bsdf/diffuse.glsl)."""
 
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
-with the volumes it is in (materials/medium.glsl)."""
+(PhotonFlag) with the volumes it is in (materials/medium.glsl)."""
 
 DEPARTURE = Record("Departure", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint")
 """How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
@@ -116,25 +170,33 @@ PHOTON = Record(
 """One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
 ``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it."""
 
-FLUX_GROUP = 64
+FLUX_GROUP = GROUP_SIZE
 """Paths whose fluxes the device sums (shaders/photons/balance.comp)."""
 FLUX_NAMES = ("emitted", "absorbed", "deposited", "escaped", "lost")
 FLUX_SUMS = Record("FluxSums", **dict.fromkeys((*FLUX_NAMES, "unused0", "unused1", "unused2"), "float"))
 
-PHOTON_ACTIVE = 1
-PHOTON_STORED = 2
-PHOTON_ESCAPED = 4
-PHOTON_DIFFUSED = 8
-PHOTON_INDIRECT = 16
-PHOTON_DIRECT = 32
-PHOTON_NOT_DIFFUSE = 64
-PHOTON_NOT_GLOSSY = 128
-PHOTON_NOT_TRANSMITTED = 256
-PHOTON_CASTS_SHADOWS = 512
-"""Flags of photons; DIFFUSED: a diffuse or rough surface has scattered the path before; INDIRECT: by what stores
-photons there; DIRECT: nothing has, but for objects that cast no shadow; NOT_DIFFUSE,
-NOT_GLOSSY, NOT_TRANSMITTED: while it is direct, from a light that such events do not see; CASTS_SHADOWS: nothing but
-transparency lies between it and its light, which is not the world."""
+
+class PhotonFlag(enum.IntFlag):
+    """Flags of photons and of their paths."""
+
+    ACTIVE = 1
+    STORED = 2
+    ESCAPED = 4
+    DIFFUSED = 8
+    """A diffuse or rough surface has scattered the path before."""
+    INDIRECT = 16
+    """What stores photons has scattered it."""
+    DIRECT = 32
+    """Nothing has scattered it, but for objects that cast no shadow."""
+    NOT_DIFFUSE = 64
+    """While it is direct: from a light that diffuse events do not see."""
+    NOT_GLOSSY = 128
+    NOT_TRANSMITTED = 256
+    CASTS_SHADOWS = 512
+    """Nothing but transparency lies between it and its light, which is not the world."""
+
+
+Constants("PhotonFlags", PHOTON=PhotonFlag)
 
 CAMERA_PATH = Record(
     "CameraPath",
@@ -176,10 +238,19 @@ IMPORTON = Record(
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
-``next`` links lists of the splat cubemap; ``gathers`` holds the bits below."""
+``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag."""
 
-GATHERS_BY_RAY, GATHERED_BY_RAY = 1, 2
-"""Bits of what importons gather, as in shaders/common/gathering.glsl."""
+
+class GatherFlag(enum.IntFlag):
+    """What importons gather; without the first they take all photons."""
+
+    GATHERS_BY_RAY = 1
+    """It leaves indirect photons to the path, which goes on for them."""
+    GATHERED_BY_RAY = 2
+    """It stands where that led, and counts for the vertex that the path set out from."""
+
+
+Constants("GatherFlags", **GatherFlag.__members__)
 
 GATHERING_VERTEX = Record(
     "GatheringVertex",
@@ -195,8 +266,22 @@ the importon's, metres, and so is ``shared_radius``, but for 0 where what the ra
 marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
 sharp surfaces, but for the photons' share, or from a second such vertex, of which ``radius`` then is."""
 
-POINT, SPOT, SUN, RECTANGLE, ELLIPSE, MESH, WORLD = range(7)
-"""Kinds of lights, as in shaders/emission/lights.glsl."""
+
+class LightShape(enum.IntEnum):
+    """Kinds of lights on the device: the emissive meshes are one, and so is the world."""
+
+    POINT = 0
+    SPOT = 1
+    SUN = 2
+    RECTANGLE = 3
+    ELLIPSE = 4
+    MESH = 5
+    WORLD = 6
+
+
+LIGHT_SOFT = 32
+"""Of a light's flags, behind the bits of RayVisibility: a disk that faces each point it lights."""
+Constants("Lights", LIGHT=LightShape, LIGHT_SOFT=LIGHT_SOFT)
 
 LIGHT = Record(
     "Light",
@@ -261,8 +346,9 @@ LIGHT_NODE = Record(
 irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; and of
 a leaf the number of its light or emissive triangle."""
 
-PERSPECTIVE, ORTHOGRAPHIC = range(2)
-"""Projections of cameras; those of panoramas follow in the order of PanoramaKind. As in shaders/gbuffer/."""
+PROJECTIONS = ("PERSPECTIVE", "ORTHOGRAPHIC", *(kind.name for kind in PanoramaKind))
+"""Of cameras, by number."""
+Constants("Projections", **{f"PROJECTION_{name}": number for number, name in enumerate(PROJECTIONS)})
 
 CAMERA_VIEW = Record(
     "CameraView",

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hits become closures in one batched pass (DIRT's deferred fetch)."""
 
+import enum
+
 import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
+from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ComputeProgram, ProgramLibrary
 from ..gl.records import Record
@@ -37,8 +40,19 @@ Record(
     looks_back="uint",
 )
 
-_NO_PATHS, _CAMERA, _PHOTONS = range(3)
+
+class _PathKind(enum.IntEnum):
+    """Whose paths the hits are of."""
+
+    NONE = 0
+    CAMERA = 1
+    PHOTON = 2
+
+
 _RANGE_SIZE = 8
+"""Words of a program's range of the hits."""
+Constants("Ranges", RANGE_SIZE=_RANGE_SIZE)
+Constants("PathKinds", PATH_OF=_PathKind)
 _STAGE = "resolve/resolve.comp"
 
 
@@ -130,7 +144,7 @@ class Resolve:
             "iteration": iteration,
             "segment": segment,
             "looks_back": looks_back,
-            "path_kind": _CAMERA if camera_paths else _PHOTONS if photon_paths else _NO_PATHS,
+            "path_kind": _PathKind.CAMERA if camera_paths else _PathKind.PHOTON if photon_paths else _PathKind.NONE,
         }
 
         # A list of paths is laid out as the order of a single program's hits.

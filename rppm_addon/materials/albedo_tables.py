@@ -17,9 +17,41 @@ from pathlib import Path
 
 import numpy as np
 
+from ..gl.constants import Constants
+
 SIZE = 16
 WHITE_SIZE = 32
 SAMPLES = 4096
+_VOLUME, _PLANE = (SIZE, SIZE, SIZE), (SIZE, SIZE)
+_WHITE_PLANE = (WHITE_SIZE, WHITE_SIZE)
+SHAPES = {
+    "white": _WHITE_PLANE,
+    "white_average": (WHITE_SIZE,),
+    "dielectric": _VOLUME,
+    "glass_entering": _VOLUME,
+    "glass_leaving": _VOLUME,
+    "sheen_a": _WHITE_PLANE,
+    "sheen_b": _WHITE_PLANE,
+    "sheen": _WHITE_PLANE,
+    "glass_entering_average": _PLANE,
+    "glass_leaving_average": _PLANE,
+}
+"""Of all tables, in the order in which the device has them."""
+
+
+def _starts() -> dict[str, int]:
+    """Where each table begins in their list."""
+    ends = np.cumsum([int(np.prod(shape)) for shape in SHAPES.values()]).tolist()
+    return dict(zip(SHAPES, [0, *ends[:-1]], strict=True))
+
+
+Constants(
+    "AlbedoTables",
+    signed=True,
+    TABLE_SIZE=SIZE,
+    WHITE_SIZE=WHITE_SIZE,
+    **{f"{name.upper()}_TABLE": start for name, start in _starts().items()},
+)
 _FILE = Path(__file__).with_name("albedo_tables.npz")
 _SHEEN_FILE = Path(__file__).with_name("sheen_tables.npz")
 
@@ -120,18 +152,16 @@ def compute(samples: int = SAMPLES) -> dict[str, np.ndarray]:
 
 
 def load() -> np.ndarray:
-    """All tables in one (n,) float32 list: white, white_average, dielectric, glass_entering, glass_leaving, and of
-    the sheen a, b and albedo; then the cosine-weighted means of glass_entering and of glass_leaving, (16, 16) each."""
-    lists = []
-    for file, names in (
-        (_FILE, ("white", "white_average", "dielectric", "glass_entering", "glass_leaving")),
-        (_SHEEN_FILE, ("a", "b", "albedo")),
-    ):
-        with np.load(file, allow_pickle=False) as tables:
-            lists += [tables[name].astype(np.float32) for name in names]
+    """All tables in one (n,) float32 list, in the order of SHAPES; those called average are cosine-weighted means."""
+    with np.load(_FILE, allow_pickle=False) as file:
+        tables = {name: file[name].astype(np.float32) for name in SHAPES if name in file}
+    with np.load(_SHEEN_FILE, allow_pickle=False) as file:
+        for name, key in (("sheen_a", "a"), ("sheen_b", "b"), ("sheen", "albedo")):
+            tables[name] = file[key].astype(np.float32)
     cosines = np.linspace(0, 1, SIZE)
-    lists += [trapezoid(table * 2 * cosines, cosines).astype(np.float32) for table in lists[3:5]]
-    return np.concatenate([table.ravel() for table in lists])
+    for name in ("glass_entering", "glass_leaving"):
+        tables[f"{name}_average"] = trapezoid(tables[name] * 2 * cosines, cosines).astype(np.float32)
+    return np.concatenate([tables[name].reshape(shape).ravel() for name, shape in SHAPES.items()])
 
 
 if __name__ == "__main__":

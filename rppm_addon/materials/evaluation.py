@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
+from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
@@ -40,7 +41,7 @@ _CHUNK = 1 << 18
 
 
 class MapShape(enum.IntEnum):
-    """What the pixels of a lamp's map stand for, as in shaders/materials/lamp_surface.glsl."""
+    """What the pixels of a lamp's map stand for."""
 
     NORMALS = 1
     """Normals of a sphere, equirectangular."""
@@ -53,12 +54,16 @@ class MapShape(enum.IntEnum):
 
 
 class LampKind(enum.IntEnum):
-    """Whose nodes are asked, as in shaders/materials/lamp_surface.glsl."""
+    """Whose nodes are asked."""
 
     SPHERE = 0
     AREA = 1
     SUN = 2
     SUN_OF_A_WORLD = 3
+
+
+Constants("MapShapes", MAP=MapShape)
+Constants("LampKinds", LAMP=LampKind)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials as the resolve stage reads them."""
 
+import enum
+
+from ..gl.constants import Constants
 from ..gl.records import Record
 
 MATERIAL = Record(
@@ -17,5 +20,16 @@ start in MaterialData; whether lamps shine through where it is transparent (0) o
 depends on where it is seen from (1)."""
 
 IMAGE_ENTRY = Record("ImageEntry", first_texel="uint", width="uint", height="uint", format="uint")
-"""Where an image's texels lie; format 0: one uint a texel, sRGB bytes; 1: the same, linear bytes;
-2: two uints a texel, four linear half floats."""
+"""Where an image's texels lie, and their TexelFormat."""
+
+
+class TexelFormat(enum.IntEnum):
+    """How an image's texels are encoded: BYTES are one uint a texel, HALF, the later ones, two."""
+
+    SRGB_BYTES = 0
+    BYTES = 1
+    HALF = 2
+    SRGB_HALF = 3
+
+
+Constants("TexelFormats", FORMAT=TexelFormat)

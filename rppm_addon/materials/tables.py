@@ -16,7 +16,7 @@ from . import albedo_tables
 from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
 from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LampSurface
-from .records import IMAGE_ENTRY, MATERIAL
+from .records import IMAGE_ENTRY, MATERIAL, TexelFormat
 from .view_dependence import depends_on_view
 
 
@@ -27,7 +27,6 @@ def default_material() -> Material:
     return Material("default", graph)
 
 
-_SRGB, _BYTES, _HALVES, _SRGB_HALVES = range(4)
 _DARK = "it gives nothing"
 
 
@@ -36,12 +35,12 @@ def first_line(error: Exception) -> str:
     return next((line for line in str(error).splitlines() if "error" in line.lower()), str(error).strip()[:200])
 
 
-def _texels(image: Image) -> tuple[np.ndarray, int]:
-    pixels = np.ascontiguousarray(image.pixels)
+def _texels(image: Image) -> tuple[np.ndarray, TexelFormat]:
+    pixels, srgb = np.ascontiguousarray(image.pixels), image.encoding == "SRGB"
     if pixels.dtype == np.uint8:
-        return pixels.reshape(-1, 4).view(np.uint32).ravel(), _SRGB if image.encoding == "SRGB" else _BYTES
+        return pixels.reshape(-1, 4).view(np.uint32).ravel(), TexelFormat.SRGB_BYTES if srgb else TexelFormat.BYTES
     halves = np.clip(np.nan_to_num(pixels), -65504, 65504).astype(np.float16)
-    return halves.reshape(-1, 4).view(np.uint32).ravel(), _SRGB_HALVES if image.encoding == "SRGB" else _HALVES
+    return halves.reshape(-1, 4).view(np.uint32).ravel(), TexelFormat.SRGB_HALF if srgb else TexelFormat.HALF
 
 
 class MaterialTables:

@@ -2,15 +2,7 @@
 // Counter-based random numbers: a value depends on (seed, iteration, stage, index, dimension) only.
 // Jarzynski and Olano, Hash Functions for GPU Rendering (JCGT 2020): pcg4d.
 
-const uint STAGE_EMISSION = 1u;
-const uint STAGE_PHOTONS = 2u;
-const uint STAGE_IMPORTONS = 3u;
-const uint STAGE_DIRECT_LIGHT = 4u;
-const uint STAGE_RESOLVE = 5u;
-const uint STAGE_SPLATTING = 6u;
-const uint STAGE_GATHERING = 7u;
-const uint STAGE_SHADOW_CATCHER = 8u;
-const uint STAGE_CAMERA = 8u;
+#include <RandomStages>
 
 uvec4 pcg4d(uvec4 v) {
     v = v * 1664525u + 1013904223u;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/camera_path.glsl"
 
-// The rays that Cycles tells apart; the first four are also bits of scene.RayVisibility. Photons count as rays that a
-// diffuse surface sends out.
-const uint RAY_CAMERA = 1u, RAY_DIFFUSE = 2u, RAY_GLOSSY = 4u, RAY_TRANSMISSION = 8u, RAY_SINGULAR = 16u;
-const uint RAYS_WITH_VISIBILITY = 15u, VISIBLE_TO_SHADOW_RAYS = 16u;
+// The rays that Cycles tells apart. Photons count as rays that a diffuse surface sends out.
+#include <RayVisibility>
+const uint RAYS_WITH_VISIBILITY = RAY_CAMERA | RAY_DIFFUSE | RAY_GLOSSY | RAY_TRANSMISSION;
+const uint RAY_SINGULAR = 32u;  // with one of these: it has but one direction
 
 // What the last event of a camera path made of its ray.
 uint camera_ray_kind(uint flags) {

@@ -9,13 +9,13 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { OverlapDraw parameters; };
 #include "deep_cubemap/classify.glsl"
 
-const uint JOBS = 64u;
-shared uint cells_up_to[JOBS]; // of this job and those before it
+#include <Dispatch>
+shared uint cells_up_to[GROUP_SIZE]; // of this job and those before it
 
 // The job that the group's cell of a number belongs to.
 uint job_of_cell(uint number) {
     uint job = 0u;
-    for (uint stride = JOBS / 2u; stride > 0u; stride /= 2u) {
+    for (uint stride = GROUP_SIZE / 2u; stride > 0u; stride /= 2u) {
         if (cells_up_to[job + stride - 1u] <= number) job += stride;
     }
     return job;
@@ -35,7 +35,7 @@ void main() {
     barrier();
     cells_up_to[thread] = cells;
     barrier();
-    for (uint number = thread; number < cells_up_to[JOBS - 1u]; number += JOBS) {
+    for (uint number = thread; number < cells_up_to[GROUP_SIZE - 1u]; number += GROUP_SIZE) {
         uint index = job_of_cell(number);
         uvec4 job = overlap_jobs[group_start + index];
         uint within = number - (index == 0u ? 0u : cells_up_to[index - 1u]);

@@ -18,7 +18,7 @@ layout(std430, binding = 8) writeonly buffer PhotonCells { uint photon_cells[]; 
 
 layout(std430, binding = 9) writeonly buffer WorldRadiances { float world_radiances[]; };
 
-const uint NO_CELL = 0xffffffffu;
+#include <GuideCells>
 
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
 // they pass it by.

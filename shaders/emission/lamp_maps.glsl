@@ -3,8 +3,7 @@
 
 layout(binding = 2) uniform sampler2D lamp_maps;
 
-// The numbers of materials/evaluation.py.
-const uint MAP_NORMALS = 1u, MAP_CONE = 3u, MAP_PLACES = 4u;
+#include <MapShapes>
 
 // A factor of the light's strength. direction: away from the lamp; normal: of a sphere where the light leaves it;
 // place: on an area light, from -1 to 1.

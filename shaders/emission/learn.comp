@@ -12,7 +12,7 @@ layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
 layout(std430, binding = 1) readonly buffer PhotonCells { uint photon_cells[]; };
 layout(std430, binding = 2) buffer Tallies { uvec2 tallies[]; };  // left, useful
 
-const uint NO_CELL = 0xffffffffu;
+#include <GuideCells>
 
 void main() {
     uint index = invocation_index();

@@ -12,11 +12,7 @@ layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
 layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]; };
 
-// The numbers of rppm_addon/integrator/records.py and emission.py.
-const uint LIGHT_POINT = 0u, LIGHT_SPOT = 1u, LIGHT_SUN = 2u, LIGHT_RECTANGLE = 3u, LIGHT_ELLIPSE = 4u,
-           LIGHT_MESH = 5u, LIGHT_WORLD = 6u;
-// Flags: bits of scene.RayVisibility, and
-const uint LIGHT_SOFT = 32u;
+#include <Lights>
 
 
 // Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.

@@ -1,6 +1,2 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers of rppm_addon/integrator/records.py and, for panoramas, the order of scene/camera.py.
-const uint PROJECTION_PERSPECTIVE = 0u, PROJECTION_ORTHOGRAPHIC = 1u, PROJECTION_EQUIRECTANGULAR = 2u,
-           PROJECTION_EQUIANGULAR_CUBEMAP_FACE = 3u, PROJECTION_MIRRORBALL = 4u,
-           PROJECTION_FISHEYE_EQUIDISTANT = 5u, PROJECTION_FISHEYE_EQUISOLID = 6u,
-           PROJECTION_FISHEYE_LENS_POLYNOMIAL = 7u, PROJECTION_CENTRAL_CYLINDRICAL = 8u;
+#include <Projections>

@@ -22,7 +22,7 @@ layout(std430, binding = 7) readonly buffer SlotMaterials { uint slot_materials[
 layout(std430, binding = 8) writeonly buffer Triangles { vec4 triangle_vertices[]; };
 layout(std430, binding = 9) writeonly buffer Attributes { TriangleAttributes attributes[]; };
 
-const uint NO_UV = 0xffffffffu;
+#include <MeshArrays>
 
 uint instance_of(uint triangle) {
     uint low = 0u, high = parameters.instance_count - 1u;

@@ -3,7 +3,7 @@
 #include <LivingPathsHeader>
 layout(std430, binding = 15) buffer KeptPaths { LivingPathsHeader kept; uint kept_paths[]; };
 
-const uint GROUP_SIZE = 64u, GROUPS_PER_ROW = 65535u;
+#include <Dispatch>
 
 void keep_path(uint path) {
     uint place = atomicAdd(kept.count, 1u);

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rppm_addon/materials/albedo_tables.py, in the order in which load() lists them.
+// Directional albedos of lobes (rppm_addon/materials/albedo_tables.py).
 #include "common/whole_numbers.glsl"
+#include <AlbedoTables>
 
 layout(std430, binding = 9) readonly buffer AlbedoTables { float albedo_tables[]; };
-
-const int WHITE_SIZE = 32;
-const int TABLE_SIZE = 16;
-const int WHITE_AVERAGE = WHITE_SIZE * WHITE_SIZE;
-const int DIELECTRIC_TABLE = WHITE_AVERAGE + WHITE_SIZE;
-const int GLASS_ENTERING_TABLE = DIELECTRIC_TABLE + TABLE_SIZE * TABLE_SIZE * TABLE_SIZE;
-const int GLASS_LEAVING_TABLE = GLASS_ENTERING_TABLE + TABLE_SIZE * TABLE_SIZE * TABLE_SIZE;
-const int SHEEN_TABLES = GLASS_LEAVING_TABLE + TABLE_SIZE * TABLE_SIZE * TABLE_SIZE;
-const int GLASS_ENTERING_AVERAGE = SHEEN_TABLES + 3 * WHITE_SIZE * WHITE_SIZE;
-const int GLASS_LEAVING_AVERAGE = GLASS_ENTERING_AVERAGE + TABLE_SIZE * TABLE_SIZE;
 
 float table_plane(int first, int size, float roughness, float cosine) {
     vec2 p = clamp(vec2(cosine, roughness), 0.0, 1.0) * float(size - 1);
@@ -33,12 +24,12 @@ float table_volume(int first, float ior, float roughness, float cosine) {
                table_plane(first + (i + 1) * plane, TABLE_SIZE, roughness, cosine), clamp(z - float(i), 0.0, 1.0));
 }
 
-float white_albedo(float roughness, float cosine) { return table_plane(0, WHITE_SIZE, roughness, cosine); }
+float white_albedo(float roughness, float cosine) { return table_plane(WHITE_TABLE, WHITE_SIZE, roughness, cosine); }
 
 float white_average_albedo(float roughness) {
     float p = clamp(roughness, 0.0, 1.0) * float(WHITE_SIZE - 1);
     int i = min(whole_part(p), WHITE_SIZE - 2);
-    return mix(albedo_tables[WHITE_AVERAGE + i], albedo_tables[WHITE_AVERAGE + i + 1], p - float(i));
+    return mix(albedo_tables[WHITE_AVERAGE_TABLE + i], albedo_tables[WHITE_AVERAGE_TABLE + i + 1], p - float(i));
 }
 
 float glass_albedo(float ior, float roughness, float cosine) {
@@ -47,8 +38,8 @@ float glass_albedo(float ior, float roughness, float cosine) {
 }
 
 float glass_average_albedo(float ior, float roughness) {
-    return ior >= 1.0 ? table_plane(GLASS_ENTERING_AVERAGE, TABLE_SIZE, ior_place(ior), roughness)
-                      : table_plane(GLASS_LEAVING_AVERAGE, TABLE_SIZE, ior_place(1.0 / ior), roughness);
+    return ior >= 1.0 ? table_plane(GLASS_ENTERING_AVERAGE_TABLE, TABLE_SIZE, ior_place(ior), roughness)
+                      : table_plane(GLASS_LEAVING_AVERAGE_TABLE, TABLE_SIZE, ior_place(1.0 / ior), roughness);
 }
 
 // Albedo of a lobe whose reflectance is dielectric_interpolation: what grazing incidence adds.
@@ -58,8 +49,7 @@ float dielectric_grazing_albedo(float ior, float roughness, float cosine) {
 
 // Of the sheen: the coefficients of its transformation, and its albedo.
 vec3 sheen_parameters(float roughness, float cosine) {
-    const int plane = WHITE_SIZE * WHITE_SIZE;
-    return vec3(table_plane(SHEEN_TABLES, WHITE_SIZE, roughness, cosine),
-                table_plane(SHEEN_TABLES + plane, WHITE_SIZE, roughness, cosine),
-                table_plane(SHEEN_TABLES + 2 * plane, WHITE_SIZE, roughness, cosine));
+    return vec3(table_plane(SHEEN_A_TABLE, WHITE_SIZE, roughness, cosine),
+                table_plane(SHEEN_B_TABLE, WHITE_SIZE, roughness, cosine),
+                table_plane(SHEEN_TABLE, WHITE_SIZE, roughness, cosine));
 }

@@ -5,9 +5,8 @@
 layout(std430, binding = 7) readonly buffer Images { ImageEntry images[]; };
 layout(std430, binding = 8) readonly buffer Texels { uint texels[]; };
 
-const uint FORMAT_SRGB = 0u, FORMAT_BYTES = 1u, FORMAT_HALF = 2u, FORMAT_SRGB_HALF = 3u;
-const int EXTENSION_REPEAT = 0, EXTENSION_EXTEND = 1, EXTENSION_CLIP = 2, EXTENSION_MIRROR = 3;
-const int INTERPOLATION_LINEAR = 0, INTERPOLATION_CLOSEST = 1, INTERPOLATION_CUBIC = 2, INTERPOLATION_SMART = 3;
+#include <TexelFormats>
+#include <ImageSampling>
 
 vec3 srgb_to_linear(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
@@ -66,6 +65,6 @@ vec4 sample_image(uint number, vec2 uv, int interpolation, int extension, int di
     ImageEntry image = images[number];
     vec4 color = filter_image(image, uv, interpolation, extension);
     if (divide != 0 && color.a != 1.0 && color.a != 0.0) color.rgb /= color.a;
-    if (image.format == FORMAT_SRGB || image.format == FORMAT_SRGB_HALF) color.rgb = srgb_to_linear(color.rgb);
+    if (image.format == FORMAT_SRGB_BYTES || image.format == FORMAT_SRGB_HALF) color.rgb = srgb_to_linear(color.rgb);
     return color;
 }

@@ -5,7 +5,8 @@
 // Needs the members caustic_sides, wide_side, caustic_buckets and wide_buckets of the parameters.
 #include "photon_grid/cells.glsl"
 
-const uint CAUSTIC_GRIDS = 4u, GRID_DIFFUSED = CAUSTIC_GRIDS, GRID_INDIRECT = CAUSTIC_GRIDS + 1u;
+#include <PhotonGrids>
+const uint GRID_DIFFUSED = CAUSTIC_GRIDS, GRID_INDIRECT = CAUSTIC_GRIDS + 1u;
 
 float side_of(uint grid) { return grid < CAUSTIC_GRIDS ? parameters.caustic_sides[grid] : parameters.wide_side; }
 

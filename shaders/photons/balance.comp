@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 #include <PhotonPath>
 #include <FluxSums>
 #include <BalanceParameters>
+#include <Dispatch>
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { BalanceParameters parameters; };
@@ -14,7 +15,7 @@ layout(std430, binding = 0) readonly buffer Emitted { PhotonPath emitted[]; };
 layout(std430, binding = 1) readonly buffer Photons { Photon photons[]; };
 layout(std430, binding = 2) writeonly buffer Sums { FluxSums sums[]; };
 
-shared FluxSums shares[64];
+shared FluxSums shares[GROUP_SIZE];
 
 float total(vec3 flux) { return flux.x + flux.y + flux.z; }
 
@@ -42,7 +43,7 @@ FluxSums of_path(uint index) {
 void main() {
     uint own = gl_LocalInvocationIndex;
     shares[own] = of_path(invocation_index());
-    for (uint half_size = 32u; half_size > 0u; half_size >>= 1u) {
+    for (uint half_size = GROUP_SIZE / 2u; half_size > 0u; half_size >>= 1u) {
         barrier();
         if (own < half_size) {
             FluxSums a = shares[own], b = shares[own + half_size];
@@ -50,5 +51,5 @@ void main() {
                                    a.escaped + b.escaped, a.lost + b.lost, 0.0, 0.0, 0.0);
         }
     }
-    if (own == 0u && invocation_index() < parameters.photon_count) sums[invocation_index() / 64u] = shares[0];
+    if (own == 0u && invocation_index() < parameters.photon_count) sums[invocation_index() / GROUP_SIZE] = shares[0];
 }

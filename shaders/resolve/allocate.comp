@@ -8,7 +8,7 @@ layout(local_size_x = 1) in;
 layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
 #include "resolve/ranges.glsl"
 
-const uint GROUP_SIZE = 64u;
+#include <Dispatch>
 
 void main() {
     uint first = RANGE_SIZE * parameters.count;

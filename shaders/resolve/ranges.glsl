@@ -5,7 +5,7 @@
 
 layout(std430, binding = 12) buffer HitOrder { uint hit_order[]; };
 
-const uint RANGE_SIZE = 8u;
+#include <Ranges>
 
 uint range_first(uint program) { return hit_order[RANGE_SIZE * program]; }
 uint range_length(uint program) { return hit_order[RANGE_SIZE * program + 1u]; }

@@ -27,8 +27,7 @@ layout(std430, binding = 13) readonly buffer PathFlags { uint path_words[]; };
 
 #include "materials/generated.glsl"
 
-// The kinds of rppm_addon/integrator/resolve.py.
-const uint PATH_OF_CAMERA = 1u, PATH_OF_PHOTON = 2u;
+#include <PathKinds>
 const uint LOOKING_BACK = 64u;  // more than any segment's number
 
 uint path_flags(uint index) {
@@ -83,7 +82,7 @@ void main() {
     ShadingInstance instance = shading_instances[surface.instance];
     bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;
     // Light reaches what casts no shadow, and what lies behind it too.
-    bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & VISIBLE_TO_SHADOW_RAYS) == 0u;
+    bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & RAY_SHADOW) == 0u;
     bool unseen = camera && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     // What diffuse surfaces do not see is lit, but gives no light, and light from other surfaces goes on through it.
     bool keeps_light = photon && (instance.visibility & RAY_DIFFUSE) == 0u;
@@ -106,7 +105,7 @@ void main() {
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
-    bool leaves_direct_light = shadowless || (camera && (unseen || (instance.visibility & VISIBLE_TO_SHADOW_RAYS) == 0u));
+    bool leaves_direct_light = shadowless || (camera && (unseen || (instance.visibility & RAY_SHADOW) == 0u));
     builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
     builder.closure.material = material;
     builder.closure.distance = hit.distance;

@@ -9,7 +9,7 @@ vec3 to_face(vec3 p, int face) {
 
 // Behind the heads of the lists lie flags of occupied blocks of cells, and behind those, for each face, the bounds of
 // its occupied cells: size - x, size - y, x + 1, y + 1 at their greatest, so that zeros mean none.
-const int BLOCK_SIZE = 8;
+#include <SplatCubemap>
 
 int first_block(int size) { return 6 * size * size; }
 int block_index(int face, ivec2 block, int size) { return first_block(size) + (face * (size / BLOCK_SIZE) + block.y) * (size / BLOCK_SIZE) + block.x; }

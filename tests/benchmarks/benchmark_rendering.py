@@ -15,7 +15,12 @@ from rppm_addon.scene import DensityEstimation, RenderSettings
 
 STAGES = {
     "photon paths": (
-        "emission", "first photon hits", "photon tracing", "photon resolve", "photon scattering", "photon list",
+        "emission",
+        "first photon hits",
+        "photon tracing",
+        "photon resolve",
+        "photon scattering",
+        "photon list",
     ),  # fmt: skip
     "camera's first hits": ("gbuffer",),
     "camera paths": ("camera tracing", "camera resolve", "camera scattering"),

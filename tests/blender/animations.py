@@ -126,9 +126,7 @@ def spotlight(scene: bpy.types.Scene, folder: Path) -> None:
 def rigid_bodies(scene: bpy.types.Scene, folder: Path) -> None:
     """Boxes that fall on each other, their motion baked into keyframes."""
     floor = bpy.data.objects["Floor"]
-    boxes = [
-        ball(scene, f"Body {k}", 0.4, 6, location=(0.25 * k - 0.5, 0.1 * k, 0.5 + 0.85 * k)) for k in range(4)
-    ]
+    boxes = [ball(scene, f"Body {k}", 0.4, 6, location=(0.25 * k - 0.5, 0.1 * k, 0.5 + 0.85 * k)) for k in range(4)]
     bpy.ops.rigidbody.world_add()
     scene.rigidbody_world.time_scale = 4.0
     for thing, kind in ((floor, "PASSIVE"), *((box, "ACTIVE") for box in boxes)):

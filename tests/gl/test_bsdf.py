@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.gl.records import Record
-from rppm_addon.integrator import records  # noqa: F401  declares MicrofacetLobe
+from rppm_addon.integrator.records import MicrofacetKind
 from rppm_addon.materials import albedo_tables
 
 Record(
@@ -17,7 +17,7 @@ Record(
     aspect="float", radiance="uint", beckmann="uint",
 )  # fmt: skip
 SHADER = str(Path(__file__).with_name("lobe_albedo.comp"))
-MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET = range(1, 10)
+_, MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET = MicrofacetKind
 COUNT = 1 << 18
 
 
@@ -34,7 +34,17 @@ class Lobe:
 
 
 def run(
-    context, library, kind, alpha, ior, cosine, radiance=1, weight=(1, 1, 1), f0=(1, 1, 1), tint=(1, 1, 1), aspect=1.0,
+    context,
+    library,
+    kind,
+    alpha,
+    ior,
+    cosine,
+    radiance=1,
+    weight=(1, 1, 1),
+    f0=(1, 1, 1),
+    tint=(1, 1, 1),
+    aspect=1.0,
     beckmann=False,
 ) -> Lobe:
     results = context.moderngl.buffer(reserve=80 * COUNT)

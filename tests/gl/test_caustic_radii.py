@@ -9,7 +9,7 @@ from test_render_state import busy_room, run_until
 
 from rppm_addon.integrator.bandwidth import EXPECTED_CAUSTIC_PHOTONS, shrinkage
 from rppm_addon.integrator.caustic_radii import CausticRadii
-from rppm_addon.integrator.records import GATHERED_BY_RAY, IMPORTON
+from rppm_addon.integrator.records import IMPORTON, GatherFlag
 from rppm_addon.integrator.splat_sums import SplatSums
 from rppm_addon.scene import DensityEstimation, Scene
 
@@ -70,7 +70,7 @@ def test_a_factor_multiplies_the_radius_of_its_pixel(mapper):
         mapper.iterate()
         count = mapper._count
         importons = mapper._importons.importons.read(IMPORTON.dtype, count)
-        assert (importons["gathers"] != GATHERED_BY_RAY).all()
+        assert (importons["gathers"] != GatherFlag.GATHERED_BY_RAY).all()
         seen[adaptive] = factors[-count:], importons["radius"]
     (ones, plain), (factors, radii) = seen[False], seen[True]
     assert (ones == 1.0).all() and np.ptp(factors) > 0.5 and np.count_nonzero(plain) > 50

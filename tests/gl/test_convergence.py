@@ -21,7 +21,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator import progressive
 from rppm_addon.integrator.bandwidth import shrinkage
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.integrator.records import PHOTON_DIFFUSED, PHOTON_STORED
+from rppm_addon.integrator.records import PhotonFlag
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RayVisibility, RenderSettings, Scene
 
 CHECKPOINTS = (1, 2, 4, 8, 16, 32, 64)
@@ -186,10 +186,10 @@ def running_means(mapper, scene: Scene, seeds: int) -> tuple[np.ndarray, np.ndar
             if iteration in CHECKPOINTS:
                 means.append(mapper.film.read_radiance()[..., 0])
             photons = mapper.read_photons()[-1]
-            near = (abs(photons["position"]) < [half, half, 1e-3]).all(1) & ((photons["flags"] & PHOTON_STORED) > 0)
+            near = (abs(photons["position"]) < [half, half, 1e-3]).all(1) & ((photons["flags"] & PhotonFlag.STORED) > 0)
             squares.append((photons["flux"][near, 0].astype(np.float64) ** 2).sum() / (2 * half) ** 2)
             # Interreflection's photons have the wide radius, the others that of the importons.
-            diffused = (photons["flags"][near] & PHOTON_DIFFUSED).any()
+            diffused = (photons["flags"][near] & PhotonFlag.DIFFUSED).any()
             radii.append(mapper.splat_radii[1 if diffused else 0])
     means = np.array(means, np.float64).reshape(seeds, len(CHECKPOINTS), size, size)
     return means, np.reshape(squares, (seeds, -1)).mean(0), np.reshape(radii, (seeds, -1)).mean(0)

@@ -13,7 +13,7 @@ from test_shutter import everything_moves
 
 from rppm_addon.integrator import bands, density_estimator
 from rppm_addon.integrator.density_estimator import DensityEstimator
-from rppm_addon.integrator.records import PHOTON_STORED
+from rppm_addon.integrator.records import PhotonFlag
 from rppm_addon.scene import (
     Aperture,
     Camera,
@@ -147,7 +147,7 @@ def rendered(mapper, scene: Scene, route: DensityEstimation) -> list[np.ndarray]
         mapper.iterate()
         photons = mapper.read_photons()
         found += [mapper._density_estimator.sums.photons_taken(mapper._count)]
-        found += [(photons["contributed"] != 0) & (photons["flags"] & PHOTON_STORED != 0)]
+        found += [(photons["contributed"] != 0) & (photons["flags"] & PhotonFlag.STORED != 0)]
     state = mapper.state()
     return [state.radiance, np.array([state.wide_radius]), state.radius_factors, *found]
 

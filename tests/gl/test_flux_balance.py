@@ -5,14 +5,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.integrator.photons import Photons
-from rppm_addon.integrator.records import (
-    FLUX_GROUP,
-    FLUX_NAMES,
-    PHOTON,
-    PHOTON_ACTIVE,
-    PHOTON_ESCAPED,
-    PHOTON_PATH,
-)
+from rppm_addon.integrator.records import FLUX_GROUP, FLUX_NAMES, PHOTON, PHOTON_PATH, PhotonFlag
 
 PATHS, SEGMENTS = 3 * FLUX_GROUP + 7, 4
 
@@ -44,7 +37,7 @@ def test_every_path_counts_once(made):
             record, last = records[segment, path], segment == SEGMENTS - 1
             fate = random.choice(["escaped", "lost", "hit", "hit", "hit"])
             if fate == "hit":
-                record["flags"] = PHOTON_ACTIVE
+                record["flags"] = PhotonFlag.ACTIVE
                 scattered = 0.0
                 if not last:
                     record["scattered_flux"] = 0.7 * random.random(3) * (random.random() < 0.8)
@@ -52,7 +45,7 @@ def test_every_path_counts_once(made):
                 expected["deposited" if last else "absorbed"] += carried - scattered
                 carried = scattered
             else:
-                record["flags"] = PHOTON_ACTIVE | PHOTON_ESCAPED if fate == "escaped" else 0
+                record["flags"] = PhotonFlag.ACTIVE | PhotonFlag.ESCAPED if fate == "escaped" else 0
                 expected[fate] += carried
                 carried = 0.0
     found = balance(made, emitted, records.reshape(-1))
@@ -64,7 +57,7 @@ def test_nothing_is_lost_to_rounding(made):
     """Where every segment tells of its path, what is lost is none at all."""
     emitted, records = PHOTON_PATH.zeros(PATHS), PHOTON.zeros(PATHS * SEGMENTS)
     emitted["flux"] = 0.1
-    records["flags"] = PHOTON_ACTIVE
+    records["flags"] = PhotonFlag.ACTIVE
     records["scattered_flux"] = 0.03
     found = balance(made, emitted, records)
     assert found["lost"] == 0.0 and found["escaped"] == 0.0

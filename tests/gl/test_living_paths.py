@@ -10,7 +10,7 @@ from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator import bands
 from rppm_addon.integrator.living_paths import LivingPaths
-from rppm_addon.integrator.records import LIVING_PATHS_HEADER, PHOTON, PHOTON_ACTIVE, RAY
+from rppm_addon.integrator.records import LIVING_PATHS_HEADER, PHOTON, RAY, PhotonFlag
 from rppm_addon.scene import (
     Aperture,
     DirectLight,
@@ -120,7 +120,7 @@ def outcome(mapper, scene: Scene) -> dict[str, np.ndarray]:
     for iteration in range(2):
         mapper.iterate()
         photons = mapper.read_photons().copy()
-        photons[photons["flags"] & PHOTON_ACTIVE == 0] = PHOTON.zeros(1)[0]  # nobody reads those
+        photons[photons["flags"] & PhotonFlag.ACTIVE == 0] = PHOTON.zeros(1)[0]  # nobody reads those
         result[f"photons {iteration}"] = photons.view(np.uint8)
         result[f"flux {iteration}"] = np.array(list(mapper.flux_balance().values()))
     state = dataclasses.asdict(mapper.state())

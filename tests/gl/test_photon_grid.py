@@ -7,15 +7,7 @@ import pytest
 from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.living_paths import LivingPaths
 from rppm_addon.integrator.photon_grid import PhotonGrid
-from rppm_addon.integrator.records import (
-    GATHERED_BY_RAY,
-    GATHERS_BY_RAY,
-    IMPORTON,
-    PHOTON,
-    PHOTON_DIFFUSED,
-    PHOTON_INDIRECT,
-    PHOTON_STORED,
-)
+from rppm_addon.integrator.records import IMPORTON, PHOTON, GatherFlag, PhotonFlag
 from rppm_addon.integrator.splat_sums import SplatSums
 from rppm_addon.integrator.stored_photons import PhotonList, SplatRadii, StoredPhotons, TakingImportons
 
@@ -67,7 +59,7 @@ def device(context, library):
 
 def photons_at(positions: np.ndarray, flags: int) -> np.ndarray:
     photons = PHOTON.zeros(len(positions))
-    photons["position"], photons["flags"], photons["flux"] = positions, PHOTON_STORED | flags, 1.0
+    photons["position"], photons["flags"], photons["flux"] = positions, PhotonFlag.STORED | flags, 1.0
     photons["direction"], photons["geometric_normal"] = (0, 0, 1), UP
     return photons
 
@@ -80,7 +72,7 @@ def importons_at(positions: np.ndarray, radii: np.ndarray, gathers: int = 0) -> 
     return importons
 
 
-@pytest.mark.parametrize("flags", [0, PHOTON_DIFFUSED, PHOTON_DIFFUSED | PHOTON_INDIRECT])
+@pytest.mark.parametrize("flags", [0, PhotonFlag.DIFFUSED, PhotonFlag.DIFFUSED | PhotonFlag.INDIRECT])
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (1e4, -1e4), (-3e4, 7.0)])
 @pytest.mark.parametrize("largest", [0.4, 0.02])
 def test_no_photon_within_reach_is_missed(device, flags, offset, largest):
@@ -112,7 +104,7 @@ def test_no_photon_within_reach_is_missed(device, flags, offset, largest):
         assert not diffused.any()
 
 
-@pytest.mark.parametrize("flags", [0, PHOTON_DIFFUSED])
+@pytest.mark.parametrize("flags", [0, PhotonFlag.DIFFUSED])
 def test_as_many_photons_as_one_likes_lie_in_a_cell(device, flags):
     """llvmpipe ends the loops of a thread after 65535 rounds; nothing may be lost for that."""
     count = 150_000
@@ -132,12 +124,12 @@ def test_who_takes_what(device):
     """Importons whose paths gather take no indirect photons; those without a radius nothing at all."""
     positions = np.zeros((3, 3), np.float32)
     photons = photons_at(positions, 0)
-    photons["flags"] |= np.array([0, PHOTON_DIFFUSED, PHOTON_DIFFUSED | PHOTON_INDIRECT], np.uint32)
-    both = GATHERED_BY_RAY | GATHERS_BY_RAY
-    for gathers, expected in ((0, 2), (GATHERS_BY_RAY, 1), (GATHERED_BY_RAY, 2), (both, 1)):
+    photons["flags"] |= np.array([0, PhotonFlag.DIFFUSED, PhotonFlag.DIFFUSED | PhotonFlag.INDIRECT], np.uint32)
+    both = GatherFlag.GATHERED_BY_RAY | GatherFlag.GATHERS_BY_RAY
+    for gathers, expected in ((0, 2), (GatherFlag.GATHERS_BY_RAY, 1), (GatherFlag.GATHERED_BY_RAY, 2), (both, 1)):
         importons = importons_at(np.zeros((2, 3), np.float32), np.array([0.1, 0.0], np.float32), gathers)
         contributed, diffused, any_light = device.gather(photons, importons, SplatRadii(0.1, 0.2))
-        np.testing.assert_array_equal(contributed, [True, True, not gathers & GATHERS_BY_RAY])
+        np.testing.assert_array_equal(contributed, [True, True, not gathers & GatherFlag.GATHERS_BY_RAY])
         np.testing.assert_array_equal(diffused, [expected, 0])
         np.testing.assert_array_equal(any_light, [True, False])
     nothing = importons_at(np.zeros((2, 3), np.float32), np.zeros(2))

@@ -7,14 +7,7 @@ import scenes
 from test_geometry import unpack
 
 from rppm_addon.integrator import splat_sums, splatting
-from rppm_addon.integrator.records import (
-    GATHERED_BY_RAY,
-    GATHERS_BY_RAY,
-    IMPORTON,
-    PHOTON_DIFFUSED,
-    PHOTON_INDIRECT,
-    PHOTON_STORED,
-)
+from rppm_addon.integrator.records import IMPORTON, GatherFlag, PhotonFlag
 from rppm_addon.scene import DensityEstimation, DirectLight
 
 ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
@@ -25,9 +18,9 @@ def brute_force(importons, photons, wide):
 
     Importons of paths that gather take no indirect photons.
     """
-    stored = photons[(photons["flags"] & PHOTON_STORED) != 0]
+    stored = photons[(photons["flags"] & PhotonFlag.STORED) != 0]
     normals, flux = unpack(stored["geometric_normal"]), stored["flux"].astype(np.float64)
-    diffused, indirect = ((stored["flags"] & flag) != 0 for flag in (PHOTON_DIFFUSED, PHOTON_INDIRECT))
+    diffused, indirect = ((stored["flags"] & flag) != 0 for flag in (PhotonFlag.DIFFUSED, PhotonFlag.INDIRECT))
     result = np.zeros((len(importons), 3))
     for index, importon in enumerate(importons):
         if importon["radius"] <= 0:
@@ -38,7 +31,7 @@ def brute_force(importons, photons, wide):
         geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["diffuse_normal"][None])[0]
         near = (distance2 < radius**2) & (normals @ geometric > 0.7) & (abs(offset @ geometric) <= 0.35 * radius)
         near &= stored["direction"] @ shading > 0
-        if importon["gathers"] & GATHERS_BY_RAY:
+        if importon["gathers"] & GatherFlag.GATHERS_BY_RAY:
             near &= ~indirect
         cosine = (stored["direction"][near] * normals[near]).sum(1)
         correction = np.minimum(abs(stored["direction"][near] @ shading) / np.maximum(abs(cosine), 1e-5), 4)
@@ -113,11 +106,11 @@ def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
     mapper.iterate()
     last = last_importons(mapper, count)
     photons, wide = mapper.read_photons().ravel(), mapper.splat_radii[1]
-    assert (first[0]["gathers"][first[0]["radius"] > 0] == GATHERS_BY_RAY).all()
+    assert (first[0]["gathers"][first[0]["radius"] > 0] == GatherFlag.GATHERS_BY_RAY).all()
     parts = [brute_force(importons, photons, wide) for importons in (first[0], last)]
     sums = mapper._density_estimator.sums
     got = sums.read(count) * sums.quantum
-    found = (last["gathers"][:, None] & GATHERED_BY_RAY) != 0
+    found = (last["gathers"][:, None] & GatherFlag.GATHERED_BY_RAY) != 0
     assert all((part > 0).any(axis=1).mean() > 0.5 for part in parts)
     # What the ray finds is summed apart; behind the mirror the last segment is the first that stores.
     for place, expected in enumerate((parts[0] + np.where(found, 0, parts[1]), np.where(found, parts[1], 0))):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.integrator.light_gbuffer import light_views, views_side
-from rppm_addon.integrator.records import LIGHT, POINT, RECTANGLE, SPOT, SUN
+from rppm_addon.integrator.records import LIGHT, LightShape
 
 CENTRE, RADIUS = np.array([1.0, 2.0, 3.0]), 5.0
 
@@ -23,16 +23,16 @@ def light(kind: int, **values: object) -> np.void:
 @pytest.mark.parametrize(
     ("record", "count"),
     [
-        (light(POINT), 6),
-        (light(POINT, radius=0.02), 6),
-        (light(POINT, radius=0.5), 0),
-        (light(SPOT, spread_scale=1.0 - math.cos(0.4)), 1),
-        (light(SPOT, spread_scale=1.0 - math.cos(1.2)), 6),
-        (light(SPOT, spread_scale=1.0), 6),
-        (light(SUN), 1),
-        (light(SUN, cosine_cone=math.cos(0.0046)), 1),
-        (light(SUN, cosine_cone=math.cos(0.1)), 0),
-        (light(RECTANGLE), 0),
+        (light(LightShape.POINT), 6),
+        (light(LightShape.POINT, radius=0.02), 6),
+        (light(LightShape.POINT, radius=0.5), 0),
+        (light(LightShape.SPOT, spread_scale=1.0 - math.cos(0.4)), 1),
+        (light(LightShape.SPOT, spread_scale=1.0 - math.cos(1.2)), 6),
+        (light(LightShape.SPOT, spread_scale=1.0), 6),
+        (light(LightShape.SUN), 1),
+        (light(LightShape.SUN, cosine_cone=math.cos(0.0046)), 1),
+        (light(LightShape.SUN, cosine_cone=math.cos(0.1)), 0),
+        (light(LightShape.RECTANGLE), 0),
     ],
 )
 def test_views_by_kind_and_extent(record, count):
@@ -46,7 +46,7 @@ def test_views_by_kind_and_extent(record, count):
 def test_parallel_light_stays_within_the_margin():
     """Rays across the scene, at any angle of the sun's disk, against the cone line that they have at its middle."""
     angle = 0.0046
-    view = light_views(light(SUN, cosine_cone=math.cos(angle)), CENTRE, RADIUS)[0]
+    view = light_views(light(LightShape.SUN, cosine_cone=math.cos(angle)), CENTRE, RADIUS)[0]
     tip, margin = float(view["tip_distance"]), float(view["margin"])
     place = np.linspace(-RADIUS, RADIUS, 21)[:, None]
     depth = np.linspace(-RADIUS, RADIUS, 21)[None, :]

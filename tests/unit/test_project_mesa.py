@@ -65,9 +65,7 @@ def test_with_a_gpu_the_system_keeps_its_driver(mesa, devices, file):
     assert project_mesa.choose_folder({"RPPM_MESA": str(mesa)}, devices, mesa) is None
 
 
-@pytest.mark.parametrize(
-    "name", ["LIBGL_DRIVERS_PATH", "__EGL_VENDOR_LIBRARY_FILENAMES", "__EGL_VENDOR_LIBRARY_DIRS"]
-)
+@pytest.mark.parametrize("name", ["LIBGL_DRIVERS_PATH", "__EGL_VENDOR_LIBRARY_FILENAMES", "__EGL_VENDOR_LIBRARY_DIRS"])
 def test_a_driver_that_the_user_chose_stays(mesa, devices, name):
     assert project_mesa.choose_folder({name: "/somewhere"}, devices, mesa) is None
     assert project_mesa.choose_folder({name: ""}, devices, mesa) == mesa

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colours: mixed, adjusted, taken apart and put together."""
 
+from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 BLEND_TYPES = (
@@ -8,6 +9,7 @@ BLEND_TYPES = (
     "DIFFERENCE", "EXCLUSION", "SUBTRACT", "DIVIDE", "HUE", "SATURATION", "COLOR", "VALUE",
 )  # fmt: skip
 MODES = ("RGB", "HSV", "HSL")
+Constants("ColorModes", MODE=MODES)
 GREY = (0.5, 0.5, 0.5)
 LIGHT_GREY = (0.8, 0.8, 0.8)
 

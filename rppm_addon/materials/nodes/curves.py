@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colour ramps and curves. Their tables are made by rppm_addon/blender/export/nodes/tables.py."""
 
+from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 TABLE = ("table",)
+ENTRIES = 257
+"""Of a table of a ramp or a curve: Cycles cuts the range into 256 parts."""
+Constants("CurveTables", ENTRIES=ENTRIES)
 
 KINDS = {
     # `constant`: the ramp's entries are steps; all other interpolations are in the table.

@@ -3,9 +3,19 @@
 
 from typing import Any
 
+from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 _UP = (0.0, 0.0, 1.0)
+_NORMAL_MAP_SPACES = ("TANGENT", "OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD")
+_DISPLACEMENT_SPACES = ("OBJECT", "WORLD")
+_VECTOR_DISPLACEMENT_SPACES = ("TANGENT", "OBJECT", "WORLD")
+Constants(
+    "NormalSpaces",
+    NORMAL_MAP=_NORMAL_MAP_SPACES,
+    DISPLACEMENT=_DISPLACEMENT_SPACES,
+    VECTOR_DISPLACEMENT=_VECTOR_DISPLACEMENT_SPACES,
+)
 
 
 def _geometry(outputs: dict, **members: Any) -> NodeKind:
@@ -71,7 +81,7 @@ KINDS = {
         "normals.glsl",
         inputs={"strength": (FLOAT, 1.0), "color": (COLOR, (0.5, 0.5, 1.0))},
         outputs={"normal": VECTOR},
-        options={"space": ("TANGENT", "OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD")},
+        options={"space": _NORMAL_MAP_SPACES},
         resources=("attribute",),
         surface=True,
     ),
@@ -91,14 +101,14 @@ KINDS = {
             "height": (FLOAT, 0.0), "midlevel": (FLOAT, 0.5), "scale": (FLOAT, 1.0), "normal": (VECTOR, "normal"),
         },
         outputs={"displacement": VECTOR},
-        options={"space": ("OBJECT", "WORLD")},
+        options={"space": _DISPLACEMENT_SPACES},
         surface=True,
     ),
     "vector_displacement": NodeKind(
         "normals.glsl",
         inputs={"vector": (VECTOR, 0.0), "midlevel": (FLOAT, 0.0), "scale": (FLOAT, 1.0)},
         outputs={"displacement": VECTOR},
-        options={"space": ("TANGENT", "OBJECT", "WORLD")},
+        options={"space": _VECTOR_DISPLACEMENT_SPACES},
         surface=True,
     ),
     "displacement_height": NodeKind(

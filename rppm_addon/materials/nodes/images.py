@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Image and environment textures, and photometric profiles."""
 
+from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 _INTERPOLATIONS = ("Linear", "Closest", "Cubic", "Smart")
 _EXTENSIONS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")
+_PROJECTIONS = ("FLAT", "BOX", "SPHERE", "TUBE")
+_ENVIRONMENT_PROJECTIONS = ("EQUIRECTANGULAR", "MIRROR_BALL")
+Constants("ImageSampling", INTERPOLATION=_INTERPOLATIONS, EXTENSION=_EXTENSIONS)
+Constants("ImageProjections", IMAGE=_PROJECTIONS, ENVIRONMENT=_ENVIRONMENT_PROJECTIONS)
 
 KINDS = {
     "tex_image": NodeKind(
@@ -12,7 +17,7 @@ KINDS = {
         inputs={"vector": (VECTOR, 0.0), "projection_blend": (FLOAT, 0.0)},
         outputs={"color": COLOR, "alpha": FLOAT},
         options={
-            "projection": ("FLAT", "BOX", "SPHERE", "TUBE"),
+            "projection": _PROJECTIONS,
             "interpolation": _INTERPOLATIONS,
             "extension": _EXTENSIONS,
             "unassociate": BOOLEAN,
@@ -31,7 +36,7 @@ KINDS = {
         "images.glsl",
         inputs={"vector": (VECTOR, 0.0)},
         outputs={"color": COLOR},
-        options={"projection": ("EQUIRECTANGULAR", "MIRROR_BALL"), "interpolation": _INTERPOLATIONS},
+        options={"projection": _ENVIRONMENT_PROJECTIONS, "interpolation": _INTERPOLATIONS},
         resources=("image",),
     ),
     "tex_ies": NodeKind(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Arithmetic on numbers and vectors, ranges, and rotations."""
 
+from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, FLOAT, VECTOR, NodeKind
 
 ZERO, ONE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
@@ -20,6 +21,11 @@ VECTOR_OPERATIONS = (
 )  # fmt: skip
 
 INTERPOLATIONS = ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP")
+_CLAMP_TYPES = ("MINMAX", "RANGE")
+_MAPPING_TYPES = ("POINT", "TEXTURE", "VECTOR", "NORMAL")
+_ROTATION_TYPES = ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ")
+Constants("RangeOptions", CLAMP=_CLAMP_TYPES, RANGE=INTERPOLATIONS)
+Constants("MappingOptions", MAPPING=_MAPPING_TYPES, ROTATE=_ROTATION_TYPES)
 
 KINDS = {
     "math": NodeKind(
@@ -58,7 +64,7 @@ KINDS = {
         "range.glsl",
         {"value": (FLOAT, 1.0), "min": (FLOAT, 0.0), "max": (FLOAT, 1.0)},
         {"result": FLOAT},
-        {"clamp_type": ("MINMAX", "RANGE")},
+        {"clamp_type": _CLAMP_TYPES},
     ),
     "map_range": NodeKind(
         "range.glsl",
@@ -90,7 +96,7 @@ KINDS = {
         "mapping.glsl",
         {"vector": (VECTOR, ZERO), "location": (VECTOR, ZERO), "rotation": (VECTOR, ZERO), "scale": (VECTOR, ONE)},
         {"vector": VECTOR},
-        {"vector_type": ("POINT", "TEXTURE", "VECTOR", "NORMAL")},
+        {"vector_type": _MAPPING_TYPES},
     ),
     "vector_rotate": NodeKind(
         "mapping.glsl",
@@ -102,6 +108,6 @@ KINDS = {
             "rotation": (VECTOR, ZERO),
         },
         {"vector": VECTOR},
-        {"rotation_type": ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"), "invert": BOOLEAN},
+        {"rotation_type": _ROTATION_TYPES, "invert": BOOLEAN},
     ),
 }

@@ -1,10 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Procedural textures, whose values are those of Cycles 5.0."""
 
+from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 ORIGIN = (0.0, 0.0, 0.0)
 DIMENSIONS = ("1D", "2D", "3D", "4D")
+_NOISE_TYPES = ("MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "FBM", "HETERO_TERRAIN")
+_VORONOI_FEATURES = ("F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE", "N_SPHERE_RADIUS")
+_VORONOI_METRICS = ("EUCLIDEAN", "MANHATTAN", "CHEBYCHEV", "MINKOWSKI")
+_WAVE_TYPES, _WAVE_PROFILES = ("BANDS", "RINGS"), ("SIN", "SAW", "TRI")
+_BANDS_DIRECTIONS, _RINGS_DIRECTIONS = ("X", "Y", "Z", "DIAGONAL"), ("X", "Y", "Z", "SPHERICAL")
+_GRADIENT_TYPES = ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL")
+Constants("NoiseTypes", NOISE=_NOISE_TYPES)
+Constants("VoronoiFeatures", VORONOI=_VORONOI_FEATURES)
+Constants("VoronoiMetrics", VORONOI=_VORONOI_METRICS)
+Constants("WaveOptions", WAVE=_WAVE_TYPES, PROFILE=_WAVE_PROFILES, BANDS=_BANDS_DIRECTIONS, RINGS=_RINGS_DIRECTIONS)
+Constants("GradientTypes", GRADIENT=_GRADIENT_TYPES)
 
 _NOISE = NodeKind(
     "noise.glsl",
@@ -22,7 +34,7 @@ _NOISE = NodeKind(
     outputs={"fac": FLOAT, "color": COLOR},
     options={
         "noise_dimensions": DIMENSIONS,
-        "noise_type": ("MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "FBM", "HETERO_TERRAIN"),
+        "noise_type": _NOISE_TYPES,
         "normalize": BOOLEAN,
     },
 )
@@ -42,8 +54,8 @@ _VORONOI = NodeKind(
     outputs={"distance": FLOAT, "color": COLOR, "position": VECTOR, "w": FLOAT, "radius": FLOAT},
     options={
         "voronoi_dimensions": DIMENSIONS,
-        "distance": ("EUCLIDEAN", "MANHATTAN", "CHEBYCHEV", "MINKOWSKI"),
-        "feature": ("F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE", "N_SPHERE_RADIUS"),
+        "distance": _VORONOI_METRICS,
+        "feature": _VORONOI_FEATURES,
         "normalize": BOOLEAN,
     },
 )
@@ -60,10 +72,10 @@ _WAVE = NodeKind(
     },
     outputs={"color": COLOR, "fac": FLOAT},
     options={
-        "wave_type": ("BANDS", "RINGS"),
-        "bands_direction": ("X", "Y", "Z", "DIAGONAL"),
-        "rings_direction": ("X", "Y", "Z", "SPHERICAL"),
-        "wave_profile": ("SIN", "SAW", "TRI"),
+        "wave_type": _WAVE_TYPES,
+        "bands_direction": _BANDS_DIRECTIONS,
+        "rings_direction": _RINGS_DIRECTIONS,
+        "wave_profile": _WAVE_PROFILES,
     },
 )
 _BRICK = NodeKind(
@@ -115,11 +127,7 @@ KINDS = {
         "gradient.glsl",
         inputs={"vector": (VECTOR, ORIGIN)},
         outputs={"color": COLOR, "fac": FLOAT},
-        options={
-            "gradient_type": (
-                "LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL",
-            )
-        },
+        options={"gradient_type": _GRADIENT_TYPES},
     ),
     "tex_checker": NodeKind(
         "checker.glsl",
@@ -139,5 +147,5 @@ KINDS = {
         options={"noise_dimensions": DIMENSIONS},
     ),
     "tex_gabor": _GABOR,
-}  # fmt: skip
+}
 """Procedural textures by name."""

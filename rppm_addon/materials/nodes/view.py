@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Weights by the angle of view, directions between spaces, and the light falloff by distance."""
 
+from ...gl.constants import Constants
 from ..node_kinds import FLOAT, VECTOR, NodeKind
 
 UP = (0.0, 0.0, 1.0)
+_VECTOR_TYPES = ("POINT", "VECTOR", "NORMAL")
+_SPACES = ("WORLD", "OBJECT", "CAMERA")
+Constants("VectorTransforms", TRANSFORM=_VECTOR_TYPES, SPACE=_SPACES)
 
 KINDS = {
     "fresnel": NodeKind(
@@ -26,9 +30,9 @@ KINDS = {
         {"vector": (VECTOR, (0.5, 0.5, 0.5))},
         {"vector": VECTOR},
         {
-            "vector_type": ("POINT", "VECTOR", "NORMAL"),
-            "convert_from": ("WORLD", "OBJECT", "CAMERA"),
-            "convert_to": ("WORLD", "OBJECT", "CAMERA"),
+            "vector_type": _VECTOR_TYPES,
+            "convert_from": _SPACES,
+            "convert_to": _SPACES,
         },
         surface=True,
     ),

@@ -7,16 +7,7 @@
 #include "common/bsdf/ggx.glsl"
 #include "common/bsdf/sheen.glsl"
 
-const uint LOBE_NONE = 0u;
-const uint LOBE_MIRROR = 1u;       // reflects all
-const uint LOBE_METAL = 2u;        // Schlick's Fresnel from f0 to white, tint is of the edge at 82 degrees
-const uint LOBE_DIELECTRIC = 3u;   // reflection of a dielectric, f0 tinted
-const uint LOBE_GLASS = 4u;        // reflects and refracts, tint is of the reflectance at normal incidence
-const uint LOBE_REFRACTION = 5u;   // refracts only, without Fresnel's loss
-const uint LOBE_COATED_GLASS = 6u; // glass whose reflectance at normal incidence is the tint
-const uint LOBE_SHEET = 7u;        // passes all through a sheet without thickness: a mirror's light, on the other side
-const uint LOBE_SHEEN = 8u;        // f0.xy are the coefficients of sheen_density
-const uint LOBE_VELVET = 9u;       // f0.x is sigma
+#include <MicrofacetKinds>
 
 bool lobe_transmits(uint kind) { return kind >= LOBE_GLASS && kind <= LOBE_SHEET; }
 bool lobe_is_sheen(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_VELVET; }

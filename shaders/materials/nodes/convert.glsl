@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "materials/nodes/hsv.glsl"
+#include <ColorModes>
 
-// Modes: RGB, HSV, HSL.
 void node_separate_color(int mode, vec3 color, out float red, out float green, out float blue) {
-    vec3 parts = mode == 0 ? color : (mode == 1 ? rgb_to_hsv(color) : rgb_to_hsl(color));
+    vec3 parts = mode == MODE_RGB ? color : (mode == MODE_HSV ? rgb_to_hsv(color) : rgb_to_hsl(color));
     red = parts.x;
     green = parts.y;
     blue = parts.z;
@@ -11,7 +11,7 @@ void node_separate_color(int mode, vec3 color, out float red, out float green, o
 
 void node_combine_color(int mode, float red, float green, float blue, out vec3 color) {
     vec3 parts = vec3(red, green, blue);
-    color = mode == 0 ? parts : (mode == 1 ? hsv_to_rgb(parts) : hsl_to_rgb(parts));
+    color = mode == MODE_RGB ? parts : (mode == MODE_HSV ? hsv_to_rgb(parts) : hsl_to_rgb(parts));
 }
 
 void node_separate_xyz(vec3 vector, out float x, out float y, out float z) {

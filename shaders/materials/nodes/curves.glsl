@@ -2,8 +2,8 @@
 // Colour ramps and curves, tabulated as Cycles does; `table` is where theirs starts in material_data.
 #include "materials/data.glsl"
 
-const uint RAMP_ENTRIES = 257u, RAMP_WIDTH = 4u;
-const uint CURVE_ENTRIES = 257u;
+#include <CurveTables>
+const uint RAMP_WIDTH = 4u;
 
 vec4 ramp_entry(uint table, uint i) {
     uint start = table + RAMP_WIDTH * i;
@@ -11,10 +11,10 @@ vec4 ramp_entry(uint table, uint i) {
 }
 
 void node_val_to_rgb(int constant, uint table, float factor, out vec3 color, out float alpha) {
-    float place = clamp(factor, 0.0, 1.0) * float(RAMP_ENTRIES - 1u);
-    uint i = min(uint(place), RAMP_ENTRIES - 1u);  // a factor that is no number leads anywhere
+    float place = clamp(factor, 0.0, 1.0) * float(ENTRIES - 1u);
+    uint i = min(uint(place), ENTRIES - 1u);  // a factor that is no number leads anywhere
     vec4 value = ramp_entry(table, i);
-    if (constant == 0) value = mix(value, ramp_entry(table, min(i + 1u, RAMP_ENTRIES - 1u)), place - float(i));
+    if (constant == 0) value = mix(value, ramp_entry(table, min(i + 1u, ENTRIES - 1u)), place - float(i));
     color = value.rgb;
     alpha = value.a;
 }
@@ -23,10 +23,10 @@ void node_val_to_rgb(int constant, uint table, float factor, out vec3 color, out
 float curve_value(uint table, uint channels, uint channel, int extrapolate, float x) {
     float low = material_data[table], high = material_data[table + 1u];
     uint first = table + 2u + channel;
-    const float last = float(CURVE_ENTRIES - 1u);
+    const float last = float(ENTRIES - 1u);
     float place = (x - low) / max(high - low, 1e-20) * last;
     float inside = clamp(place, 0.0, last);
-    uint i = min(uint(inside), CURVE_ENTRIES - 2u);
+    uint i = min(uint(inside), ENTRIES - 2u);
     float a = material_data[first + channels * i], b = material_data[first + channels * (i + 1u)];
     return mix(a, b, (extrapolate != 0 ? place : inside) - float(i));
 }

@@ -3,11 +3,7 @@
 // with Cycles' normalization and its blending of a fractional last octave.
 #include "materials/nodes/perlin.glsl"
 
-const int NOISE_MULTIFRACTAL = 0;
-const int NOISE_RIDGED_MULTIFRACTAL = 1;
-const int NOISE_HYBRID_MULTIFRACTAL = 2;
-const int NOISE_FBM = 3;
-const int NOISE_HETERO_TERRAIN = 4;
+#include <NoiseTypes>
 
 // Dimensions, type and normalize are literals; detail is in [0, 15].
 float fractal_noise(

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/constants.glsl"
 
-const int GRADIENT_LINEAR = 0;
-const int GRADIENT_QUADRATIC = 1;
-const int GRADIENT_EASING = 2;
-const int GRADIENT_DIAGONAL = 3;
-const int GRADIENT_SPHERICAL = 4;
-const int GRADIENT_QUADRATIC_SPHERE = 5;
-const int GRADIENT_RADIAL = 6;
+#include <GradientTypes>
 
 void node_tex_gradient(int gradient_type, vec3 vector, out vec3 color, out float fac) {
     float x = max(vector.x, 0.0);

@@ -3,7 +3,7 @@
 
 #include "materials/textures.glsl"
 
-const int PROJECTION_FLAT = 0, PROJECTION_BOX = 1, PROJECTION_SPHERE = 2, PROJECTION_TUBE = 3;
+#include <ImageProjections>
 
 vec2 sphere_to_uv(vec3 p) {
     float size = length(p);
@@ -42,7 +42,7 @@ vec3 box_weights(vec3 n, float blend) {
 
 void node_tex_image(Surface surface, int projection, int interpolation, int extension, int divide, uint image, vec3 vector,
                     float projection_blend, out vec3 color, out float alpha) {
-    bool box = projection == PROJECTION_BOX;
+    bool box = projection == IMAGE_BOX;
     vec3 n = vec3(0.0), weights = vec3(1.0, 0.0, 0.0);
     if (box) {
         n = normal_to_object(surface, surface.normal);
@@ -56,8 +56,8 @@ void node_tex_image(Surface surface, int projection, int interpolation, int exte
             at = axis == 0 ? vec2(n.x < 0.0 ? 1.0 - vector.y : vector.y, vector.z)
                : axis == 1 ? vec2(n.y > 0.0 ? 1.0 - vector.x : vector.x, vector.z)
                            : vec2(n.z > 0.0 ? 1.0 - vector.y : vector.y, vector.x);
-        else if (projection == PROJECTION_SPHERE) at = sphere_to_uv(vector - 0.5);
-        else if (projection == PROJECTION_TUBE) at = tube_to_uv(2.0 * vector - 1.0);
+        else if (projection == IMAGE_SPHERE) at = sphere_to_uv(vector - 0.5);
+        else if (projection == IMAGE_TUBE) at = tube_to_uv(2.0 * vector - 1.0);
         found += weights[axis] * sample_image(image, at, interpolation, extension, divide);
     }
     color = found.rgb;
@@ -82,7 +82,7 @@ void node_tex_image_tiles(int interpolation, int extension, int divide, uint tab
 void node_tex_environment(int projection, int interpolation, uint image, vec3 vector, out vec3 color) {
     vec3 d = vector / max(length(vector), 1e-20);
     vec2 at;
-    if (projection == 0)
+    if (projection == ENVIRONMENT_EQUIRECTANGULAR)
         at = vec2(-atan(d.y, d.x) / (2.0 * PI) + 0.5, atan(d.z, length(d.xy)) / PI + 0.5);
     else {
         d.y -= 1.0;

@@ -2,6 +2,7 @@
 // Nodes that turn the shading normal.
 
 #include "materials/nodes/geometry.glsl"
+#include <NormalSpaces>
 
 // The front's normal in object space, interpolated between unit normals of the corners, or the triangle's where that
 // is flat.
@@ -17,7 +18,7 @@ vec3 object_normal(Surface surface) {
 void node_normal_map(Surface surface, int space, uint layer, float strength, vec3 color, out vec3 normal) {
     vec3 mapped = 2.0 * color - 1.0;
     vec3 n;
-    if (space == 0) {
+    if (space == NORMAL_MAP_TANGENT) {
         uvec2 place = attribute_place(surface, layer);
         if (place.y < 4u) { normal = surface.normal; return; }
         // In object space, tangent and normal interpolated without being made unit.
@@ -28,8 +29,9 @@ void node_normal_map(Surface surface, int space, uint layer, float strength, vec
         n = normal_to_world(surface, mapped.x * tangent.xyz + mapped.y * tangent.w * cross(front, tangent.xyz) + mapped.z * front);
     } else {
         // The Blender spaces are those of its former renderer: Y and Z are turned round.
-        if (space >= 3) mapped.yz = -mapped.yz;
-        n = space == 1 || space == 3 ? normal_to_world(surface, mapped) : mapped;
+        if (space >= NORMAL_MAP_BLENDER_OBJECT) mapped.yz = -mapped.yz;
+        bool of_object = space == NORMAL_MAP_OBJECT || space == NORMAL_MAP_BLENDER_OBJECT;
+        n = of_object ? normal_to_world(surface, mapped) : mapped;
         vec3 front = surface.backfacing ? -surface.normal : surface.normal;
         float size = length(n);
         n = size > 1e-20 ? n / size : front;
@@ -75,7 +77,7 @@ void node_ambient_occlusion(vec3 color_in, out vec3 color, out float ao) {
 // How far the surface is pushed out, in world space.
 void node_displacement(Surface surface, int space, float height, float midlevel, float scale, vec3 normal_in, out vec3 displacement) {
     float amount = (height - midlevel) * scale;
-    if (space == 0) {
+    if (space == DISPLACEMENT_OBJECT) {
         vec3 n = normal_to_object(surface, normal_in);
         displacement = direction_to_world(surface, n / max(length(n), 1e-20) * amount);
     } else displacement = normal_in * amount;
@@ -83,10 +85,10 @@ void node_displacement(Surface surface, int space, float height, float midlevel,
 
 void node_vector_displacement(Surface surface, int space, vec3 vector, float midlevel, float scale, out vec3 displacement) {
     vec3 offset = (vector - midlevel) * scale;
-    if (space == 0) {
+    if (space == VECTOR_DISPLACEMENT_TANGENT) {
         vec3 n = surface.normal, t = default_tangent(surface);
         displacement = offset.x * t + offset.y * n + offset.z * cross(n, t);
-    } else displacement = space == 1 ? direction_to_world(surface, offset) : offset;
+    } else displacement = space == VECTOR_DISPLACEMENT_OBJECT ? direction_to_world(surface, offset) : offset;
 }
 
 void node_displacement_height(Surface surface, vec3 displacement, out float height) { height = dot(displacement, surface.normal); }

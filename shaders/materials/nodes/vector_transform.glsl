@@ -2,8 +2,7 @@
 // Points, vectors and normals from one space to another. The node's camera space has Z forward.
 #include "materials/nodes/safe.glsl"
 
-const int TRANSFORM_POINT = 0, TRANSFORM_VECTOR = 1;
-const int SPACE_WORLD = 0, SPACE_OBJECT = 1;
+#include <VectorTransforms>
 
 vec3 object_to_world(Surface surface, int vector_type, vec3 v) {
     if (vector_type == TRANSFORM_POINT) return direction_to_world(surface, v - point_to_object(surface, vec3(0.0)));

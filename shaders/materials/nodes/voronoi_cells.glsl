@@ -3,10 +3,7 @@
 // Coordinates are of one to four dimensions, a literal; the components past them are zero.
 #include "materials/nodes/hash.glsl"
 
-const int VORONOI_EUCLIDEAN = 0;
-const int VORONOI_MANHATTAN = 1;
-const int VORONOI_CHEBYCHEV = 2;
-const int VORONOI_MINKOWSKI = 3;
+#include <VoronoiMetrics>
 const float VORONOI_FAR = 3.4028234e38;
 
 // Jarzynski and Olano, Hash Functions for GPU Rendering (JCGT 2020): pcg2d, pcg3d, pcg4d, on signed numbers

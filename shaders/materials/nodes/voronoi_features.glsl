@@ -2,11 +2,7 @@
 // What one octave of a Voronoi texture tells of a place: the nearest points and the borders around it.
 #include "materials/nodes/voronoi_cells.glsl"
 
-const int VORONOI_F1 = 0;
-const int VORONOI_F2 = 1;
-const int VORONOI_SMOOTH_F1 = 2;
-const int VORONOI_DISTANCE_TO_EDGE = 3;
-const int VORONOI_N_SPHERE_RADIUS = 4;
+#include <VoronoiFeatures>
 
 // The distance is that to the edge or the radius where that is the feature, without colour and position then.
 struct VoronoiOctave { float distance; vec3 color; vec4 position; };

@@ -4,8 +4,7 @@
 import bpy
 import numpy as np
 
-ENTRIES = 257
-"""Cycles cuts the range into 256 parts."""
+from ....materials.nodes.curves import ENTRIES
 
 
 def ramp_table(color_ramp: bpy.types.ColorRamp) -> np.ndarray:
