@@ -2,19 +2,19 @@
 """Constants shared by CPU and GPU: declared once in Python, included by shaders by name."""
 
 import enum
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
-_Declared = int | float | Sequence[int] | Sequence[float] | Sequence[str] | type[enum.IntEnum] | type[enum.IntFlag]
+_Declared = int | float | Sequence[int] | Sequence[float] | Sequence[str] | Mapping[str, int] | type[enum.Enum]
 
 
 class Constants:
     """Named constants of GLSL, e.g. ``Constants("Passes", PASS_COUNT=3)`` for ``#include <Passes>``.
 
-    Values are whole numbers, floats, sequences of one of them, or what is enumerated: of
-    ``PHOTON=PhotonFlag`` each member becomes a constant ``PHOTON_<MEMBER>``, of ``WRAP=("CLIP", "REPEAT")`` each name
-    an int ``WRAP_<NAME>``, its place, as node kinds pass their options. Other whole numbers are uint, or int where
-    ``signed`` says so. Declaring two different sets of one name raises ValueError.
+    Values are whole numbers, floats, lists of one of them, or what is enumerated: of ``PHOTON=PhotonFlag``, and of a
+    mapping, each member becomes a constant ``PHOTON_<MEMBER>``, and of ``WRAP=("CLIP", "REPEAT")`` each name an int
+    ``WRAP_<NAME>``, its place, as node kinds pass their options. Other whole numbers are uint, or int where ``signed``
+    says so. Declaring two different sets of one name raises ValueError.
     """
 
     registry: ClassVar[dict[str, "Constants"]] = {}
@@ -45,6 +45,8 @@ def _numbers(value: Any) -> dict[str, int] | None:
     """Of what is enumerated, by name; None for plain values."""
     if isinstance(value, type) and issubclass(value, enum.Enum):
         return {str(member.name): int(member.value) for member in value}  # but for those of several bits, such as ALL
+    if isinstance(value, Mapping):
+        return dict(value)
     if isinstance(value, tuple) and all(isinstance(name, str) for name in value):
         return {name.upper(): place for place, name in enumerate(value)}
     return None

@@ -8,6 +8,7 @@ from pathlib import Path
 from . import texel_buffers
 from .constants import Constants
 from .records import Record
+from .storage_blocks import StorageBlock
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
@@ -15,6 +16,7 @@ SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent
 
 _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>)\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
+_SHARED_BLOCK = re.compile(r"^(\s*layout\s*\(\s*std430\b[^)]*\)[\w\s]*?\bbuffer\s+(\w+))\s*;(.*)$")
 _BLOCK = re.compile(r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*(\d+)\s*\)[\w\s]*?\bbuffer\s+(\w+)")
 _TEXEL_BUFFER = re.compile(r"layout\s*\(\s*binding\s*=\s*(\d+)\s*\)\s*uniform\s+(u?samplerBuffer)\s+(\w+)")
 _PARAMETERS = re.compile(r"layout\s*\(\s*std140\s*,\s*binding\s*=\s*0\s*\)\s*uniform\s+\w+\s*\{\s*(\w+)\s+\w+\s*;")
@@ -80,13 +82,20 @@ def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[st
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include <Ray>`` inserts the struct of the
-    record, or the constants, of that name once. Defines go after #version; ``inserts`` are texts of files that are made
-    at run time, by name. Raises ShaderError.
+    record, or the constants, of that name once; ``layout(std430, binding = 0) buffer Rays;`` gets the members of the
+    StorageBlock of that name, and before it the structs of its records. Defines go after #version; ``inserts`` are
+    texts of files that are made at run time, by name. Raises ShaderError.
     """
     files: list[str] = []
     declared: dict[str, Record | Constants] = {**Record.registry, **Constants.registry}
     seen: set[str] = set()
     lines: list[str] = []
+
+    def declare(name: str) -> str:
+        if name in seen:
+            return ""
+        seen.add(name)
+        return declared[name].glsl()
 
     def read(name: str, includer: str) -> None:
         if name in files:
@@ -108,8 +117,13 @@ def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[st
                 wanted = include.group(2)
                 if wanted not in declared:
                     raise ShaderError(f"{name}:{line_number}: there is no record and there are no constants {wanted}")
-                lines.append("" if wanted in seen else declared[wanted].glsl())
-                seen.add(wanted)
+                lines.append(declare(wanted))
+            elif (block := _SHARED_BLOCK.match(line)) is not None:
+                if block.group(2) not in StorageBlock.registry:
+                    raise ShaderError(f"{name}:{line_number}: there is no storage block {block.group(2)}")
+                shared = StorageBlock.registry[block.group(2)]
+                structs = "".join(f"{declare(record.name)} " for record in shared.records)
+                lines.append(f"{structs}{block.group(1)} {{ {shared.members} }};{block.group(3)}")
             elif _VERSION.match(line):
                 lines.append(line)
                 lines.extend(f"#define {key} {value}" for key, value in (defines or {}).items())

@@ -31,6 +31,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..gl.storage_blocks import StorageBlock
 from ..gl.texel_buffers import DEFINE as TEXEL_BUFFERS
 from ..gl.texel_buffers import TEXEL_SIZE, most_texels
 from ..scene.errors import DeviceError
@@ -87,6 +88,7 @@ FRAGMENT = Record(
     extent_high="uint",
 )
 BINNED_FRAGMENT = Record("BinnedFragment", cell="uint", triangle="uint", depths="uint")
+StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
 BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
 Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
 Record("DivideLevel", first_tile="uint", end_tile="uint", level="uint", side_exponent="uint", fragment_count="uint")

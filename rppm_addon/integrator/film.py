@@ -20,8 +20,8 @@ Record("PassParameters", first_pixel="uint", iteration="uint", segment="uint", p
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
 Constants(
     "Passes",
-    **{f"ACCUMULATION_{way.name}": way.value for way in Accumulation},
-    **{f"PASS_{entry.identifier.upper()}": number for number, entry in enumerate(FILM_PASSES)},
+    ACCUMULATION=Accumulation,
+    PASS={entry.identifier.upper(): number for number, entry in enumerate(FILM_PASSES)},
     PASS_COUNT=len(FILM_PASSES),
     PASS_CHANNELS=[len(entry.channels) for entry in FILM_PASSES],
     PASS_ACCUMULATION=[entry.accumulation.value for entry in FILM_PASSES],

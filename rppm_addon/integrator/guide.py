@@ -15,8 +15,10 @@ from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..gl.storage_blocks import StorageBlock
 from .records import LightShape
 
+StorageBlock("PhotonCells", "uint photon_cells[];")
 Constants("GuideCells", NO_CELL=0xFFFFFFFF)
 Record("LearnParameters", count="uint", segments="uint")
 

@@ -20,6 +20,7 @@ from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import DrawProgram, ProgramLibrary
 from ..gl.records import Record
+from ..gl.storage_blocks import StorageBlock
 from .geometry import Geometry
 from .living_paths import LivingPaths
 from .records import LightShape
@@ -55,6 +56,7 @@ LIGHT_TEXEL = Record("LightTexel", depth_complement="uint", count="uint", end="u
 """Complement of the bits of the depth where its first triangle ends, 0 where there is none; how many triangles begin
 before the horizon, and where their numbers end in the list of all (where they are few enough to be listed)."""
 
+StorageBlock("TexelTriangles", "uint texel_triangles[];")
 _COUNTS = Record("LightGBufferCounts", jobs="uint", triangles="uint", unused0="uint", unused1="uint")
 
 MOST_LIGHTS = 16

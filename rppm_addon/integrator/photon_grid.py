@@ -13,6 +13,7 @@ from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..gl.storage_blocks import StorageBlock
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import ESTIMATE_PARAMETERS, StoredPhotons, TakingImportons
 
@@ -34,6 +35,9 @@ Record(
     **SUM_PARAMETERS,
     **ESTIMATE_PARAMETERS,
 )
+StorageBlock("Buckets", "uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[];")
+StorageBlock("SortedPhotons", "uvec4 sorted_photons[];")
+StorageBlock("Visits", "uint visit_groups[3]; uint visit_count; uvec2 visits[];")
 
 _FINER_SIDES = (1.0, 1.0 / 3.0, 1.0 / 9.0)
 """Caustic grids after the first, which is for the ends of gathering rays, by their radius as a part of the largest

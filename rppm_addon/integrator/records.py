@@ -6,6 +6,7 @@ import enum
 from ..gl.constants import Constants
 from ..gl.programs import GROUP_SIZE
 from ..gl.records import Record
+from ..gl.storage_blocks import StorageBlock
 from ..scene.camera import PanoramaKind
 from ..scene.meshes import RayVisibility
 
@@ -35,10 +36,15 @@ Constants("RandomStages", STAGE=RandomStage)
 
 RAY = Record("Ray", origin="vec3", source_triangle="uint", direction="vec3", maximum_distance="float")
 """A ray to be traced; maximum_distance <= 0 marks it inactive, source_triangle is never hit."""
+StorageBlock("Rays", "Ray rays[];")
+StorageBlock("ShadowRays", "Ray shadow_rays[];")
 
 HIT = Record("Hit", triangle="uint", b1="float", b2="float", distance="float")
 """What any kind of visibility yields; triangle NO_TRIANGLE is a miss.
 The point is (1 - b1 - b2) v0 + b1 v1 + b2 v2."""
+StorageBlock("Hits", "Hit hits[];")
+StorageBlock("Visibility", "uint visibility[];")
+"""Of shadow rays: 1 where nothing is in the way."""
 
 LIVING_PATHS_HEADER = Record(
     "LivingPathsHeader",
@@ -52,6 +58,7 @@ LIVING_PATHS_HEADER = Record(
 """How a list of paths begins (living_paths.py): their ``count``, and the ``groups`` of a dispatch over them. It is laid
 out as a range of shaders/resolve/ranges.glsl, ``first`` being the word where the numbers begin: a list stands for the
 order of the hits where one program resolves them all."""
+StorageBlock("KeptPaths", "LivingPathsHeader kept; uint kept_paths[];")
 
 TRIANGLE_ATTRIBUTES = Record(
     "TriangleAttributes",
@@ -66,6 +73,9 @@ TRIANGLE_ATTRIBUTES = Record(
     unused="uint",
 )
 """Shading normals (octahedral, two 16-bit parts), UV, material and instance of a world triangle."""
+StorageBlock("Attributes", "TriangleAttributes attributes[];")
+StorageBlock("Triangles", "vec4 triangle_vertices[];")
+"""Three a triangle; for the fourth components see shaders/geometry/gather.comp."""
 
 MICROFACET_LOBE = Record(
     "MicrofacetLobe",
@@ -146,15 +156,19 @@ CLOSURE = Record(
 path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The kind of a lobe
 comes with its tint (MicrofacetKind), the diffuse roughness with the albedo that its
 interreflection takes (common/bsdf/diffuse.glsl)."""
+StorageBlock("Closures", "Closure closures[];")
 
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl)."""
+StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
+StorageBlock("WorldRadiances", "float world_radiances[];")
 
 DEPARTURE = Record("Departure", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint")
 """How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
 closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
 the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on."""
+StorageBlock("Departures", "Departure departures[];")
 
 PHOTON = Record(
     "Photon",
@@ -169,6 +183,9 @@ PHOTON = Record(
 )
 """One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
 ``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it."""
+StorageBlock("Photons", "Photon photons[];")
+StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint stored_photons[];")
+"""How many are stored, how many of these are diffused, and the numbers of the stored ones."""
 
 FLUX_GROUP = GROUP_SIZE
 """Paths whose fluxes the device sums (shaders/photons/balance.comp)."""
@@ -212,6 +229,13 @@ the clip start,
 ``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit (before it, the radius of a pixel's
 cone at distance 1, or of its beam of parallel rays), ``scatter_density`` that of the
 scattered direction in 1/sr where next-event rays sample the same light, else 0."""
+StorageBlock("CameraPaths", "CameraPath camera_paths[];")
+StorageBlock("Radiances", "vec4 radiances[];")
+"""Of the pixels of a band, W/(m^2 sr), and alpha."""
+StorageBlock("RadiusFactors", "float radius_factors[];")
+StorageBlock("Contributions", "vec4 contributions[];")
+StorageBlock("LightTriangles", "uint light_triangles[];")
+"""What shadow rays add where nothing is in their way, and the emissive triangles that they go to."""
 
 IMPORTON = Record(
     "Importon",
@@ -239,6 +263,7 @@ IMPORTON = Record(
 """A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
 ``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag."""
+StorageBlock("Importons", "Importon importons[];")
 
 
 class GatherFlag(enum.IntFlag):
@@ -265,6 +290,8 @@ GATHERING_VERTEX = Record(
 the importon's, metres, and so is ``shared_radius``, but for 0 where what the ray finds is not shared; less than 0
 marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
 sharp surfaces, but for the photons' share, or from a second such vertex, of which ``radius`` then is."""
+StorageBlock("GatheringVertices", "GatheringVertex gathering_vertices[];")
+StorageBlock("FoundRadiances", "vec4 found_radiances[];")
 
 
 class LightShape(enum.IntEnum):
@@ -328,6 +355,7 @@ EMISSIVE_TRIANGLE = Record(
 )
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
 choosing it, and that of choosing it or one before."""
+StorageBlock("EmissiveTriangles", "EmissiveTriangle emissive_triangles[];")
 
 LIGHT_NODE = Record(
     "LightNode",
@@ -348,7 +376,7 @@ a leaf the number of its light or emissive triangle."""
 
 PROJECTIONS = ("PERSPECTIVE", "ORTHOGRAPHIC", *(kind.name for kind in PanoramaKind))
 """Of cameras, by number."""
-Constants("Projections", **{f"PROJECTION_{name}": number for number, name in enumerate(PROJECTIONS)})
+Constants("Projections", PROJECTION={name: number for number, name in enumerate(PROJECTIONS)})
 
 CAMERA_VIEW = Record(
     "CameraView",
@@ -380,3 +408,4 @@ iteration's jitter; ``pixel_area`` is a pixel's area on the window: at distance 
 cameras, m^2 of orthographic ones, share of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
 ``panorama_range`` is left, right, bottom, top in radians or of a cylinder of radius 1; ``sensor`` and
 ``lens`` are in millimetres."""
+StorageBlock("Camera", "CameraView camera;")

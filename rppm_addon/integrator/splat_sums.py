@@ -10,9 +10,13 @@ import numpy as np
 
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
+from ..gl.storage_blocks import StorageBlock
 
 SUM_PARAMETERS = {"quanta": "float", "roulette": "uint", "counting": "uint"}
 """Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl or collect.glsl."""
+
+StorageBlock("SplatSums", "uint sum_words[];")
+StorageBlock("PhotonCounts", "uint photon_counts[];")
 
 _PHOTON_QUANTA = 1 << 24
 _SUMS, _COUNTS = 48, 8

@@ -9,6 +9,7 @@ from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import DrawProgram, ProgramLibrary
 from ..gl.records import Record
+from ..gl.storage_blocks import StorageBlock
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import ESTIMATE_PARAMETERS, CameraRaster, StoredPhotons, TakingImportons
 
@@ -32,6 +33,9 @@ Record(
     **SUM_PARAMETERS,
     **ESTIMATE_PARAMETERS,
 )
+StorageBlock("Heads", "uint heads[];")
+StorageBlock("Core", "uint core_count; uint core_importons[];")
+StorageBlock("Jobs", "uint job_vertices; uint draw_arguments[3]; SplatJob jobs[];")
 
 
 class Splatting:

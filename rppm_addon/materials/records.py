@@ -5,6 +5,7 @@ import enum
 
 from ..gl.constants import Constants
 from ..gl.records import Record
+from ..gl.storage_blocks import StorageBlock
 
 MATERIAL = Record(
     "Material",
@@ -18,6 +19,7 @@ MATERIAL = Record(
 """A material: absorption of its interior in 1/m, the program that evaluates its node graph, and where its constants
 start in MaterialData; whether lamps shine through where it is transparent (0) or not (1); whether what it scatters
 depends on where it is seen from (1)."""
+StorageBlock("Materials", "Material materials[];")
 
 IMAGE_ENTRY = Record("ImageEntry", first_texel="uint", width="uint", height="uint", format="uint")
 """Where an image's texels lie, and their TexelFormat."""

@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "splat_sums/sums.glsl"
 layout(std140, binding = 0) uniform Parameters { NarrowParameters parameters; };
-layout(std430, binding = 0) readonly buffer PhotonCounts { uint photon_counts[]; };
-layout(std430, binding = 1) buffer RadiusFactors { float radius_factors[]; };
+layout(std430, binding = 0) readonly buffer PhotonCounts;
+layout(std430, binding = 1) buffer RadiusFactors;
 
 void main() {
     uint index = invocation_index();

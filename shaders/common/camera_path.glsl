@@ -8,8 +8,8 @@
 const uint PATH_STRAIGHT = 1u, PATH_SURFACE_FOUND = 2u, PATH_GATHERED = 4u, PATH_DIFFUSE = 8u, PATH_TRANSMITTED = 16u,
            PATH_SINGULAR = 32u, PATH_CAUSTIC = 64u, PATH_GATHERED_AGAIN = 128u;
 
-// Whether a path whose ray came to a surface sets out to gather, from there or again: in corners, within some distance of
-// where the ray began, the disk in which photons count reaches beyond the surface, to where there are none.
+// Whether a path whose ray came to a surface sets out to gather, from there or again: in corners, within some distance
+// of where the ray began, the disk in which photons count reaches beyond the surface, to where there are none.
 bool path_gathers(uint flags, float ray_length, float again_below) {
     return (flags & PATH_GATHERED) == 0u || ((flags & PATH_CAUSTIC) == 0u && ray_length < again_below);
 }

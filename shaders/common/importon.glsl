@@ -5,10 +5,12 @@
 #include "common/sampling.glsl"
 #include "common/gathering.glsl"
 #include "common/world_caustics.glsl"
-layout(std430, binding = 6) readonly buffer WorldRadiances { float world_radiances[]; };
+layout(std430, binding = 6) readonly buffer WorldRadiances;
 
 // Flux arrived by the geometric cosine; a part of the BSDF asks for that of its own normal.
-float shading_correction(float cosine, float geometric_cosine) { return min(abs(cosine) / max(geometric_cosine, 1e-5), 4.0); }
+float shading_correction(float cosine, float geometric_cosine) {
+    return min(abs(cosine) / max(geometric_cosine, 1e-5), 4.0);
+}
 
 // BSDF times path throughput of an importon for a photon from wi, in front or behind; geometric_cosine: by which
 // the photon arrived.
@@ -19,13 +21,15 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
     if ((cosine > 0.0) == front) {
         value = (front ? importon.diffuse : importon.translucent)
               * rough_diffuse_factor(importon.diffuse_roughness, normal, importon.direction, wi);
-        value *= bump_shadowing(unpack_unit_vector(importon.shading_normal), normal, wi) * shading_correction(cosine, geometric_cosine);
+        value *= bump_shadowing(unpack_unit_vector(importon.shading_normal), normal, wi)
+                 * shading_correction(cosine, geometric_cosine);
     }
     uint kind = unpack_kind(importon.lobe_kind);
     if (kind != LOBE_NONE) {
         normal = unpack_unit_vector(importon.lobe_normal);
         cosine = dot(normal, wi);
-        MicrofacetLobe lobe = MicrofacetLobe(importon.lobe_weight, kind, importon.lobe_f0, importon.lobe_alpha, unpack_tint(importon.lobe_kind),
+        MicrofacetLobe lobe = MicrofacetLobe(importon.lobe_weight, kind, importon.lobe_f0, importon.lobe_alpha,
+                                             unpack_tint(importon.lobe_kind),
                                              importon.lobe_ior, importon.lobe_normal, importon.lobe_anisotropy);
         if ((cosine > 0.0) == front)
             value += evaluate_lobe(lobe, normal, importon.direction, wi)
@@ -67,10 +71,12 @@ bool density_estimate(Importon importon, Photon photon, uint photon_number, floa
     float alignment = dot(geometric, photon_normal);
     if (abs(alignment) < NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
-    if (alignment < 0.0 && !lobe_transmits(unpack_kind(importon.lobe_kind)) && largest(importon.translucent) <= 0.0) return false;
+    if (alignment < 0.0 && !lobe_transmits(unpack_kind(importon.lobe_kind)) && largest(importon.translucent) <= 0.0)
+        return false;
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     float geometric_cosine = abs(dot(photon_normal, photon.direction));
     radiance = evaluate_importon(importon, photon.direction, alignment > 0.0, geometric_cosine) * photon.flux * kernel;
-    if ((importon.gathers & GATHERS_BY_RAY) != 0u && (photon.flags & PHOTON_DIRECT) == 0u) radiance *= caustic_share(photon_number, importon.radius);
+    if ((importon.gathers & GATHERS_BY_RAY) != 0u && (photon.flags & PHOTON_DIRECT) == 0u)
+        radiance *= caustic_share(photon_number, importon.radius);
     return largest(radiance) > 0.0;
 }

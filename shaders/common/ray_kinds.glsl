@@ -10,5 +10,6 @@ const uint RAY_SINGULAR = 32u;  // with one of these: it has but one direction
 uint camera_ray_kind(uint flags) {
     if ((flags & PATH_STRAIGHT) != 0u) return RAY_CAMERA;
     if ((flags & PATH_DIFFUSE) != 0u) return RAY_DIFFUSE;
-    return ((flags & PATH_TRANSMITTED) != 0u ? RAY_TRANSMISSION : RAY_GLOSSY) | ((flags & PATH_SINGULAR) != 0u ? RAY_SINGULAR : 0u);
+    return ((flags & PATH_TRANSMITTED) != 0u ? RAY_TRANSMISSION : RAY_GLOSSY)
+           | ((flags & PATH_SINGULAR) != 0u ? RAY_SINGULAR : 0u);
 }

@@ -53,7 +53,8 @@ vec3 sample_cone(vec3 axis, float one_minus_cosine, vec2 u) {
 vec2 cone_to_square(vec3 axis, float one_minus_cosine, vec3 direction) {
     vec3 t, b;
     tangent_frame(axis, t, b);
-    return vec2((1.0 - dot(direction, axis)) / one_minus_cosine, fract(atan(dot(direction, b), dot(direction, t)) / (2.0 * PI)));
+    return vec2((1.0 - dot(direction, axis)) / one_minus_cosine,
+                fract(atan(dot(direction, b), dot(direction, t)) / (2.0 * PI)));
 }
 
 vec3 sample_sphere(vec2 u) {

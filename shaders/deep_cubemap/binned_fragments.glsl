@@ -2,9 +2,8 @@
 // The fragments of cells with depth bins, with depths as entries have them; and the bins that one belongs to.
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/bins.glsl"
-#include <BinnedFragment>
 
-layout(std430, binding = 5) restrict readonly buffer BinnedFragments { BinnedFragment binned_fragments[]; };
+layout(std430, binding = 5) restrict readonly buffer BinnedFragments;
 
 // First and last bin of the fragment in its cell.
 ivec2 fragment_bins(BinnedFragment fragment, CubemapCell cell) {

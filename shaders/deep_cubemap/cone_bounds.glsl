@@ -12,7 +12,8 @@ void widen_by_point(vec3 point, vec4 cone, float margin, float least_depth, inou
     }
 }
 
-void widen_by_edge(vec3 a, vec3 b, vec4 inside_a, vec4 inside_b, vec4 cone, float margin, float least_depth, inout vec4 extent) {
+void widen_by_edge(vec3 a, vec3 b, vec4 inside_a, vec4 inside_b, vec4 cone, float margin, float least_depth,
+                   inout vec4 extent) {
     float from, to;
     if (!clip_edge(inside_a, inside_b, from, to)) return;
     widen_by_point(mix(a, b, from), cone, margin, least_depth, extent);

@@ -97,7 +97,8 @@ bool cone_depths(vec3 a, vec3 b, vec3 c, vec4 bounds, float margin, out vec2 int
             }
         }
         // the planes meet 2 * margin / (bounds.y - bounds.x) behind the centre
-        if (touches_tip(triangle, b, c, margin * (2.0 + 2.0 / (bounds.y - bounds.x)))) interval.x = min(interval.x, 0.0);
+        if (touches_tip(triangle, b, c, margin * (2.0 + 2.0 / (bounds.y - bounds.x))))
+            interval.x = min(interval.x, 0.0);
     }
     if (interval.x > interval.y || interval.y < -margin) return false;
     interval = max(interval + vec2(-1.0, 1.0) * (margin + 1e-6 * abs(interval)), vec2(0.0));

@@ -6,7 +6,6 @@ layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
 #include <DivideLevel>
-#include <BinnedFragment>
 layout(std140, binding = 0) uniform Parameters { DivideLevel parameters; };
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
@@ -17,7 +16,7 @@ layout(std140, binding = 0) uniform Parameters { DivideLevel parameters; };
 #include "deep_cubemap/fragments.glsl"
 
 layout(std430, binding = 4) restrict readonly buffer OldFragments { OverlapFragment old_fragments[]; };
-layout(std430, binding = 5) restrict writeonly buffer BinnedFragments { BinnedFragment binned_fragments[]; };
+layout(std430, binding = 5) restrict writeonly buffer BinnedFragments;
 
 void divide_fragment(OverlapFragment fragment, uint tile) {
     uvec2 extent = uvec2(fragment.extent_low, fragment.extent_high);

@@ -4,10 +4,9 @@
 // What the rays through the pixels cost: (steps, triangle tests, entries in the cell of the hit, entries read).
 layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
-#include <CameraView>
 #include "deep_cubemap/traverse.glsl"
 
-layout(std430, binding = 0) restrict readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 0) restrict readonly buffer Camera;
 layout(std430, binding = 1) restrict writeonly buffer Inspections { vec4 inspections[]; };
 #include "gbuffer/panorama.glsl"
 
@@ -36,7 +35,8 @@ void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
     vec2 at = window_point(index), centre = vec2(0.0);
-    Ray ray = world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, centre) : panorama_ray(at, centre));
+    Ray ray = world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, centre)
+                        : panorama_ray(at, centre));
     Hit hit = deep_cubemap_hit(ray);
     uint listed = hit.triangle == NO_TRIANGLE
         ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.centre);

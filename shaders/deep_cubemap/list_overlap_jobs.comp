@@ -40,7 +40,8 @@ void list_jobs(uint triangle, int face, uvec2 extent) {
     ivec4 tiles = cells >> 2;
     for (ivec2 divided = tiles.xy; divided.y <= tiles.w; ++divided.y) {
         for (divided.x = tiles.x; divided.x <= tiles.z; ++divided.x) {
-            uint tile = dense_cell_index(face, divided, int(deep_cubemap.base_level) - 1, 1 << deep_cubemap.root_exponent);
+            uint tile = dense_cell_index(face, divided, int(deep_cubemap.base_level) - 1,
+                                         1 << deep_cubemap.root_exponent);
             add_job(triangle, tile, extent_in_tile(extent, divided, side_exponent), extent);
         }
     }

@@ -9,8 +9,8 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { TraceParameters parameters; };
 #include "deep_cubemap/traverse.glsl"
 
-layout(std430, binding = 1) restrict readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 2) restrict writeonly buffer Visibility { uint visibility[]; };
+layout(std430, binding = 1) restrict readonly buffer Rays;
+layout(std430, binding = 2) restrict writeonly buffer Visibility;
 
 void main() {
     uint index = living_path_at(parameters.first_place + invocation_index());

@@ -47,7 +47,8 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     ++walk_counts.y;
 #endif
     intersect_triangle(
-        walk.test, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz, triangle_vertex(3u * triangle + 2u).xyz,
+        walk.test, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz,
+        triangle_vertex(3u * triangle + 2u).xyz,
         best);
 }
 

@@ -5,6 +5,6 @@
 layout(binding = 2) uniform samplerBuffer Triangles;
 vec4 triangle_vertex(uint number) { return texelFetch(Triangles, int(number)); }
 #else
-layout(std430, binding = 8) restrict readonly buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 8) restrict readonly buffer Triangles;
 vec4 triangle_vertex(uint number) { return triangle_vertices[number]; }
 #endif

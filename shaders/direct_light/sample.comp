@@ -4,7 +4,6 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
 #include <DirectLightParameters>
 #include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
@@ -13,12 +12,12 @@ layout(local_size_x = 64) in;
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "emission/light_tree.glsl"
-layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 1) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 2) readonly buffer CameraPaths { CameraPath camera_paths[]; };
-layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
-layout(std430, binding = 9) writeonly buffer LightTriangles { uint light_triangles[]; };
-layout(std430, binding = 8) writeonly buffer Contributions { vec4 contributions[]; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) readonly buffer Rays;
+layout(std430, binding = 2) readonly buffer CameraPaths;
+layout(std430, binding = 3) writeonly buffer ShadowRays;
+layout(std430, binding = 9) writeonly buffer LightTriangles;
+layout(std430, binding = 8) writeonly buffer Contributions;
 
 // The alpha above which lobes are evaluated towards lights.
 float smoothest_lit(bool gathered) {
@@ -37,9 +36,11 @@ bool can_be_lit(Closure closure, bool gathered) {
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
 // choice of the light included.
-vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, bool gathers, vec3 wo, vec3 wi, bool front, uint visibility,
+vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, bool gathers, vec3 wo, vec3 wi, bool front,
+                      uint visibility,
                       bool environment, float light_pdf) {
-    vec4 shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, false), gathering_shares = vec4(0.0);
+    vec4 shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, false),
+        gathering_shares = vec4(0.0);
     if (gathers) gathering_shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, true);
     float total = sum(shares) + sum(gathering_shares);
     vec3 value = (visibility & RAY_DIFFUSE) != 0u ? diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
@@ -79,14 +80,17 @@ void main() {
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
     bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
     if (!can_be_lit(closure, gathered)) return;
-    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_DIRECT_LIGHT << 24u));
-    vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices), scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
+                                STAGE_DIRECT_LIGHT << 24u));
+    vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices),
+                  scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(camera_paths[index].flags, closure.distance, parameters.gathers_again_below);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure)), environment_irradiance, u.x, u.y);
+    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure)),
+                                         environment_irradiance, u.x, u.y);
     if (!(choice.probability > 0.0)) return;
     Light light = lights[choice.light];
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);

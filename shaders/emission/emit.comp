@@ -4,19 +4,17 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
-#include <PhotonPath>
 #include <EmitParameters>
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
 #include "emission/photons.glsl"
-layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 1) writeonly buffer PhotonPaths { PhotonPath photon_paths[]; };
-layout(std430, binding = 8) writeonly buffer PhotonCells { uint photon_cells[]; };
+layout(std430, binding = 0) writeonly buffer Rays;
+layout(std430, binding = 1) writeonly buffer PhotonPaths;
+layout(std430, binding = 8) writeonly buffer PhotonCells;
 
-layout(std430, binding = 9) writeonly buffer WorldRadiances { float world_radiances[]; };
+layout(std430, binding = 9) writeonly buffer WorldRadiances;
 
 #include <GuideCells>
 

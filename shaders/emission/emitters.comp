@@ -5,15 +5,14 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
 #include <Hit>
 #include <EmittersParameters>
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
 layout(std140, binding = 0) uniform Parameters { EmittersParameters parameters; };
-layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 1) readonly buffer LightTriangles { uint light_triangles[]; };
-layout(std430, binding = 2) readonly buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 0) readonly buffer Rays;
+layout(std430, binding = 1) readonly buffer LightTriangles;
+layout(std430, binding = 2) readonly buffer Triangles;
 layout(std430, binding = 3) writeonly buffer EmitterRays { Ray emitter_rays[]; };
 layout(std430, binding = 4) writeonly buffer EmitterHits { Hit emitter_hits[]; };
 

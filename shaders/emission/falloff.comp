@@ -6,16 +6,13 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
-#include <Hit>
-#include <PhotonPath>
 #include <FalloffParameters>
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { FalloffParameters parameters; };
 #include "emission/lights.glsl"
-layout(std430, binding = 0) buffer Rays { Ray rays[]; };
-layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
+layout(std430, binding = 0) buffer Rays;
+layout(std430, binding = 1) readonly buffer Hits;
+layout(std430, binding = 2) buffer PhotonPaths;
 
 void main() {
     uint index = invocation_index();

@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { LearnParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer PhotonCells { uint photon_cells[]; };
+layout(std430, binding = 0) readonly buffer Photons;
+layout(std430, binding = 1) readonly buffer PhotonCells;
 layout(std430, binding = 2) buffer Tallies { uvec2 tallies[]; };  // left, useful
 
 #include <GuideCells>

@@ -62,7 +62,8 @@ float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep
     float probability = 1.0, even_fraction = EVEN_FRACTION_OF_TREE / float(max(findMSB(leaves), 1));
     uint node = 1u;
     for (uint level = 1u; node < leaves; ++level) {
-        float low = node_importance(light_nodes[first + 2u * node], point), high = node_importance(light_nodes[first + 2u * node + 1u], point);
+        float low = node_importance(light_nodes[first + 2u * node], point),
+            high = node_importance(light_nodes[first + 2u * node + 1u], point);
         if (!(low + high > 0.0)) return 0.0;
         float low_probability = low / (low + high);
         if (low > 0.0 && high > 0.0) low_probability = mix(low_probability, 0.5, even_fraction);
@@ -83,10 +84,12 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     float total = 0.0, shining = 0.0;
     // The first sun's is kept as well: most scenes have no other.
     vec4 importances = vec4(tree_importance(0u, parameters.light_tree_leaves, point),
-                            tree_importance(parameters.triangle_tree, parameters.triangle_tree_leaves, point), environment_irradiance,
+                            tree_importance(parameters.triangle_tree, parameters.triangle_tree_leaves, point),
+                            environment_irradiance,
                             parameters.sun_count > 0u ? sun_importance(light_nodes[parameters.first_sun], point) : 0.0);
     for (uint kind = 0u; kind < kinds; ++kind) {
-        float importance = kind < 4u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+        float importance = kind < 4u ? importances[kind]
+                           : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
         total += importance;
         shining += importance > 0.0 ? 1.0 : 0.0;
     }
@@ -94,7 +97,8 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     if (!(total > 0.0)) return choice;
     uint chosen = kinds;
     for (uint kind = 0u; kind < kinds; ++kind) {
-        float importance = kind < 4u ? importances[kind] : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+        float importance = kind < 4u ? importances[kind]
+                           : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
         if (!(importance > 0.0)) continue;
         float probability = (1.0 - EVEN_FRACTION_OF_KINDS) * importance / total + EVEN_FRACTION_OF_KINDS / shining;
         chosen = kind;
@@ -108,10 +112,12 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
         choice.probability *= choose_leaf(0u, parameters.light_tree_leaves, point, u, u_deep, member);
         choice.light = member;
     } else if (chosen == 1u) {
-        choice.probability *= choose_leaf(parameters.triangle_tree, parameters.triangle_tree_leaves, point, u, u_deep, member);
+        choice.probability *= choose_leaf(parameters.triangle_tree, parameters.triangle_tree_leaves, point, u, u_deep,
+                                          member);
         choice.light = parameters.mesh_light;
         choice.triangle = member;
-    } else choice.light = chosen == 2u ? parameters.world_light : light_nodes[parameters.first_sun + chosen - 3u].member;
+    } else choice.light = chosen == 2u ? parameters.world_light
+        : light_nodes[parameters.first_sun + chosen - 3u].member;
     return choice;
 }
 
@@ -123,7 +129,8 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
     return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
 }
 
-vec3 passed_if_visible(uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_density) {
+vec3 passed_if_visible(uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray,
+                       float scatter_density) {
     Light light = lights[number];
     if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return vec3(0.0);
     float density;
@@ -136,7 +143,8 @@ vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray
     vec3 radiance = vec3(0.0);
     if (maximum_distance >= INFINITY_DISTANCE)
         for (uint sun = 0u; sun < parameters.sun_count; ++sun)
-            radiance += passed_if_visible(light_nodes[parameters.first_sun + sun].member, origin, direction, maximum_distance, ray, scatter_density);
+            radiance += passed_if_visible(light_nodes[parameters.first_sun + sun].member, origin, direction,
+                                          maximum_distance, ray, scatter_density);
     if (parameters.light_tree_leaves == 0u) return radiance;
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint node = 1u;

@@ -2,15 +2,14 @@
 // Light sources: samples of them from a point, and what a ray sees of them.
 // Needs the members scene_centre, scene_radius and mesh_selection of the parameters.
 
-#include <EmissiveTriangle>
 #include "emission/light_table.glsl"
 #include "emission/environment.glsl"
 #include "emission/lamp_maps.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
-layout(std430, binding = 5) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
+layout(std430, binding = 5) readonly buffer EmissiveTriangles;
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
-layout(std430, binding = 6) readonly buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 6) readonly buffer Triangles;
 
 #include <Lights>
 
@@ -137,7 +136,8 @@ bool sampled_by_solid_angle(Light light, vec3 point) {
 
 // Coordinates along both axes of an area light, which are not orthogonal where it is sheared.
 vec2 area_light_coordinates(Light light, vec3 offset) {
-    float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v), vv = dot(light.axis_v, light.axis_v);
+    float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v),
+        vv = dot(light.axis_v, light.axis_v);
     float pu = dot(offset, light.axis_u), pv = dot(offset, light.axis_v);
     return vec2(pu * vv - pv * uv, pv * uu - pu * uv) / (uu * vv - uv * uv);
 }
@@ -163,8 +163,10 @@ vec3 sample_area_light(Light light, vec3 point, vec2 u, out float density) {
         bool first = chosen < angles.x;
         vec2 within = vec2(first ? chosen / angles.x : (chosen - angles.x) / angles.y, u.y);
         float side = first ? -1.0 : 1.0;
-        vec3 to_light = sample_spherical_triangle(point, area_light_corner(light, 1.0, -1.0), area_light_corner(light, -1.0, 1.0),
-                                                  area_light_corner(light, side, side), first ? angles.x : angles.y, within);
+        vec3 to_light = sample_spherical_triangle(point, area_light_corner(light, 1.0, -1.0),
+                                                  area_light_corner(light, -1.0, 1.0),
+                                                  area_light_corner(light, side, side), first ? angles.x : angles.y,
+                                                  within);
         vec2 at = area_light_coordinates(light, to_light - offset);
         if (light.kind == LIGHT_ELLIPSE && dot(at, at) > 1.0) density = 0.0;
         return to_light;
@@ -238,7 +240,9 @@ LightSample sample_light_at_one_metre(Light light, uint emissive_triangle, vec3 
 bool is_area_light(Light light) { return light.kind == LIGHT_RECTANGLE || light.kind == LIGHT_ELLIPSE; }
 
 // Whether the normals of a lamp are those of a sphere, and not the light's direction.
-bool is_sphere(Light light) { return light.kind <= LIGHT_SPOT && light.radius > 0.0 && (light.flags & LIGHT_SOFT) == 0u; }
+bool is_sphere(Light light) {
+    return light.kind <= LIGHT_SPOT && light.radius > 0.0 && (light.flags & LIGHT_SOFT) == 0u;
+}
 
 // What the nodes of a lamp give where light leaves it. from_centre: from the lamp's position to there.
 vec3 emitted_factor(Light light, vec3 from_centre, vec3 direction) {
@@ -295,11 +299,13 @@ float emissive_triangle_density(vec3 point, uint triangle) {
 
 // Radiance of a light object without nodes that a ray passes within its length, where it does, and the density in
 // 1/sr with which sample_light gives the ray's direction.
-vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance, out float density) {
+vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance,
+                        out float density) {
     density = distance = 0.0;
     if (light.kind == LIGHT_SUN) {
         float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
-        if (maximum_distance < INFINITY_DISTANCE || solid_angle <= 0.0 || -dot(direction, light.normal) < light.cosine_cone)
+        if (maximum_distance < INFINITY_DISTANCE || solid_angle <= 0.0
+            || -dot(direction, light.normal) < light.cosine_cone)
             return vec3(0.0);
         density = 1.0 / solid_angle;
         return light.strength / solid_angle;

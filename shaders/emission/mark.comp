@@ -4,12 +4,11 @@
 
 layout(local_size_x = 64) in;
 
-#include <EmissiveTriangle>
 #include <CountParameters>
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
-layout(std430, binding = 0) readonly buffer EmissiveTriangles { EmissiveTriangle emissive_triangles[]; };
-layout(std430, binding = 1) buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 0) readonly buffer EmissiveTriangles;
+layout(std430, binding = 1) buffer Triangles;
 
 void main() {
     uint index = invocation_index();

@@ -13,7 +13,8 @@ struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bo
 
 // Density of both ways together over the plain one's measure: guided photons have the plain density times the
 // guide's; aimed ones that see no target have the plain one.
-float mixed_density(Light light, float plain, vec2 place, vec2 direction, float aimed, bool targets_seen, EmissionChoice choice) {
+float mixed_density(Light light, float plain, vec2 place, vec2 direction, float aimed, bool targets_seen,
+                    EmissionChoice choice) {
     float guided = plain * guide_density(light, guide_cell(light, place, direction));
     return mix(guided, targets_seen ? aimed : plain, choice.aimed_share);
 }
@@ -37,11 +38,13 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
 Emission emit_from_lamp(Light light, EmissionChoice choice) {
     float cones = target_cones(light.position);
     bool seen = cones > 0.0, spot = light.kind == LIGHT_SPOT;
-    vec3 direction = choice.aimed && seen ? sample_target_direction(light.position, cones, choice.target, choice.direction)
+    vec3 direction = choice.aimed && seen
+                   ? sample_target_direction(light.position, cones, choice.target, choice.direction)
                    : spot ? sample_cone(light.normal, light.spread_scale, choice.direction)
                           : sample_sphere(choice.direction);
     float plain = 1.0 / (4.0 * PI);
-    if (spot) plain = dot(direction, light.normal) >= 1.0 - light.spread_scale ? 1.0 / (2.0 * PI * light.spread_scale) : 0.0;
+    if (spot)
+        plain = dot(direction, light.normal) >= 1.0 - light.spread_scale ? 1.0 / (2.0 * PI * light.spread_scale) : 0.0;
     float aimed = seen ? target_direction_density(light.position, cones, direction) : 0.0;
     vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
     float density = mixed_density(light, plain, choice.place, square, aimed, seen, choice);
@@ -50,7 +53,8 @@ Emission emit_from_lamp(Light light, EmissionChoice choice) {
 }
 
 // From a point of a surface, with the density per area that the point was chosen by.
-Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle, vec3 radiance, float area_density, EmissionChoice choice) {
+Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle, vec3 radiance, float area_density,
+                           EmissionChoice choice) {
     float cones = target_cones(origin);
     bool seen = cones > 0.0, both_sides = light.kind == LIGHT_MESH, narrow = light.spread_tangent > 0.0;
     vec3 direction;
@@ -73,7 +77,8 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
                          : hemisphere_to_square(front ? normal : -normal, direction);
     if (both_sides) square.x = 0.5 * (square.x + (front ? 1.0 : 0.0));
     vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
-    float density = mixed_density(light, plain, place, square, seen ? target_direction_density(origin, cones, direction) : 0.0, seen, choice);
+    float density = mixed_density(light, plain, place, square,
+                                  seen ? target_direction_density(origin, cones, direction) : 0.0, seen, choice);
     if (!both_sides) radiance *= spread_attenuation(light, cosine);
     return Emission(both_sides ? offset_from_surface(origin, front ? normal : -normal) : origin, triangle, direction,
                     radiance * (cosine / (area_density * density)));
@@ -82,7 +87,8 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
 Emission emit_plain_photon(Light light, EmissionChoice choice) {
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_lamp(light, choice);
     if (light.kind == LIGHT_SUN)
-        return emit_from_infinity(light, sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction), light.strength, choice);
+        return emit_from_infinity(light, sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction),
+                                  light.strength, choice);
     if (light.kind == LIGHT_WORLD) {
         float density;
         vec3 towards = sample_world(choice.direction, density);
@@ -90,7 +96,8 @@ Emission emit_plain_photon(Light light, EmissionChoice choice) {
     }
     if (light.kind == LIGHT_MESH) {
         TrianglePoint point = sample_emissive_triangle(choice.part, choice.place);
-        return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.density, choice);
+        return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.density,
+                                 choice);
     }
     vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;
     vec3 origin = light.position + place.x * light.axis_u + place.y * light.axis_v;

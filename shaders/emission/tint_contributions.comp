@@ -1,15 +1,15 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitters whose emission varies were sampled as if of radiance 1. Next-event rays to such emitters find the radiance of the place that they sampled.
+// Emitters whose emission varies were sampled as if of radiance 1. Next-event rays to such emitters find the radiance
+// of the place that they sampled.
 
 layout(local_size_x = 64) in;
 
-#include <Closure>
 
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 1) buffer Contributions { vec4 contributions[]; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) buffer Contributions;
 
 void main() {
     uint index = living_path();

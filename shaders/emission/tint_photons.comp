@@ -1,15 +1,14 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitters whose emission varies were sampled as if of radiance 1. Photons that left such emitters carry the radiance of their place and direction.
+// Emitters whose emission varies were sampled as if of radiance 1. Photons that left such emitters carry the radiance
+// of their place and direction.
 
 layout(local_size_x = 64) in;
 
-#include <Closure>
-#include <PhotonPath>
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 1) buffer PhotonPaths { PhotonPath photon_paths[]; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) buffer PhotonPaths;
 
 void main() {
     uint index = living_path();

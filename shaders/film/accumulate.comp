@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { FilmParameters parameters; };
 #include "splat_sums/read.glsl"
-layout(std430, binding = 0) readonly buffer Radiances { vec4 radiances[]; };
+layout(std430, binding = 0) readonly buffer Radiances;
 layout(std430, binding = 2) buffer Film { vec4 film[]; };
 
 void main() {

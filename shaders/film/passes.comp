@@ -5,11 +5,6 @@
 
 layout(local_size_x = 64) in;
 
-#include <CameraView>
-#include <Closure>
-#include <Hit>
-#include <Ray>
-#include <TriangleAttributes>
 #include <PassParameters>
 #include <Passes>
 #include "common/living_paths.glsl"
@@ -17,14 +12,15 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "gbuffer/projections.glsl"
 layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
-layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
-layout(std430, binding = 1) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 2) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 3) buffer CameraPaths { CameraPath camera_paths[]; };
+layout(std430, binding = 0) readonly buffer Camera;
+layout(std430, binding = 1) readonly buffer Closures;
+layout(std430, binding = 2) readonly buffer Rays;
+layout(std430, binding = 3) buffer CameraPaths;
 layout(std430, binding = 4) buffer PassValues { float pass_values[]; };
-layout(std430, binding = 5) buffer PassCounts { uvec2 pass_counts[]; };  // iterations in the means; those with a surface
-layout(std430, binding = 6) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 7) readonly buffer Attributes { TriangleAttributes attributes[]; };
+// iterations in the means; those with a surface
+layout(std430, binding = 5) buffer PassCounts { uvec2 pass_counts[]; };
+layout(std430, binding = 6) readonly buffer Hits;
+layout(std430, binding = 7) readonly buffer Attributes;
 
 const float MOSTLY_TRANSPARENT = 0.5;
 

@@ -9,8 +9,8 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 layout(std140, binding = 0) uniform Parameters { FoundParameters parameters; };
 #include "splat_sums/read.glsl"
-layout(std430, binding = 0) buffer FoundRadiances { vec4 found_radiances[]; };
-layout(std430, binding = 2) readonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
+layout(std430, binding = 0) buffer FoundRadiances;
+layout(std430, binding = 2) readonly buffer GatheringVertices;
 
 void main() {
     uint index = invocation_index();

@@ -10,9 +10,9 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 #include "common/gathering.glsl"
 layout(std140, binding = 0) uniform Parameters { ShareParameters parameters; };
-layout(std430, binding = 0) readonly buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
-layout(std430, binding = 1) readonly buffer FoundRadiances { vec4 found_radiances[]; };
-layout(std430, binding = 2) buffer Radiances { vec4 radiances[]; };
+layout(std430, binding = 0) readonly buffer GatheringVertices;
+layout(std430, binding = 1) readonly buffer FoundRadiances;
+layout(std430, binding = 2) buffer Radiances;
 
 const float NORMAL_TOLERANCE = 0.9;
 const float PLANE_TOLERANCE = 0.35;
@@ -27,14 +27,17 @@ void main() {
     vec3 sum = found_radiances[index].rgb, normal = unpack_unit_vector(vertex.normal);
     float total = 1.0;
     uint taps = radius > 0.0 ? parameters.taps : 0u;
-    vec4 turn = progressive_random(parameters.seed, parameters.iteration, STAGE_GATHERING, 0u, parameters.first_pixel + index);
+    vec4 turn = progressive_random(parameters.seed, parameters.iteration, STAGE_GATHERING, 0u,
+                                   parameters.first_pixel + index);
     ivec2 size = ivec2(parameters.width, parameters.count / parameters.width);
     ivec2 pixel = ivec2(index % parameters.width, index / parameters.width);
     for (uint tap = 0u; tap < taps; ++tap) {
         float angle = 2.0 * PI * turn.x + GOLDEN_ANGLE * float(tap);
-        vec2 offset = parameters.radius_in_pixels * sqrt((float(tap) + turn.y) / float(taps)) * vec2(cos(angle), sin(angle));
+        vec2 offset = parameters.radius_in_pixels * sqrt((float(tap) + turn.y) / float(taps))
+                      * vec2(cos(angle), sin(angle));
         ivec2 other_pixel = pixel + nearest_whole(offset);
-        if (other_pixel == pixel || any(lessThan(other_pixel, ivec2(0))) || any(greaterThanEqual(other_pixel, size))) continue;
+        if (other_pixel == pixel || any(lessThan(other_pixel, ivec2(0))) || any(greaterThanEqual(other_pixel, size)))
+            continue;
         uint other_index = uint(other_pixel.y) * parameters.width + uint(other_pixel.x);
         GatheringVertex other = gathering_vertices[other_index];
         if (!(other.shared_radius > 0.0)) continue;

@@ -4,17 +4,14 @@
 
 layout(local_size_x = 64) in;
 
-#include <CameraView>
-#include <Ray>
-#include <Hit>
 #include "common/invocation.glsl"
 #include "common/camera_path.glsl"
 layout(binding = 0) uniform sampler2D visibility;
-layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
-layout(std430, binding = 1) readonly buffer Triangles { vec4 triangle_vertices[]; };
-layout(std430, binding = 2) writeonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 3) writeonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 4) writeonly buffer CameraPaths { CameraPath camera_paths[]; };
+layout(std430, binding = 0) readonly buffer Camera;
+layout(std430, binding = 1) readonly buffer Triangles;
+layout(std430, binding = 2) writeonly buffer Rays;
+layout(std430, binding = 3) writeonly buffer Hits;
+layout(std430, binding = 4) writeonly buffer CameraPaths;
 #include "gbuffer/camera_ray.glsl"
 
 Hit intersect_plane(Ray ray, uint triangle) {

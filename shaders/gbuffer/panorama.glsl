@@ -65,7 +65,8 @@ PanoramaPoint fisheye_lens_polynomial(vec2 at) {
     float angle = -(camera.polynomial_constant + dot(k, powers * size));
     float slope = dot(k * vec4(1.0, 2.0, 3.0, 4.0), powers);
     float solid_angle = camera.sensor.x * camera.sensor.y * abs(sin(dot(k, powers * least)) * slope) / least;
-    return PanoramaPoint(off_axis(sin(angle), cos(angle), across), abs(angle) > 0.5 * camera.field_of_view ? 0.0 : solid_angle);
+    return PanoramaPoint(off_axis(sin(angle), cos(angle), across),
+                         abs(angle) > 0.5 * camera.field_of_view ? 0.0 : solid_angle);
 }
 
 PanoramaPoint panorama_point(vec2 at) {

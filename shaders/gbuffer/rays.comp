@@ -4,16 +4,14 @@
 
 layout(local_size_x = 64) in;
 
-#include <CameraView>
-#include <Ray>
 #include <PrimaryRaysParameters>
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/camera_path.glsl"
 layout(std140, binding = 0) uniform Parameters { PrimaryRaysParameters parameters; };
-layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
-layout(std430, binding = 2) writeonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 4) writeonly buffer CameraPaths { CameraPath camera_paths[]; };
+layout(std430, binding = 0) readonly buffer Camera;
+layout(std430, binding = 2) writeonly buffer Rays;
+layout(std430, binding = 4) writeonly buffer CameraPaths;
 #include "gbuffer/aperture.glsl"
 #include "gbuffer/panorama.glsl"
 

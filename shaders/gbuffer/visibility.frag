@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The number of the nearest triangle, as two 16-bit parts that floats hold exactly.
 
-#include <CameraView>
 #include "gbuffer/projections.glsl"
-layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
+layout(std430, binding = 0) readonly buffer Camera;
 
 flat in uint triangle;
 in float view_depth;

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // DirectCameraHits: every triangle, projected by the camera of the band.
 
-#include <CameraView>
 #include "gbuffer/projections.glsl"
-layout(std430, binding = 0) readonly buffer Camera { CameraView camera; };
-layout(std430, binding = 1) readonly buffer Triangles { vec4 triangle_vertices[]; };
+layout(std430, binding = 0) readonly buffer Camera;
+layout(std430, binding = 1) readonly buffer Triangles;
 
 flat out uint triangle;
 out float view_depth;
@@ -20,5 +19,6 @@ void main() {
     if (camera.projection == PROJECTION_ORTHOGRAPHIC)
         gl_Position = vec4((2.0 * p.xy - middle) / extent, (2.0 * p.z - near - far) / (far - near), 1.0);
     else
-        gl_Position = vec4((2.0 * p.xy - middle * p.z) / extent, ((far + near) * p.z - 2.0 * far * near) / (far - near), p.z);
+        gl_Position = vec4((2.0 * p.xy - middle * p.z) / extent,
+                           ((far + near) * p.z - 2.0 * far * near) / (far - near), p.z);
 }

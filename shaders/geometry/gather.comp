@@ -5,7 +5,6 @@
 layout(local_size_x = 64) in;
 
 #include <InstanceEntry>
-#include <TriangleAttributes>
 #include <GatherParameters>
 #include "common/invocation.glsl"
 #include "common/geometry.glsl"
@@ -19,8 +18,8 @@ layout(std430, binding = 4) readonly buffer CornerUvs { vec2 corner_uvs[]; };
 layout(std430, binding = 5) readonly buffer TriangleCorners { uint triangle_corners[]; };
 layout(std430, binding = 6) readonly buffer TriangleSlots { uint triangle_slots[]; };
 layout(std430, binding = 7) readonly buffer SlotMaterials { uint slot_materials[]; };
-layout(std430, binding = 8) writeonly buffer Triangles { vec4 triangle_vertices[]; };
-layout(std430, binding = 9) writeonly buffer Attributes { TriangleAttributes attributes[]; };
+layout(std430, binding = 8) writeonly buffer Triangles;
+layout(std430, binding = 9) writeonly buffer Attributes;
 
 #include <MeshArrays>
 
@@ -34,7 +33,9 @@ uint instance_of(uint triangle) {
     return low;
 }
 
-vec3 three_floats(uint index) { return vec3(positions[3u * index], positions[3u * index + 1u], positions[3u * index + 2u]); }
+vec3 three_floats(uint index) {
+    return vec3(positions[3u * index], positions[3u * index + 1u], positions[3u * index + 2u]);
+}
 
 // By the bits, which no compiler may assume to be those of a number.
 bool reasonable(vec3 p) {
@@ -70,14 +71,18 @@ void main() {
         if (mirrored) normal = -normal;
         float size = length(normal);
         // A normal that cannot be used (zero, not finite) gives way to the face's.
-        normals[k] = size > 0.0 && size < 1e30 ? pack_unit_vector(normal / size) : pack_unit_vector(face / max(length(face), 1e-30));
-        uvs[k] = instance.mesh_uv == NO_UV ? vec2(0.0) : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
+        normals[k] = size > 0.0 && size < 1e30 ? pack_unit_vector(normal / size)
+                     : pack_unit_vector(face / max(length(face), 1e-30));
+        uvs[k] = instance.mesh_uv == NO_UV ? vec2(0.0)
+                 : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
     }
     // A triangle without finite corners becomes a point, which no ray meets. Fourth components: 1 where the triangle
     // casts no shadow; its chance among the emitters, and whether its emission varies (emission/mark.comp).
     for (uint k = 0u; k < 3u; ++k)
-        triangle_vertices[3u * triangle + k] = vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? float(instance.shadowless) : 0.0);
+        triangle_vertices[3u * triangle + k] =
+            vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? float(instance.shadowless) : 0.0);
     uint slot = min(triangle_slots[local], instance.slot_count - 1u);
-    attributes[triangle] = TriangleAttributes(normals[0], normals[1], normals[2], slot_materials[instance.first_slot + slot],
+    attributes[triangle] = TriangleAttributes(normals[0], normals[1], normals[2],
+                                              slot_materials[instance.first_slot + slot],
                                               uvs[0], uvs[1], uvs[2], number, 0u);
 }

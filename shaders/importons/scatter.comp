@@ -5,8 +5,6 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
-#include <CameraView>
 #include <ScatterImportonsParameters>
 #include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
@@ -18,21 +16,22 @@ layout(local_size_x = 64) in;
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "emission/light_tree.glsl"
-layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 1) buffer Rays { Ray rays[]; };
-layout(std430, binding = 2) buffer CameraPaths { CameraPath camera_paths[]; };
-layout(std430, binding = 3) writeonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) buffer Rays;
+layout(std430, binding = 2) buffer CameraPaths;
+layout(std430, binding = 3) writeonly buffer Importons;
 layout(std430, binding = 12) readonly buffer LitCatchers { uint lit_catchers[]; };
-layout(std430, binding = 11) buffer GatheringVertices { GatheringVertex gathering_vertices[]; };
-layout(std430, binding = 8) buffer Radiances { vec4 radiances[]; };
-layout(std430, binding = 9) readonly buffer Camera { CameraView camera; };
-layout(std430, binding = 15) readonly buffer RadiusFactors { float radius_factors[]; };
+layout(std430, binding = 11) buffer GatheringVertices;
+layout(std430, binding = 8) buffer Radiances;
+layout(std430, binding = 9) readonly buffer Camera;
+layout(std430, binding = 15) readonly buffer RadiusFactors;
 
 Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.diffuse_normal,
                                  throughput * closure.translucent / PI, closure.diffuse_roughness,
-                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers, closure.shading_normal, 0u, 0u);
+                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers,
+                                 closure.shading_normal, 0u, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
     float total = 0.0;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
@@ -89,13 +88,16 @@ void main() {
             else radiances[index].rgb += gathering_vertices[index].weight * arrived;
             return;
         }
-        float photons = world_photon_share(largest(world), parameters.world_photon_flux, gathering_vertices[index].radius);
+        float photons = world_photon_share(largest(world), parameters.world_photon_flux,
+                                           gathering_vertices[index].radius);
         gathering_vertices[index].found = path.throughput * world * (1.0 - photons);
         return;
     }
     vec4 seen = vec4(0.0);
 
-    vec3 lights_passed = gathered ? vec3(0.0) : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE, camera_ray_kind(path.flags), path.scatter_density);
+    vec3 lights_passed = gathered ? vec3(0.0)
+                         : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE,
+                                         camera_ray_kind(path.flags), path.scatter_density);
     seen.rgb += path.throughput * lights_passed;
     if (!hit) {
         bool background = largest(lights_passed) <= 0.0;
@@ -103,7 +105,8 @@ void main() {
             seen.a -= (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
         else {
             float share = scattered_share(path.scatter_density, environment_shadow_ray_pdf(ray.direction));
-            seen.rgb += path.throughput * (straight ? world_radiance_seen(ray.direction) : world_radiance(ray.direction)) * share;
+            seen.rgb += path.throughput * (straight ? world_radiance_seen(ray.direction)
+                                           : world_radiance(ray.direction)) * share;
         }
         radiances[index] += seen;
         return;
@@ -117,7 +120,8 @@ void main() {
             share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle));
         seen.rgb += path.throughput * closure.emission * share;
     }
-    if (straight) seen.a -= closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
+    if (straight)
+        seen.a -= closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
     radiances[index] += seen;
 
     vec3 viewer = -ray.direction;
@@ -133,11 +137,13 @@ void main() {
     float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
     float radius = path.primary_radius * growth;
     radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
-    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor : radius_factors[parameters.first_pixel + index];
+    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor
+                   : radius_factors[parameters.first_pixel + index];
     float caustic_radius = gathered ? max(radius, parameters.radius_by_ray) : factor * radius;
 
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
-    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed, STAGE_IMPORTONS << 24u));
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
+                                STAGE_IMPORTONS << 24u));
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
@@ -147,7 +153,8 @@ void main() {
     if (parameters.last_segment != 0u) return;
     vec4 shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, false);
     vec4 gathering_shares = vec4(0.0);
-    if (gathers) gathering_shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, true);
+    if (gathers)
+        gathering_shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, true);
     float gathering = sum(gathering_shares), total = sum(shares) + gathering;
     if (total <= 0.0) return;
     float survival = path_survival(total);
@@ -192,7 +199,8 @@ void main() {
         normal = lobe_normal(lobe);
         LobeSample sampled = sample_lobe(lobe, normal, viewer, u_direction, u_event, true);
         if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
-            path.scatter_density = lobe_probability(shares, total, chosen) * lobe_density(lobe, normal, viewer, sampled.direction);
+            path.scatter_density = lobe_probability(shares, total, chosen)
+                                   * lobe_density(lobe, normal, viewer, sampled.direction);
         direction = sampled.direction;
         weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
         transmitted = sampled.transmitted;
@@ -208,7 +216,8 @@ void main() {
         path.throughput *= found_weight;
     } else if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
-        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput, pack_unit_vector(normal),
+        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput,
+                                                    pack_unit_vector(normal),
                                                     vec3(0.0), caustic_radius);
         path.throughput = found_weight;
     }

@@ -12,9 +12,9 @@ layout(std140, binding = 0) uniform Parameters { FirstHitsParameters parameters;
 #include "light_gbuffer/views.glsl"
 #include "living_paths/kept.glsl"
 #include "deep_cubemap/triangles.glsl"
-layout(std430, binding = 3) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 5) writeonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 2) readonly buffer TexelTriangles { uint texel_triangles[]; };
+layout(std430, binding = 3) readonly buffer Rays;
+layout(std430, binding = 5) writeonly buffer Hits;
+layout(std430, binding = 2) readonly buffer TexelTriangles;
 layout(std430, binding = 6) readonly buffer LightViewRanges { uvec2 view_ranges[]; };  // of each light: first, count
 
 // The face of a cube, in the order of to_face (deep_cubemap/faces.glsl).
@@ -44,7 +44,8 @@ bool find_hit(Ray ray, uvec2 range, out Hit hit) {
     WatertightRay test = make_watertight_ray(ray.origin, ray.direction);
     for (uint place = texel.end - texel.count; place < texel.end; ++place) {
         uint triangle = texel_triangles[place];
-        intersect_triangle(test, triangle, triangle_vertices[3u * triangle].xyz, triangle_vertices[3u * triangle + 1u].xyz,
+        intersect_triangle(test, triangle, triangle_vertices[3u * triangle].xyz,
+                           triangle_vertices[3u * triangle + 1u].xyz,
                            triangle_vertices[3u * triangle + 2u].xyz, hit);
     }
     if (hit.triangle == NO_TRIANGLE) return false;

@@ -5,10 +5,9 @@
 layout(local_size_x = 64) in;
 
 #include <CountParameters>
-#include <LivingPathsHeader>
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
-layout(std430, binding = 0) buffer KeptPaths { LivingPathsHeader kept; uint kept_paths[]; };
+layout(std430, binding = 0) buffer KeptPaths;
 
 void main() {
     uint index = invocation_index();

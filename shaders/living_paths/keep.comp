@@ -4,9 +4,8 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 0) readonly buffer Rays;
 #include "living_paths/kept.glsl"
 
 void main() {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A list of paths that grows, with the arguments of a dispatch over it; it begins empty.
-#include <LivingPathsHeader>
-layout(std430, binding = 15) buffer KeptPaths { LivingPathsHeader kept; uint kept_paths[]; };
+layout(std430, binding = 15) buffer KeptPaths;
 
 #include <Dispatch>
 

@@ -20,7 +20,8 @@ struct ClosureBuilder {
 };
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice, false, 0);
+    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice,
+                                            false, 0);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
 }
@@ -44,8 +45,8 @@ vec3 given_normal(ClosureBuilder builder, vec3 normal) {
     return length2 > 1e-12 ? normal * inversesqrt(length2) : builder.shading;
 }
 
-// A mapped or bumped normal may mirror the viewer's direction to below the surface, where nothing is seen. As in Cycles it is
-// then bent towards the geometric normal g until the mirrored direction rises to `least` above the surface: with
+// A mapped or bumped normal may mirror the viewer's direction to below the surface, where nothing is seen. As in Cycles
+// it is then bent towards the geometric normal g until the mirrored direction rises to `least` above the surface: with
 // q = cos^2 of the angle of both normals, and the viewer at (x, z) in their plane,
 // (x^2 + z^2) q^2 - (x^2 + z^2 + z least) q + (z + least)^2 / 4 = 0.
 vec3 reflecting_normal(ClosureBuilder builder, vec3 normal) {
@@ -61,7 +62,8 @@ vec3 reflecting_normal(ClosureBuilder builder, vec3 normal) {
     float x = dot(viewer, across), square = x * x + z * z, linear = square + z * least;
     float root = sqrt(max(linear * linear - square * (z + least) * (z + least), 0.0));
     // The smaller root without the difference of numbers alike.
-    float q = x < 0.0 ? 0.5 * (linear + root) / max(square, 1e-12) : 0.5 * (z + least) * (z + least) / max(linear + root, 1e-12);
+    float q = x < 0.0 ? 0.5 * (linear + root) / max(square, 1e-12)
+              : 0.5 * (z + least) * (z + least) / max(linear + root, 1e-12);
     q = clamp(q, 0.0, 1.0);
     return normalize(sqrt(1.0 - q) * across + sqrt(q) * g);
 }
@@ -76,7 +78,8 @@ void add_diffuse_parts(inout ClosureBuilder builder, vec3 diffuse, vec3 transluc
     float held = largest(held_diffuse) + largest(held_translucent);
     if (largest(diffuse) <= 0.0 && roughness == 0u) roughness = builder.closure.diffuse_roughness;
     bool free = largest(held_diffuse) <= 0.0 && (builder.closure.diffuse_roughness & ROUGH_BEHIND) == 0u;
-    bool alike = packed_normal == builder.closure.diffuse_normal && (free || roughness == builder.closure.diffuse_roughness);
+    bool alike = packed_normal == builder.closure.diffuse_normal
+                 && (free || roughness == builder.closure.diffuse_roughness);
     if (held <= 0.0 || alike) {
         builder.closure.diffuse_normal = packed_normal;
         builder.closure.diffuse_roughness = roughness;

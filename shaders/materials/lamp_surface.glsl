@@ -23,7 +23,8 @@ Surface lamp_surface(vec2 pixel, vec3 map_direction) {
     bool places = parameters.lamp_shape == MAP_PLACES, cone = parameters.lamp_shape == MAP_CONE;
     if (places) direction = parameters.lamp_normal;
     if (cone) direction = normalize(parameters.lamp_normal + at.x * u + at.y * v);
-    Surface lamp = Surface(parameters.lamp_position + parameters.lamp_radius * direction, direction, direction, direction, pixel,
+    Surface lamp = Surface(parameters.lamp_position + parameters.lamp_radius * direction, direction, direction,
+                           direction, pixel,
                            vec3(0.0), NO_TRIANGLE, 0u, false, RAY_DIFFUSE, parameters.ray_length, 0u);
     if (parameters.lamp_kind == LAMP_AREA) {
         lamp.normal = lamp.geometric = parameters.lamp_normal;

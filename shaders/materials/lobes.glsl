@@ -12,7 +12,9 @@ struct Film { float thickness; float ior; };
 
 // Microfacets under a film follow the curve of the bare base, with the reflectance at normal incidence that gives what
 // the film reflects at the angle of the viewer to the normal; rise: of the curve, there.
-vec3 at_normal_incidence(vec3 reflectance, float rise) { return clamp((reflectance - rise) / max(1.0 - rise, 1e-3), 0.0, 1.0); }
+vec3 at_normal_incidence(vec3 reflectance, float rise) {
+    return clamp((reflectance - rise) / max(1.0 - rise, 1e-3), 0.0, 1.0);
+}
 
 // Where a node's microfacets lie: normal packed and unpacked, anisotropy packed, roughness of the mean alpha.
 struct Microfacets { vec3 normal; uint packed_normal; uint anisotropy; float alpha; float cosine; };
@@ -24,7 +26,8 @@ Microfacets isotropic_microfacets(ClosureBuilder builder, vec3 normal, float rou
 }
 
 // alpha_x = alpha / aspect lies along the tangent turned by `rotation` full turns, alpha_y = alpha aspect across.
-Microfacets anisotropic_microfacets(ClosureBuilder builder, vec3 normal, float roughness, float aspect, vec3 tangent, float rotation) {
+Microfacets anisotropic_microfacets(ClosureBuilder builder, vec3 normal, float roughness, float aspect, vec3 tangent,
+                                    float rotation) {
     Microfacets made = isotropic_microfacets(builder, normal, roughness);
     if (aspect == 1.0) return made;
     vec3 across = cross(made.normal, tangent);
@@ -65,10 +68,12 @@ void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3
 
 // f0: at normal incidence; edge: the tint at 82 degrees. Under a film the base is taken for a dielectric that reflects
 // as much.
-void add_metal(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 f0, vec3 edge, Film film, bool multiscatter) {
+void add_metal(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 f0, vec3 edge, Film film,
+               bool multiscatter) {
     vec3 factor = vec3(1.0);
     if (film.thickness > THINNEST_FILM) {
-        vec3 root = sqrt(clamp(f0, 0.0, 0.99)), index = (1.0 + root) / (1.0 - root), amplitude = (index - film.ior) / (index + film.ior);
+        vec3 root = sqrt(clamp(f0, 0.0, 0.99)), index = (1.0 + root) / (1.0 - root),
+            amplitude = (index - film.ior) / (index + film.ior);
         vec3 reflectance = thin_film_reflectance(at.cosine, film.thickness, 1.0, film.ior, 1.0, amplitude * amplitude);
         f0 = at_normal_incidence(reflectance, schlick_interpolation(at.cosine));
         edge = vec3(1.0);
@@ -83,11 +88,13 @@ void add_metal(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 f
 }
 
 // tint: of the reflectance at normal incidence; repeated: of light that facets send to each other.
-void add_glass(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, vec3 tint, vec3 repeated, float ior, bool multiscatter) {
+void add_glass(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, vec3 tint, vec3 repeated,
+               float ior, bool multiscatter) {
     float relative = builder.backfacing ? 1.0 / ior : ior;
     if (multiscatter) {
         float roughness = sqrt(at.alpha);
-        vec3 factor = restored_energy(max(glass_albedo(relative, roughness, at.cosine), 0.05), glass_average_albedo(relative, roughness), repeated);
+        vec3 factor = restored_energy(max(glass_albedo(relative, roughness, at.cosine), 0.05),
+                                      glass_average_albedo(relative, roughness), repeated);
         reflected *= factor;
         passed *= factor;
     }
@@ -95,7 +102,8 @@ void add_glass(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec
 }
 
 void add_refraction(inout ClosureBuilder builder, Microfacets at, vec3 weight, float ior) {
-    add_lobe(builder, microfacet_lobe(at, LOBE_REFRACTION, weight, vec3(0.0), vec3(1.0), builder.backfacing ? 1.0 / ior : ior));
+    add_lobe(builder, microfacet_lobe(at, LOBE_REFRACTION, weight, vec3(0.0), vec3(1.0),
+                                      builder.backfacing ? 1.0 / ior : ior));
 }
 
 // Albedo of the sheen, by which it hides what lies below.
@@ -115,9 +123,12 @@ void add_velvet(inout ClosureBuilder builder, vec3 weight, float sigma, vec3 nor
                                      pack_unit_vector(given_normal(builder, normal)), ISOTROPIC));
 }
 
-void add_glass_with_film(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, Film film, float ior) {
-    vec3 reflectance = builder.backfacing ? thin_film_reflectance(at.cosine, film.thickness, ior, film.ior, 1.0, vec3(-1.0))
-                                          : thin_film_reflectance(at.cosine, film.thickness, 1.0, film.ior, ior, vec3(-1.0));
+void add_glass_with_film(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, Film film,
+                         float ior) {
+    vec3 reflectance = builder.backfacing ? thin_film_reflectance(at.cosine, film.thickness, ior, film.ior, 1.0,
+                                                                  vec3(-1.0))
+                                          : thin_film_reflectance(at.cosine, film.thickness, 1.0, film.ior, ior,
+                                                                  vec3(-1.0));
     float relative = builder.backfacing ? 1.0 / ior : ior;
     vec3 f0 = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, relative));
     add_lobe(builder, microfacet_lobe(at, LOBE_COATED_GLASS, reflected, passed, f0, relative));

@@ -2,8 +2,7 @@
 // Absorption inside closed surfaces. As in Cycles, only materials with a volume fill their inside,
 // and volumes that overlap add up; a path remembers two of them.
 
-#include <Material>
-layout(std430, binding = 10) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 10) readonly buffer Materials;
 
 // A path's flags: 10 bits of its own, then two material numbers plus one, 11 bits each.
 const uint MEDIUM_BITS = 11u, MEDIUM_MASK = 0x7ffu, FIRST_MEDIUM = 10u, SECOND_MEDIUM = 21u;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Principled BSDF's layers, from the top: sheen, coat, emission, then metal, transmission and a dielectric over
-// a diffuse base; as a thin wall the same on both sides of a sheet. A layer takes the light that its albedo says and leaves the rest to those below.
+// a diffuse base; as a thin wall the same on both sides of a sheet. A layer takes the light that its albedo says and
+// leaves the rest to those below.
 
 #include "materials/thin_wall.glsl"
 
@@ -34,7 +35,8 @@ void add_coat(inout ClosureBuilder builder, Principled p, inout vec3 weight) {
     float f0 = normal_reflectance(ior);
     if (ior > 1.0) {
         add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, vec3(f0), vec3(1.0), ior));
-        float albedo = mix(dielectric_grazing_albedo(ior, p.coat_roughness, at.cosine), white_albedo(p.coat_roughness, at.cosine), f0);
+        float albedo = mix(dielectric_grazing_albedo(ior, p.coat_roughness, at.cosine),
+                           white_albedo(p.coat_roughness, at.cosine), f0);
         weight = beneath(weight, vec3(p.coat * albedo));
     }
     // Absorbed along the refracted way through the coat, which is of length 1 at normal incidence.
@@ -46,16 +48,19 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     builder.closure.transparent += vec3(node_weight * (1.0 - p.alpha));
     vec3 weight = vec3(node_weight * p.alpha);
     if (p.sheen > 0.0) {
-        vec3 normal = mix(given_normal(builder, p.normal), given_normal(builder, p.coat_normal), clamp(p.coat, 0.0, 1.0));
+        vec3 normal = mix(given_normal(builder, p.normal), given_normal(builder, p.coat_normal),
+                          clamp(p.coat, 0.0, 1.0));
         vec3 tint = p.sheen * p.sheen_tint;
         weight = beneath(weight, tint * add_sheen(builder, weight * tint, p.sheen_roughness, normal));
     }
     if (p.coat > 0.0) add_coat(builder, p, weight);
     builder.closure.emission += weight * p.emission;
 
-    Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic), p.tangent, p.anisotropic_rotation);
+    Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic),
+                                             p.tangent, p.anisotropic_rotation);
     if (p.metallic > 0.0) {
-        add_metal(builder, at, weight * p.metallic, min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.film, p.multiscatter);
+        add_metal(builder, at, weight * p.metallic, min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.film,
+                  p.multiscatter);
         weight *= 1.0 - p.metallic;
     }
     if (p.transmission > 0.0) {
@@ -81,7 +86,8 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     } else if (f0 > 0.0) {
         vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
         float white = white_albedo(p.roughness, at.cosine);
-        vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white);
+        float grazing = dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white;
+        vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), grazing);
         if (p.multiscatter) {
             float base = normal_reflectance(ior);
             factor = multiscatter_factor(at, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));

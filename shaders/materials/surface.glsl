@@ -2,11 +2,10 @@
 // What nodes may ask about the place that is shaded.
 
 #include <ShadingInstance>
-#include <TriangleAttributes>
 #include "common/geometry.glsl"
 #include "common/ray_kinds.glsl"
-layout(std430, binding = 3) readonly buffer Triangles { vec4 triangle_vertices[]; };
-layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
+layout(std430, binding = 3) readonly buffer Triangles;
+layout(std430, binding = 4) readonly buffer Attributes;
 layout(std430, binding = 10) readonly buffer ShadingInstances { ShadingInstance shading_instances[]; };
 layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
 
@@ -38,7 +37,8 @@ vec2 triangle_uv(uint triangle, vec3 b) {
 }
 
 vec3 triangle_normal(uint triangle, vec3 b) {
-    return b.x * unpack_unit_vector(attributes[triangle].normal0) + b.y * unpack_unit_vector(attributes[triangle].normal1)
+    return b.x * unpack_unit_vector(attributes[triangle].normal0)
+           + b.y * unpack_unit_vector(attributes[triangle].normal1)
          + b.z * unpack_unit_vector(attributes[triangle].normal2);
 }
 
@@ -97,7 +97,8 @@ vec4 attribute_value(Surface surface, uint layer) {
     uvec2 place = attribute_place(surface, layer);
     if (place.y == 0u) return vec4(0.0);
     uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
-    return surface.barycentrics.x * attribute_corner(place, local, 0u) + surface.barycentrics.y * attribute_corner(place, local, 1u)
+    return surface.barycentrics.x * attribute_corner(place, local, 0u)
+           + surface.barycentrics.y * attribute_corner(place, local, 1u)
          + surface.barycentrics.z * attribute_corner(place, local, 2u);
 }
 

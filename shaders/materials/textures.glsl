@@ -42,7 +42,8 @@ vec4 image_texel(ImageEntry image, ivec2 at, int extension) {
 
 vec4 cubic_weights(float t) {
     float t2 = t * t, t3 = t2 * t;
-    return vec4(1.0 - 3.0 * t + 3.0 * t2 - t3, 4.0 - 6.0 * t2 + 3.0 * t3, 1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3, t3) / 6.0;
+    return vec4(1.0 - 3.0 * t + 3.0 * t2 - t3, 4.0 - 6.0 * t2 + 3.0 * t3, 1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3, t3)
+           / 6.0;
 }
 
 vec4 filter_image(ImageEntry image, vec2 uv, int interpolation, int extension) {
@@ -57,7 +58,8 @@ vec4 filter_image(ImageEntry image, vec2 uv, int interpolation, int extension) {
         return sum;
     }
     return mix(mix(image_texel(image, i, extension), image_texel(image, i + ivec2(1, 0), extension), f.x),
-               mix(image_texel(image, i + ivec2(0, 1), extension), image_texel(image, i + ivec2(1, 1), extension), f.x), f.y);
+               mix(image_texel(image, i + ivec2(0, 1), extension), image_texel(image, i + ivec2(1, 1), extension),
+                   f.x), f.y);
 }
 
 // As Cycles does it: filtered while still encoded and multiplied by alpha, then divided where alpha is used on its own.

@@ -42,9 +42,11 @@ vec3 thin_film_reflectance(float cosine, float thickness, float before, float fi
     for (int k = 0; k < 2; ++k) {
         float outer = first[k] * first[k], passed = 1.0 - outer;
         vec3 inner = base.r >= 0.0 ? base : vec3(second[k] * second[k]);
-        // Half a wave where the amplitude changes its sign; reflected from within the film, the outer side turns it over.
+        // Half a wave where the amplitude changes its sign; reflected from within the film, the outer side turns it
+        // over.
         float shift = (first[k] > 0.0 ? PI : 0.0) + (base.r >= 0.0 || second[k] < 0.0 ? PI : 0.0);
-        vec3 both = clamp(outer * inner, 1e-5, 0.9999), repeated = passed * passed * inner / (1.0 - both), term = repeated - passed;
+        vec3 both = clamp(outer * inner, 1e-5, 0.9999), repeated = passed * passed * inner / (1.0 - both),
+            term = repeated - passed;
         sum += outer + repeated;
         for (int order = 1; order <= 3; ++order) {
             term *= sqrt(both);

@@ -22,7 +22,8 @@ void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out
     if (film.thickness > THINNEST_FILM) {
         outside = thin_film_reflectance(cosine, film.thickness, 1.0, film.ior, ior, vec3(-1.0));
         // As in Cycles with indices relative to the sheet's, by which the film seems thinner from within.
-        inside = thin_film_reflectance(sqrt(max(within2, 0.0)), film.thickness, 1.0, film.ior / ior, 1.0 / ior, vec3(-1.0));
+        inside = thin_film_reflectance(sqrt(max(within2, 0.0)), film.thickness, 1.0, film.ior / ior, 1.0 / ior,
+                                       vec3(-1.0));
     }
     vec3 kept = within2 > 0.0 ? pow(color, vec3(inversesqrt(within2))) : vec3(0.0), returned = inside * kept;
     passed = kept * (1.0 - outside) * (1.0 - inside) / max(1.0 - returned * returned, 1e-6);
@@ -30,7 +31,8 @@ void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out
 }
 
 // Facets have the reflectance of the whole; the lost energy is always restored.
-void add_thin_glass(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 color, vec3 tint, Film film, float ior) {
+void add_thin_glass(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 color, vec3 tint, Film film,
+                    float ior) {
     vec3 reflected, passed;
     sheet_shares(at.cosine, color, tint, film, ior, reflected, passed);
     vec3 factor = multiscatter_factor(at, min(tint, vec3(1.0)));
@@ -38,12 +40,14 @@ void add_thin_glass(inout ClosureBuilder builder, Microfacets at, vec3 weight, v
     at.alpha = sheet_alpha(at.alpha, ior);
     // Seen by the camera itself it is no hole in the picture.
     if (at.alpha > STRAIGHTEST_SHEET || builder.seen_by_camera)
-        add_lobe(builder, microfacet_lobe(at, LOBE_SHEET, weight * passed * multiscatter_factor(at, vec3(1.0)), vec3(0.0), vec3(1.0), 1.0));
+        add_lobe(builder, microfacet_lobe(at, LOBE_SHEET, weight * passed * multiscatter_factor(at, vec3(1.0)),
+                                          vec3(0.0), vec3(1.0), 1.0));
     else builder.closure.transparent += weight * passed;
 }
 
 // Subsurface scattering within the sheet leaves on both sides; anisotropy 1: all behind, -1: all in front.
-void add_thin_subsurface(inout ClosureBuilder builder, vec3 scattered, vec3 diffuse, float anisotropy, vec3 normal, uint roughness) {
+void add_thin_subsurface(inout ClosureBuilder builder, vec3 scattered, vec3 diffuse, float anisotropy, vec3 normal,
+                         uint roughness) {
     if (roughness != 0u) roughness |= ROUGH_BEHIND;
     float behind = clamp(0.5 + 0.5 * anisotropy, 0.0, 1.0);
     add_diffuse_parts(builder, diffuse + (1.0 - behind) * scattered, behind * scattered, normal, roughness);

@@ -7,7 +7,9 @@
 // Weights beyond the limit would overflow within a path.
 const float LARGEST_WEIGHT = 1e3, LARGEST_EMISSION = 1e12;
 
-vec3 usable(vec3 value, float low, float high) { return is_finite(value) ? clamp(value, low, high) : vec3(max(low, 0.0)); }
+vec3 usable(vec3 value, float low, float high) {
+    return is_finite(value) ? clamp(value, low, high) : vec3(max(low, 0.0));
+}
 
 void make_usable(inout Closure closure) {
     closure.emission = usable(closure.emission, 0.0, LARGEST_EMISSION);

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #include <AllocateParameters>
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { AllocateParameters parameters; };
-layout(std430, binding = 0) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
+layout(std430, binding = 0) buffer Buckets;
 
 void main() {
     uint index = invocation_index();

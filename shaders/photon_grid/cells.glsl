@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells of hashed grids. Their sides are at least twice the radius that is asked for, so that a sphere meets at most two
-// cells along each axis, whose numbers differ in their lowest bits: these are the lowest bits of the bucket. So no bucket
-// is visited twice, and it does not matter which cells share one.
+// Cells of hashed grids. Their sides are at least twice the radius that is asked for, so that a sphere meets at most
+// two cells along each axis, whose numbers differ in their lowest bits: these are the lowest bits of the bucket. So no
+// bucket is visited twice, and it does not matter which cells share one.
 
 ivec3 cell_of(vec3 position, float side) { return ivec3(floor(position / side)); }
 

@@ -5,12 +5,11 @@
 layout(local_size_x = 64) in;
 
 #include <GroupParameters>
-#include <Importon>
 #include "common/living_paths.glsl"
 #include "photon_grid/cells.glsl"
 layout(std140, binding = 0) uniform Parameters { GroupParameters parameters; };
-layout(std430, binding = 0) readonly buffer Importons { Importon importons[]; };
-layout(std430, binding = 1) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
+layout(std430, binding = 0) readonly buffer Importons;
+layout(std430, binding = 1) buffer Buckets;
 
 void main() {
     uint index = living_path();

@@ -9,9 +9,9 @@ layout(local_size_x = 64) in;
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { GridParameters parameters; };
 #include "photon_grid/grids.glsl"
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
-layout(std430, binding = 2) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
+layout(std430, binding = 0) readonly buffer Photons;
+layout(std430, binding = 1) readonly buffer StoredPhotons;
+layout(std430, binding = 2) buffer Buckets;
 
 void main() {
     uint index = invocation_index();

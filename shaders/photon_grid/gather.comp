@@ -7,19 +7,22 @@
 layout(local_size_x = 32) in;
 
 #include <GatherPhotonsParameters>
-#include <Importon>
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { GatherPhotonsParameters parameters; };
 #include "common/importon.glsl"
 #include "photon_grid/grids.glsl"
 #include "splat_sums/roulette.glsl"
 #include "splat_sums/collect.glsl"
-layout(std430, binding = 0) buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
-layout(std430, binding = 2) readonly buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
-layout(std430, binding = 3) readonly buffer SortedPhotons { uvec4 sorted_photons[]; };
-layout(std430, binding = 7) readonly buffer Visits { uint visit_groups[3]; uint visit_count; uvec2 visits[]; };
-layout(std430, binding = 8) buffer UnfinishedVisits { uint unfinished_groups[3]; uint unfinished_count; uvec2 unfinished_visits[]; };
+layout(std430, binding = 0) buffer Photons;
+layout(std430, binding = 1) readonly buffer Importons;
+layout(std430, binding = 2) readonly buffer Buckets;
+layout(std430, binding = 3) readonly buffer SortedPhotons;
+layout(std430, binding = 7) readonly buffer Visits;
+layout(std430, binding = 8) buffer UnfinishedVisits {
+    uint unfinished_groups[3];
+    uint unfinished_count;
+    uvec2 unfinished_visits[];
+};
 
 const uint CORNERS = 8u;
 

@@ -5,13 +5,12 @@
 layout(local_size_x = 64) in;
 
 #include <GroupParameters>
-#include <Importon>
 #include "common/living_paths.glsl"
 #include "photon_grid/cells.glsl"
 layout(std140, binding = 0) uniform Parameters { GroupParameters parameters; };
-layout(std430, binding = 0) readonly buffer Importons { Importon importons[]; };
-layout(std430, binding = 1) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
-layout(std430, binding = 2) writeonly buffer Visits { uint visit_groups[3]; uint visit_count; uvec2 visits[]; };
+layout(std430, binding = 0) readonly buffer Importons;
+layout(std430, binding = 1) buffer Buckets;
+layout(std430, binding = 2) writeonly buffer Visits;
 
 void main() {
     uint index = living_path();
@@ -20,5 +19,6 @@ void main() {
         visit_groups = uint[3]((cursor + parameters.group_size - 1u) / parameters.group_size, 1u, 1u);
     }
     if (index == NO_PATH || !(importons[index].radius > 0.0)) return;
-    visits[atomicAdd(buckets[bucket_of(cell_of(importons[index].position, parameters.side), parameters.buckets)].y, 1u)] = uvec2(index, 0u);
+    visits[atomicAdd(buckets[bucket_of(cell_of(importons[index].position, parameters.side), parameters.buckets)].y,
+                     1u)] = uvec2(index, 0u);
 }

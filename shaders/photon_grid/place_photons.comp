@@ -9,10 +9,10 @@ layout(local_size_x = 64) in;
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { GridParameters parameters; };
 #include "photon_grid/grids.glsl"
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
-layout(std430, binding = 2) buffer Buckets { uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[]; };
-layout(std430, binding = 3) writeonly buffer SortedPhotons { uvec4 sorted_photons[]; };
+layout(std430, binding = 0) readonly buffer Photons;
+layout(std430, binding = 1) readonly buffer StoredPhotons;
+layout(std430, binding = 2) buffer Buckets;
+layout(std430, binding = 3) writeonly buffer SortedPhotons;
 
 void main() {
     uint index = invocation_index();
@@ -21,5 +21,6 @@ void main() {
     vec3 position = photons[number].position;
     uvec2 grids = grids_of(photons[number].flags);
     for (uint grid = grids.x; grid <= grids.y; ++grid)
-        sorted_photons[atomicAdd(buckets[bucket_in(grid, cell_of(position, side_of(grid)))].y, 1u)] = uvec4(floatBitsToUint(position), number);
+        sorted_photons[atomicAdd(buckets[bucket_in(grid, cell_of(position, side_of(grid)))].y, 1u)] =
+            uvec4(floatBitsToUint(position), number);
 }

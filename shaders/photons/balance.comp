@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { BalanceParameters parameters; };
 layout(std430, binding = 0) readonly buffer Emitted { PhotonPath emitted[]; };
-layout(std430, binding = 1) readonly buffer Photons { Photon photons[]; };
+layout(std430, binding = 1) readonly buffer Photons;
 layout(std430, binding = 2) writeonly buffer Sums { FluxSums sums[]; };
 
 shared FluxSums shares[GROUP_SIZE];

@@ -5,18 +5,16 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
-#include <PhotonPath>
 #include <DepartParameters>
 #include "common/living_paths.glsl"
 #include "common/photon.glsl"
 #include "photons/parts.glsl"
 layout(std140, binding = 0) uniform Parameters { DepartParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 1) buffer Rays { Ray rays[]; };
-layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
-layout(std430, binding = 3) buffer Photons { Photon photons[]; };
-layout(std430, binding = 4) readonly buffer Departures { Departure departures[]; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) buffer Rays;
+layout(std430, binding = 2) buffer PhotonPaths;
+layout(std430, binding = 3) buffer Photons;
+layout(std430, binding = 4) readonly buffer Departures;
 
 void main() {
     uint index = living_path();

@@ -35,7 +35,8 @@ vec3 lobes_share(Closure closure, uint part, float ior, vec3 viewer, vec3 light)
         if (part <= PART_TRANSMITTING)
             share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
                    * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? lobe.ior : 1.0));
-        else if (!transmitted || abs(lobe.ior - ior) <= 1e-3 * ior) share += sharp_share(lobe, transmitted, viewer, light);
+        else if (!transmitted || abs(lobe.ior - ior) <= 1e-3 * ior)
+            share += sharp_share(lobe, transmitted, viewer, light);
     }
     return share;
 }

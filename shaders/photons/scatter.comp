@@ -4,8 +4,6 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
-#include <PhotonPath>
 #include <ScatterPhotonsParameters>
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
@@ -13,14 +11,23 @@ layout(local_size_x = 64) in;
 #include "photons/parts.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 1) buffer Rays { Ray rays[]; };
-layout(std430, binding = 2) buffer PhotonPaths { PhotonPath photon_paths[]; };
-layout(std430, binding = 3) writeonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 4) writeonly buffer Departures { Departure departures[]; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) buffer Rays;
+layout(std430, binding = 2) buffer PhotonPaths;
+layout(std430, binding = 3) writeonly buffer Photons;
+layout(std430, binding = 4) writeonly buffer Departures;
 
 // unseen: a flag of direct photons from lights that do not take part in such events.
-struct Scattering { vec3 direction; vec3 weight; vec3 normal; bool transmitted; uint flags; uint unseen; uint part; float ior; };
+struct Scattering {
+    vec3 direction;
+    vec3 weight;
+    vec3 normal;
+    bool transmitted;
+    uint flags;
+    uint unseen;
+    uint part;
+    float ior;
+};
 
 // Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
 const float SHARPEST_ALPHA = 0.05;
@@ -28,7 +35,8 @@ const float SHARPEST_ALPHA = 0.05;
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
-    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE,
+    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT,
+                                   PHOTON_NOT_DIFFUSE,
                                    PART_DIFFUSE, 1.0);
     float scale = 1.0 / largest(flux);
     float share[5];
@@ -51,25 +59,31 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     if (u >= total) return result;
     if (u < share[0]) {
         result.direction = sample_cosine_hemisphere(normal, u_direction);
-        result.weight = closure.diffuse * diffuse_factor(closure, normal, arrival, result.direction) * (norm / share[0]);
+        result.weight = closure.diffuse * diffuse_factor(closure, normal, arrival, result.direction)
+                        * (norm / share[0]);
         return result;
     }
     u -= share[0];
     if (u < translucent) {
         result.direction = sample_cosine_hemisphere(-normal, u_direction);
-        result.weight = closure.translucent * diffuse_factor(closure, normal, arrival, result.direction) * (norm / translucent);
+        result.weight = closure.translucent * diffuse_factor(closure, normal, arrival, result.direction)
+                        * (norm / translucent);
         result.transmitted = true;
         result.part = PART_TRANSLUCENT;
         return result;
     }
     u -= translucent;
-    if (u < share[1]) return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u, 0u, PART_TRANSPARENT, 1.0);
+    if (u < share[1])
+        return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u, 0u, PART_TRANSPARENT,
+                          1.0);
     u -= share[1];
     int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
     float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
     LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, u_direction, u_event, false);
-    return Scattering(sampled.direction, sampled.weight * (lobe_shadowing(lobe, closure.shading_normal, sampled.direction) * norm / max(probability, 1e-20)), lobe_normal(lobe), sampled.transmitted,
+    float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
+    return Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
+                      lobe_normal(lobe), sampled.transmitted,
                       (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_DIFFUSED)
                           | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
                       sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
@@ -83,8 +97,8 @@ float adjoint_correction(vec3 arrival, vec3 departure, vec3 geometric, vec3 shad
     return min(above / max(below, 1e-6), 4.0);
 }
 
-// The ray is turned to look from where the photon goes, and waits where that does not matter (depart.comp). Of a closure
-// where one part stands for others, the view from there is no measure.
+// The ray is turned to look from where the photon goes, and waits where that does not matter (depart.comp). Of a
+// closure where one part stands for others, the view from there is no measure.
 void look_back(uint index, Closure closure, Scattering scattering, vec3 arrival, uint path_flags) {
     bool matters = materials[closure.material].depends_on_view != 0u && (closure.flags & CLOSURE_CROWDED) == 0u;
     Departure departure = Departure(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
@@ -105,9 +119,11 @@ void main() {
     Ray ray = rays[index];
     rays[index].maximum_distance = 0.0;
     photon_paths[index].flux = vec3(0.0);
-    // Later segments' programs come to the paths that live by then only: what an earlier iteration left is cleared here.
+    // Later segments' programs come to the paths that live by then only: what an earlier iteration left is cleared
+    // here.
     if (parameters.segment == 0u)
-        for (uint later = 1u; later < parameters.segments; ++later) photons[later * parameters.photon_count + index].flags = 0u;
+        for (uint later = 1u; later < parameters.segments; ++later)
+            photons[later * parameters.photon_count + index].flags = 0u;
     if (!(largest(carried) > 0.0)) {
         photons[slot].flags = 0u;
         return;
@@ -134,18 +150,22 @@ void main() {
 
     if (parameters.segment + 1u < parameters.segments && largest(photon.flux) > 0.0) {
         vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-        RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS, parameters.segment, index);
+        RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
+                                                parameters.segment, index);
         Scattering scattering = scatter(closure, photon.flux, photon.direction, random);
         float side = dot(scattering.direction, geometric);
         bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
         if (largest(scattering.weight) > 0.0 && passes) {
             bool straight = scattering.direction == ray.direction;
-            if (!straight) scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric, scattering.normal);
+            if (!straight)
+                scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric,
+                                                        scattering.normal);
             photon.scattered_flux = photon.flux * scattering.weight;
             photon_paths[index].flux = photon.scattered_flux;
             path_flags |= scattering.flags;
             if ((path_flags & scattering.unseen) != 0u) photon_paths[index].flux = photon.scattered_flux = vec3(0.0);
-            if (!straight) path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
+            if (!straight)
+                path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
             if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);

@@ -4,18 +4,13 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
-#include <Hit>
-#include <Closure>
-#include <Material>
-#include <TriangleAttributes>
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 2) writeonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 4) readonly buffer Attributes { TriangleAttributes attributes[]; };
-layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 0) readonly buffer Rays;
+layout(std430, binding = 1) readonly buffer Hits;
+layout(std430, binding = 2) writeonly buffer Closures;
+layout(std430, binding = 4) readonly buffer Attributes;
+layout(std430, binding = 5) readonly buffer Materials;
 #include "resolve/ranges.glsl"
 
 void main() {

@@ -5,9 +5,6 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
-#include <Hit>
-#include <Material>
 #include <ResolveParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
@@ -19,10 +16,10 @@ layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; }
 #include "common/photon.glsl"
 #include "resolve/ranges.glsl"
 
-layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 2) writeonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 0) readonly buffer Rays;
+layout(std430, binding = 1) readonly buffer Hits;
+layout(std430, binding = 2) writeonly buffer Closures;
+layout(std430, binding = 5) readonly buffer Materials;
 layout(std430, binding = 13) readonly buffer PathFlags { uint path_words[]; };
 
 #include "materials/generated.glsl"
@@ -31,8 +28,10 @@ layout(std430, binding = 13) readonly buffer PathFlags { uint path_words[]; };
 const uint LOOKING_BACK = 64u;  // more than any segment's number
 
 uint path_flags(uint index) {
-    if (parameters.path_kind == PATH_OF_CAMERA) return path_words[parameters.camera_stride * index + parameters.camera_flags];
-    return parameters.path_kind == PATH_OF_PHOTON ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
+    if (parameters.path_kind == PATH_OF_CAMERA)
+        return path_words[parameters.camera_stride * index + parameters.camera_flags];
+    return parameters.path_kind == PATH_OF_PHOTON
+           ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
 }
 
 void main() {
@@ -75,8 +74,10 @@ void main() {
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
 
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
-                                            parameters.segment + (parameters.looks_back != 0u ? LOOKING_BACK : 0u), index);
-    ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, next_random(random));
+                                            parameters.segment + (parameters.looks_back != 0u ? LOOKING_BACK : 0u),
+                                            index);
+    ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing,
+                                             next_random(random));
     builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;
     uint material = attributes[hit.triangle].material;
     ShadingInstance instance = shading_instances[surface.instance];
@@ -106,7 +107,8 @@ void main() {
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
     bool leaves_direct_light = shadowless || (camera && (unseen || (instance.visibility & RAY_SHADOW) == 0u));
-    builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
+    builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u)
+                             | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
     builder.closure.material = material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);

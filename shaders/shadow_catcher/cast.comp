@@ -5,16 +5,15 @@
 
 layout(local_size_x = 64) in;
 
-#include <Ray>
 #include <ShadowCatcherParameters>
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
 layout(std140, binding = 0) uniform Parameters { ShadowCatcherParameters parameters; };
 #include "emission/lights.glsl"
-layout(std430, binding = 0) readonly buffer Closures { Closure closures[]; };
-layout(std430, binding = 1) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 3) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) readonly buffer Rays;
+layout(std430, binding = 3) writeonly buffer ShadowRays;
 
 const int CANDIDATES = 64;
 
@@ -24,9 +23,11 @@ void main() {
     Ray none = Ray(vec3(0.0), NO_TRIANGLE, vec3(0.0, 0.0, 1.0), 0.0);
     shadow_rays[index] = none;
     Closure closure = closures[index];
-    if (!(rays[index].maximum_distance > 0.0) || !closure_hit(closure) || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u) return;
+    if (!(rays[index].maximum_distance > 0.0) || !closure_hit(closure)
+        || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u) return;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SHADOW_CATCHER, parameters.segment, parameters.first_pixel + index);
+    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SHADOW_CATCHER,
+                                            parameters.segment, parameters.first_pixel + index);
     float total = 0.0;
     Ray chosen = none;
     for (int k = 0; k < CANDIDATES; ++k) {

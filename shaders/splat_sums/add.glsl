@@ -4,8 +4,8 @@
 // (integrator/splat_sums.py).
 
 #include "splat_sums/sums.glsl"
-layout(std430, binding = 4) buffer SplatSums { uint sum_words[]; };
-layout(std430, binding = 5) buffer PhotonCounts { uint photon_counts[]; };
+layout(std430, binding = 4) buffer SplatSums;
+layout(std430, binding = 5) buffer PhotonCounts;
 
 void add_quanta(uint place, float quanta) {
     uvec2 added = whole_quanta(quanta);

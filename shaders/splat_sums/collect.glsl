@@ -3,8 +3,8 @@
 // The includer declares the members of SUM_PARAMETERS (integrator/splat_sums.py).
 
 #include "splat_sums/sums.glsl"
-layout(std430, binding = 4) buffer SplatSums { uint sum_words[]; };
-layout(std430, binding = 5) buffer PhotonCounts { uint photon_counts[]; };
+layout(std430, binding = 4) buffer SplatSums;
+layout(std430, binding = 5) buffer PhotonCounts;
 
 struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; uint caustic; };
 

@@ -4,5 +4,6 @@
 #include "common/random.glsl"
 
 bool rejected(uint photon, uint pixel) {
-    return parameters.roulette != 0u && (pcg4d(uvec4(photon, pixel, parameters.roulette, STAGE_SPLATTING)).x & 0x80000000u) != 0u;
+    uvec4 key = uvec4(photon, pixel, parameters.roulette, STAGE_SPLATTING);
+    return parameters.roulette != 0u && (pcg4d(key).x & 0x80000000u) != 0u;
 }

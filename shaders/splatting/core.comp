@@ -6,13 +6,12 @@ layout(local_size_x = 64) in;
 
 #include <CubeParameters>
 #include "common/invocation.glsl"
-#include <Importon>
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
-layout(std430, binding = 0) buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
-layout(std430, binding = 2) readonly buffer Core { uint core_count; uint core_importons[]; };
-layout(std430, binding = 3) readonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 0) buffer Photons;
+layout(std430, binding = 1) readonly buffer StoredPhotons;
+layout(std430, binding = 2) readonly buffer Core;
+layout(std430, binding = 3) readonly buffer Importons;
 #include "common/importon.glsl"
 #include "splatting/meet.glsl"
 

@@ -12,8 +12,12 @@ vec3 to_face(vec3 p, int face) {
 #include <SplatCubemap>
 
 int first_block(int size) { return 6 * size * size; }
-int block_index(int face, ivec2 block, int size) { return first_block(size) + (face * (size / BLOCK_SIZE) + block.y) * (size / BLOCK_SIZE) + block.x; }
-int face_bounds(int face, int size) { return first_block(size) + 6 * (size / BLOCK_SIZE) * (size / BLOCK_SIZE) + 4 * face; }
+int block_index(int face, ivec2 block, int size) {
+    return first_block(size) + (face * (size / BLOCK_SIZE) + block.y) * (size / BLOCK_SIZE) + block.x;
+}
+int face_bounds(int face, int size) {
+    return first_block(size) + 6 * (size / BLOCK_SIZE) * (size / BLOCK_SIZE) + 4 * face;
+}
 
 int face_of(vec3 p) {
     vec3 a = abs(p);

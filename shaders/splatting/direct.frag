@@ -3,11 +3,10 @@
 // A photon meets the importon of one camera pixel.
 
 #include <QuadParameters>
-#include <Importon>
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-layout(std430, binding = 0) buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
+layout(std430, binding = 0) buffer Photons;
+layout(std430, binding = 1) readonly buffer Importons;
 #include "common/importon.glsl"
 #include "splatting/meet.glsl"
 

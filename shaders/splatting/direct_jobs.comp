@@ -4,7 +4,6 @@
 
 layout(local_size_x = 64) in;
 
-#include <CameraView>
 #include <SplatParameters>
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
@@ -12,10 +11,10 @@ layout(local_size_x = 64) in;
 #include "splatting/sphere_bounds.glsl"
 #include "splatting/jobs.glsl"
 layout(std140, binding = 0) uniform Parameters { SplatParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
-layout(std430, binding = 2) readonly buffer Camera { CameraView camera; };
-layout(std430, binding = 3) buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
+layout(std430, binding = 0) readonly buffer Photons;
+layout(std430, binding = 1) readonly buffer StoredPhotons;
+layout(std430, binding = 2) readonly buffer Camera;
+layout(std430, binding = 3) buffer Jobs;
 
 void main() {
     uint index = invocation_index();

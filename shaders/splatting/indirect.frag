@@ -3,12 +3,11 @@
 // A photon meets the importons listed in one pixel of the cubemap (paper section 4.2).
 
 #include <QuadParameters>
-#include <Importon>
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-layout(std430, binding = 0) buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer Importons { Importon importons[]; };
-layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
+layout(std430, binding = 0) buffer Photons;
+layout(std430, binding = 1) readonly buffer Importons;
+layout(std430, binding = 2) readonly buffer Heads;
 #include "common/importon.glsl"
 #include "splatting/meet.glsl"
 

@@ -15,10 +15,10 @@ layout(local_size_x = 64) in;
 #include "splatting/sphere_bounds.glsl"
 #include "splatting/jobs.glsl"
 layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) readonly buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
-layout(std430, binding = 2) readonly buffer Heads { uint heads[]; };
-layout(std430, binding = 3) buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
+layout(std430, binding = 0) readonly buffer Photons;
+layout(std430, binding = 1) readonly buffer StoredPhotons;
+layout(std430, binding = 2) readonly buffer Heads;
+layout(std430, binding = 3) buffer Jobs;
 
 // Most photons have no importon near them: a footprint shrinks to the cells, or the blocks of cells,
 // that hold some. False: it holds none.
@@ -55,10 +55,12 @@ void main() {
     uint number = stored_photons[index];
     if (parameters.gathers != 0u && (photons[number].flags & PHOTON_INDIRECT) != 0u) return;
     vec3 p = photons[number].position - parameters.centre;
-    float distance = length(p), radius = photon_radius(photons[number].flags, parameters.radius, parameters.wide_radius);
+    float distance = length(p), radius = photon_radius(photons[number].flags, parameters.radius,
+                                                       parameters.wide_radius);
     if (distance < radius * 0.9999) return;
     float cosine = min((distance * distance + 3.0 * radius * radius) / (4.0 * distance * radius), 1.0);
-    float sine = distance >= 2.236 * radius ? radius / distance * 1.00001 : sqrt(max(1.0 - cosine * cosine, 0.0)) + 1e-3;
+    float sine = distance >= 2.236 * radius ? radius / distance * 1.00001
+                 : sqrt(max(1.0 - cosine * cosine, 0.0)) + 1e-3;
     p /= distance;
     int size = int(parameters.resolution);
     for (int face = 0; face < 6; ++face) {

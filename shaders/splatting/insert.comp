@@ -5,14 +5,13 @@
 
 layout(local_size_x = 64) in;
 
-#include <Importon>
 #include <CubeParameters>
 #include "common/living_paths.glsl"
 #include "splatting/cube.glsl"
 layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
-layout(std430, binding = 0) buffer Importons { Importon importons[]; };
-layout(std430, binding = 1) buffer Heads { uint heads[]; };
-layout(std430, binding = 2) buffer Core { uint core_count; uint core_importons[]; };
+layout(std430, binding = 0) buffer Importons;
+layout(std430, binding = 1) buffer Heads;
+layout(std430, binding = 2) buffer Core;
 
 void main() {
     uint index = living_path();

@@ -8,6 +8,8 @@
 void meet(uint importon, uint photon) {
     if (rejected(photon, importon)) return;
     vec3 offset = photons[photon].position - importons[importon].position, radiance;
-    if (!within_reach(importons[importon].gathers, importons[importon].radius, offset, photons[photon].flags, parameters.wide_radius)) return;
-    if (density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, radiance)) add_splat(importon, photon, radiance);
+    if (!within_reach(importons[importon].gathers, importons[importon].radius, offset, photons[photon].flags,
+                      parameters.wide_radius)) return;
+    if (density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, radiance))
+        add_splat(importon, photon, radiance);
 }

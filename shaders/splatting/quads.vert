@@ -5,7 +5,7 @@
 #include <QuadParameters>
 #include "splatting/jobs.glsl"
 layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-layout(std430, binding = 3) readonly buffer Jobs { uint job_vertices; uint draw_arguments[3]; SplatJob jobs[]; };
+layout(std430, binding = 3) readonly buffer Jobs;
 
 flat out uint photon_number;
 flat out uint face;

@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { StoredParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons { Photon photons[]; };
-layout(std430, binding = 1) buffer StoredPhotons { uint stored_count; uint diffused_count; uint stored_photons[]; };
+layout(std430, binding = 0) readonly buffer Photons;
+layout(std430, binding = 1) buffer StoredPhotons;
 
 void main() {
     uint index = invocation_index();

@@ -20,17 +20,42 @@ MicrofacetLobe unpacked_lobe(vec3 weight, uint kind, vec3 f0, float alpha, float
 
 MicrofacetLobe closure_lobe(Closure c, int index) {
     if (index == 0)
-        return unpacked_lobe(c.lobe0_weight, c.lobe0_kind, c.lobe0_f0, c.lobe0_alpha, c.lobe_ior.x, c.lobe_normals.x, c.lobe_anisotropies.x);
+        return unpacked_lobe(c.lobe0_weight, c.lobe0_kind, c.lobe0_f0, c.lobe0_alpha, c.lobe_ior.x, c.lobe_normals.x,
+                             c.lobe_anisotropies.x);
     if (index == 1)
-        return unpacked_lobe(c.lobe1_weight, c.lobe1_kind, c.lobe1_f0, c.lobe1_alpha, c.lobe_ior.y, c.lobe_normals.y, c.lobe_anisotropies.y);
-    return unpacked_lobe(c.lobe2_weight, c.lobe2_kind, c.lobe2_f0, c.lobe2_alpha, c.lobe_ior.z, c.lobe_normals.z, c.lobe_anisotropies.z);
+        return unpacked_lobe(c.lobe1_weight, c.lobe1_kind, c.lobe1_f0, c.lobe1_alpha, c.lobe_ior.y, c.lobe_normals.y,
+                             c.lobe_anisotropies.y);
+    return unpacked_lobe(c.lobe2_weight, c.lobe2_kind, c.lobe2_f0, c.lobe2_alpha, c.lobe_ior.z, c.lobe_normals.z,
+                         c.lobe_anisotropies.z);
 }
 
 void set_closure_lobe(inout Closure c, int index, MicrofacetLobe lobe) {
     uint kind = pack_kind(lobe.kind, lobe.tint);
-    if (index == 0) { c.lobe0_weight = lobe.weight; c.lobe0_kind = kind; c.lobe0_f0 = lobe.f0; c.lobe0_alpha = lobe.alpha; c.lobe_ior.x = lobe.ior; c.lobe_normals.x = lobe.normal; c.lobe_anisotropies.x = lobe.anisotropy; }
-    else if (index == 1) { c.lobe1_weight = lobe.weight; c.lobe1_kind = kind; c.lobe1_f0 = lobe.f0; c.lobe1_alpha = lobe.alpha; c.lobe_ior.y = lobe.ior; c.lobe_normals.y = lobe.normal; c.lobe_anisotropies.y = lobe.anisotropy; }
-    else { c.lobe2_weight = lobe.weight; c.lobe2_kind = kind; c.lobe2_f0 = lobe.f0; c.lobe2_alpha = lobe.alpha; c.lobe_ior.z = lobe.ior; c.lobe_normals.z = lobe.normal; c.lobe_anisotropies.z = lobe.anisotropy; }
+    if (index == 0) {
+        c.lobe0_weight = lobe.weight;
+        c.lobe0_kind = kind;
+        c.lobe0_f0 = lobe.f0;
+        c.lobe0_alpha = lobe.alpha;
+        c.lobe_ior.x = lobe.ior;
+        c.lobe_normals.x = lobe.normal;
+        c.lobe_anisotropies.x = lobe.anisotropy;
+    } else if (index == 1) {
+        c.lobe1_weight = lobe.weight;
+        c.lobe1_kind = kind;
+        c.lobe1_f0 = lobe.f0;
+        c.lobe1_alpha = lobe.alpha;
+        c.lobe_ior.y = lobe.ior;
+        c.lobe_normals.y = lobe.normal;
+        c.lobe_anisotropies.y = lobe.anisotropy;
+    } else {
+        c.lobe2_weight = lobe.weight;
+        c.lobe2_kind = kind;
+        c.lobe2_f0 = lobe.f0;
+        c.lobe2_alpha = lobe.alpha;
+        c.lobe_ior.z = lobe.ior;
+        c.lobe_normals.z = lobe.normal;
+        c.lobe_anisotropies.z = lobe.anisotropy;
+    }
 }
 
 // Share of the background that the surface cuts out of the picture.
@@ -41,8 +66,12 @@ float lobe_cosine(MicrofacetLobe lobe, vec3 wo) { return clamp(dot(lobe_normal(l
 bool closure_hit(Closure closure) { return closure.triangle != NO_TRIANGLE; }
 
 // Lobes above the cut-off store photons; the others are traced on. alpha is roughness squared.
-bool lobe_stores(MicrofacetLobe lobe, float specular_alpha) { return lobe.kind != LOBE_NONE && lobe.alpha > specular_alpha; }
-bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) { return lobe.kind != LOBE_NONE && lobe.alpha <= specular_alpha; }
+bool lobe_stores(MicrofacetLobe lobe, float specular_alpha) {
+    return lobe.kind != LOBE_NONE && lobe.alpha > specular_alpha;
+}
+bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) {
+    return lobe.kind != LOBE_NONE && lobe.alpha <= specular_alpha;
+}
 
 // Smoother lobes cannot be evaluated towards a light, only followed.
 const float SMOOTHEST_LIT = 1e-4;
@@ -58,7 +87,8 @@ vec3 diffuse_scattered(Closure closure, vec3 wo, vec3 wi, bool front) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
     float cosine = dot(normal, wi);
     if ((cosine > 0.0) != front) return vec3(0.0);
-    return (front ? closure.diffuse : closure.translucent) * diffuse_factor(closure, normal, wo, wi) * (abs(cosine) / PI);
+    return (front ? closure.diffuse : closure.translucent) * diffuse_factor(closure, normal, wo, wi)
+           * (abs(cosine) / PI);
 }
 
 // BSDF of a lobe times cosine.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Diffuse surfaces under normal maps, and rough ones: Oren and Nayar's model in Fujii's improved form, with the light that facets pass on to
-// each other (Portsmouth et al. 2024), as Cycles has it.
+// Diffuse surfaces under normal maps, and rough ones: Oren and Nayar's model in Fujii's improved form, with the light
+// that facets pass on to each other (Portsmouth et al. 2024), as Cycles has it.
 
 #include "common/geometry.glsl"
 
@@ -34,7 +34,8 @@ vec3 rough_diffuse_factor(uint packed_roughness, vec3 n, vec3 v, vec3 l) {
     float average = a + (2.0 * PI - 5.6) / 3.0 * b;
     float missing_v = 1.0 - a - b * fujii_integral(nv), missing_l = 1.0 - a - b * fujii_integral(nl);
     // Squared as in Cycles, times the colour of the smooth surface.
-    vec3 multiple = parts.rgb * parts.rgb * average / (1.0 - parts.rgb * (1.0 - average)) * (missing_v * missing_l / (1.0 - average));
+    vec3 multiple = parts.rgb * parts.rgb * average / (1.0 - parts.rgb * (1.0 - average))
+                    * (missing_v * missing_l / (1.0 - average));
     return a + PI * b * t + multiple;
 }
 

@@ -45,5 +45,6 @@ vec3 f82_reflectance(vec3 f0, vec3 tint, float cosine) {
     const float far = 6.0 / 7.0, far5 = far * far * far * far * far;
     vec3 bend = mix(f0, vec3(1.0), far5) * (7.0 / (far5 * far)) * (1.0 - tint);
     float m = clamp(1.0 - cosine, 0.0, 1.0);
-    return clamp(mix(f0, vec3(1.0), schlick_interpolation(cosine)) - bend * cosine * m * schlick_interpolation(cosine), 0.0, 1.0);
+    return clamp(mix(f0, vec3(1.0), schlick_interpolation(cosine)) - bend * cosine * m * schlick_interpolation(cosine),
+                 0.0, 1.0);
 }

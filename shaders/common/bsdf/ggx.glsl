@@ -19,7 +19,8 @@ MicrofacetFrame microfacet_frame(vec3 n, float alpha, uint anisotropy) {
     vec2 along = vec2(1.0 - 2.0 * axes.x, 1.0 - abs(1.0 - 2.0 * axes.x));
     along *= inversesqrt(dot(along, along));
     float aspect = max(axes.y, 1e-3);
-    return MicrofacetFrame(along.x * t + along.y * b, along.x * b - along.y * t, n, max(vec2(alpha / aspect, alpha * aspect), 1e-7), (anisotropy & BECKMANN) != 0u);
+    return MicrofacetFrame(along.x * t + along.y * b, along.x * b - along.y * t, n,
+                           max(vec2(alpha / aspect, alpha * aspect), 1e-7), (anisotropy & BECKMANN) != 0u);
 }
 
 // Anisotropy whose greater alpha lies along the tangent; n as a lobe keeps it, unpacked again.

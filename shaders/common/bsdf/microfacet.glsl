@@ -21,11 +21,14 @@ uint pack_kind(uint kind, vec3 tint) {
     return kind | (parts.r << 4u) | (parts.g << 13u) | (parts.b << 23u);
 }
 uint unpack_kind(uint bits) { return bits & 0xfu; }
-vec3 unpack_tint(uint bits) { return vec3((uvec3(bits) >> uvec3(4u, 13u, 23u)) & uvec3(511u, 1023u, 511u)) / vec3(511.0, 1023.0, 511.0); }
+vec3 unpack_tint(uint bits) {
+    return vec3((uvec3(bits) >> uvec3(4u, 13u, 23u)) & uvec3(511u, 1023u, 511u)) / vec3(511.0, 1023.0, 511.0);
+}
 
 // What a normal map takes from light to or from wi; smooth_normal: packed, without the map.
 float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
-    return lobe.kind == LOBE_SHEEN ? bump_shadowing(unpack_unit_vector(smooth_normal), unpack_unit_vector(lobe.normal), wi) : 1.0;
+    return lobe.kind == LOBE_SHEEN ? bump_shadowing(unpack_unit_vector(smooth_normal), unpack_unit_vector(lobe.normal),
+                                                    wi) : 1.0;
 }
 
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
@@ -33,7 +36,8 @@ vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); 
 // Share of what glass-like lobes reflect, grey: by it they choose between reflection and refraction.
 float reflected_share(MicrofacetLobe lobe, float cosine) {
     if (lobe.kind == LOBE_GLASS) return fresnel_dielectric(cosine, lobe.ior);
-    if (lobe.kind == LOBE_COATED_GLASS) return mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, dielectric_interpolation(cosine, lobe.ior));
+    if (lobe.kind == LOBE_COATED_GLASS)
+        return mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, dielectric_interpolation(cosine, lobe.ior));
     return lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET ? 0.0 : 1.0;
 }
 
@@ -50,7 +54,8 @@ vec3 lobe_reflectance(MicrofacetLobe lobe, float cosine) {
 
 // Tint and share of what passes a microfacet, without total internal reflection.
 vec3 lobe_transmittance(MicrofacetLobe lobe, float cosine) {
-    if (lobe.kind == LOBE_GLASS || lobe.kind == LOBE_COATED_GLASS) return lobe.f0 * (1.0 - lobe_reflectance(lobe, cosine));
+    if (lobe.kind == LOBE_GLASS || lobe.kind == LOBE_COATED_GLASS)
+        return lobe.f0 * (1.0 - lobe_reflectance(lobe, cosine));
     if (lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET) return lobe.weight;
     return vec3(0.0);
 }
@@ -82,7 +87,8 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
         result.direction = fitted ? sample_sheen(lobe.f0.xy, sheen, u) : sample_cosine_hemisphere(n, u);
         float cosine_i = dot(n, result.direction);
         if (cosine_i <= 0.0) return result;
-        result.weight = lobe.weight * (fitted ? 1.0 : velvet_scattered(lobe.f0.x, n, wo, result.direction) * PI / cosine_i);
+        result.weight = lobe.weight * (fitted ? 1.0
+                                       : velvet_scattered(lobe.f0.x, n, wo, result.direction) * PI / cosine_i);
         return result;
     }
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
@@ -109,7 +115,8 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
         if (dot(result.direction, n) >= 0.0) result.weight = vec3(0.0);
     }
     if (!smooth_lobe) {
-        float lambda_o = facet_lambda(frame, local_wo), lambda_i = facet_lambda(frame, to_frame(frame, result.direction));
+        float lambda_o = facet_lambda(frame, local_wo),
+            lambda_i = facet_lambda(frame, to_frame(frame, result.direction));
         float ratio = frame.beckmann ? beckmann_ratio(local_h, frame.alpha) : 1.0;
         result.weight *= ratio * (1.0 + ggx_lambda(local_wo, frame.alpha)) / (1.0 + lambda_o + lambda_i);
     }
@@ -172,7 +179,8 @@ float lobe_density(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return 0.0;
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
     float cosine_o = dot(wo, n);
-    float visible = ggx_density(to_frame(frame, h), frame.alpha) * oh / (cosine_o * (1.0 + ggx_lambda(to_frame(frame, wo), frame.alpha)));
+    float visible = ggx_density(to_frame(frame, h), frame.alpha) * oh
+                    / (cosine_o * (1.0 + ggx_lambda(to_frame(frame, wo), frame.alpha)));
     float reflected = reflected_share(lobe, oh);
     if (dot(wi, n) > 0.0) return visible * reflected / (4.0 * oh);
     float spread = lobe.ior * ih + oh;

@@ -40,7 +40,8 @@ vec3 box_weights(vec3 n, float blend) {
     return w;
 }
 
-void node_tex_image(Surface surface, int projection, int interpolation, int extension, int divide, uint image, vec3 vector,
+void node_tex_image(Surface surface, int projection, int interpolation, int extension, int divide, uint image,
+                    vec3 vector,
                     float projection_blend, out vec3 color, out float alpha) {
     bool box = projection == IMAGE_BOX;
     vec3 n = vec3(0.0), weights = vec3(1.0, 0.0, 0.0);
@@ -65,7 +66,8 @@ void node_tex_image(Surface surface, int projection, int interpolation, int exte
 }
 
 // Tiles of 1 x 1 in UV space: the table lists the number of each tile's image, row by row of ten, -1 where none is.
-void node_tex_image_tiles(int interpolation, int extension, int divide, uint table, float tiles, vec3 vector, out vec3 color,
+void node_tex_image_tiles(int interpolation, int extension, int divide, uint table, float tiles, vec3 vector,
+                          out vec3 color,
                           out float alpha) {
     vec2 corner = floor(vector.xy);
     int tile = int(corner.x) + 10 * int(corner.y);

@@ -53,22 +53,28 @@ vec3 blend_value(float factor, vec3 a, vec3 b) {
         result = expression; \
         if (clamp_result != 0) result = clamp(result, 0.0, 1.0); \
     } \
-    void older(int use_clamp, float factor, vec3 a, vec3 b, out vec3 result) { function(1, use_clamp, factor, a, b, result); }
+    void older(int use_clamp, float factor, vec3 a, vec3 b, out vec3 result) { \
+        function(1, use_clamp, factor, a, b, result); \
+    }
 BLEND(node_mix_color_mix, node_mix_rgb_mix, mix(a, b, factor))
 BLEND(node_mix_color_darken, node_mix_rgb_darken, mix(a, min(a, b), factor))
 BLEND(node_mix_color_multiply, node_mix_rgb_multiply, mix(a, a * b, factor))
-BLEND(node_mix_color_burn, node_mix_rgb_burn, vec3(blend_burn(factor, a.r, b.r), blend_burn(factor, a.g, b.g), blend_burn(factor, a.b, b.b)))
+BLEND(node_mix_color_burn, node_mix_rgb_burn,
+      vec3(blend_burn(factor, a.r, b.r), blend_burn(factor, a.g, b.g), blend_burn(factor, a.b, b.b)))
 BLEND(node_mix_color_lighten, node_mix_rgb_lighten, mix(a, max(a, b), factor))
 BLEND(node_mix_color_screen, node_mix_rgb_screen, 1.0 - (1.0 - factor * b) * (1.0 - a))
-BLEND(node_mix_color_dodge, node_mix_rgb_dodge, vec3(blend_dodge(factor, a.r, b.r), blend_dodge(factor, a.g, b.g), blend_dodge(factor, a.b, b.b)))
+BLEND(node_mix_color_dodge, node_mix_rgb_dodge,
+      vec3(blend_dodge(factor, a.r, b.r), blend_dodge(factor, a.g, b.g), blend_dodge(factor, a.b, b.b)))
 BLEND(node_mix_color_add, node_mix_rgb_add, a + factor * b)
-BLEND(node_mix_color_overlay, node_mix_rgb_overlay, vec3(blend_overlay(factor, a.r, b.r), blend_overlay(factor, a.g, b.g), blend_overlay(factor, a.b, b.b)))
+BLEND(node_mix_color_overlay, node_mix_rgb_overlay,
+      vec3(blend_overlay(factor, a.r, b.r), blend_overlay(factor, a.g, b.g), blend_overlay(factor, a.b, b.b)))
 BLEND(node_mix_color_soft_light, node_mix_rgb_soft_light, blend_soft_light(factor, a, b))
 BLEND(node_mix_color_linear_light, node_mix_rgb_linear_light, a + factor * (2.0 * b - 1.0))
 BLEND(node_mix_color_difference, node_mix_rgb_difference, mix(a, abs(a - b), factor))
 BLEND(node_mix_color_exclusion, node_mix_rgb_exclusion, max(mix(a, a + b - 2.0 * a * b, factor), 0.0))
 BLEND(node_mix_color_subtract, node_mix_rgb_subtract, a - factor * b)
-BLEND(node_mix_color_divide, node_mix_rgb_divide, vec3(blend_divide(factor, a.r, b.r), blend_divide(factor, a.g, b.g), blend_divide(factor, a.b, b.b)))
+BLEND(node_mix_color_divide, node_mix_rgb_divide,
+      vec3(blend_divide(factor, a.r, b.r), blend_divide(factor, a.g, b.g), blend_divide(factor, a.b, b.b)))
 BLEND(node_mix_color_hue, node_mix_rgb_hue, blend_hue(factor, a, b))
 BLEND(node_mix_color_saturation, node_mix_rgb_saturation, blend_saturation(factor, a, b))
 BLEND(node_mix_color_color, node_mix_rgb_color, blend_color(factor, a, b))

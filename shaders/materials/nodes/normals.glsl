@@ -26,7 +26,8 @@ void node_normal_map(Surface surface, int space, uint layer, float strength, vec
         vec3 front = object_normal(surface);
         mapped.xy *= strength;
         mapped.z = mix(1.0, mapped.z, clamp(strength, 0.0, 1.0));
-        n = normal_to_world(surface, mapped.x * tangent.xyz + mapped.y * tangent.w * cross(front, tangent.xyz) + mapped.z * front);
+        n = normal_to_world(surface, mapped.x * tangent.xyz + mapped.y * tangent.w * cross(front, tangent.xyz)
+                            + mapped.z * front);
     } else {
         // The Blender spaces are those of its former renderer: Y and Z are turned round.
         if (space >= NORMAL_MAP_BLENDER_OBJECT) mapped.yz = -mapped.yz;
@@ -75,7 +76,8 @@ void node_ambient_occlusion(vec3 color_in, out vec3 color, out float ao) {
 }
 
 // How far the surface is pushed out, in world space.
-void node_displacement(Surface surface, int space, float height, float midlevel, float scale, vec3 normal_in, out vec3 displacement) {
+void node_displacement(Surface surface, int space, float height, float midlevel, float scale, vec3 normal_in,
+                       out vec3 displacement) {
     float amount = (height - midlevel) * scale;
     if (space == DISPLACEMENT_OBJECT) {
         vec3 n = normal_to_object(surface, normal_in);
@@ -83,7 +85,8 @@ void node_displacement(Surface surface, int space, float height, float midlevel,
     } else displacement = normal_in * amount;
 }
 
-void node_vector_displacement(Surface surface, int space, vec3 vector, float midlevel, float scale, out vec3 displacement) {
+void node_vector_displacement(Surface surface, int space, vec3 vector, float midlevel, float scale,
+                              out vec3 displacement) {
     vec3 offset = (vector - midlevel) * scale;
     if (space == VECTOR_DISPLACEMENT_TANGENT) {
         vec3 n = surface.normal, t = default_tangent(surface);
@@ -91,4 +94,6 @@ void node_vector_displacement(Surface surface, int space, vec3 vector, float mid
     } else displacement = space == VECTOR_DISPLACEMENT_OBJECT ? direction_to_world(surface, offset) : offset;
 }
 
-void node_displacement_height(Surface surface, vec3 displacement, out float height) { height = dot(displacement, surface.normal); }
+void node_displacement_height(Surface surface, vec3 displacement, out float height) {
+    height = dot(displacement, surface.normal);
+}

@@ -35,7 +35,8 @@ float safe_modulo(float a, float b) {
     if (b == 0.0) return 0.0;
     float size = abs(a), divisor = abs(b), quotient = trunc(size / divisor);
     float q = leading_half(quotient), d = leading_half(divisor);
-    precise float remainder = ((size - q * d) - q * (divisor - d)) - (quotient - q) * d - (quotient - q) * (divisor - d);
+    precise float remainder = ((size - q * d) - q * (divisor - d)) - (quotient - q) * d
+                              - (quotient - q) * (divisor - d);
     if (remainder < 0.0) remainder += divisor;
     if (remainder >= divisor) remainder -= divisor;
     return a < 0.0 ? -remainder : remainder;

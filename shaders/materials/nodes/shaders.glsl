@@ -29,7 +29,8 @@ void node_background(inout ClosureBuilder builder, float weight, vec3 color, flo
 void node_holdout(inout ClosureBuilder builder, float weight) { add_holdout(builder, weight); }
 
 // Anisotropy from -0.99 to 0.99: above 0 the tangent's axis is the smoother one.
-Microfacets stretched_microfacets(ClosureBuilder builder, vec3 normal, float roughness, float anisotropy, vec3 tangent, float rotation) {
+Microfacets stretched_microfacets(ClosureBuilder builder, vec3 normal, float roughness, float anisotropy, vec3 tangent,
+                                  float rotation) {
     anisotropy = clamp(anisotropy, -0.99, 0.99);
     float aspect = anisotropy < 0.0 ? 1.0 + anisotropy : 1.0 / (1.0 - anisotropy);
     return anisotropic_microfacets(builder, normal, unit(roughness), aspect, tangent, rotation);
@@ -51,7 +52,9 @@ void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distributio
     Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
     if (film.thickness > THINNEST_FILM)
         add_glass_with_film(builder, at, weighted, weighted, film, valid_ior(ior));
-    else add_glass(builder, at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), valid_ior(ior), distribution == 2);
+    else
+        add_glass(builder, at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), valid_ior(ior),
+                  distribution == 2);
 }
 
 void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
@@ -61,7 +64,8 @@ void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distri
     add_refraction(builder, at, weight * max(color, 0.0), valid_ior(ior));
 }
 
-void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness, vec3 normal) {
+void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
+                     vec3 normal) {
     vec3 weighted = weight * max(color, 0.0);
     if (distribution == 0) add_velvet(builder, weighted, unit(roughness), normal);
     else add_sheen(builder, weighted, unit(roughness), normal);
@@ -86,7 +90,8 @@ vec3 conductor_reflectance(float cosine, vec3 n, vec3 k) {
 void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribution, int fresnel_type, vec3 base_color,
                         vec3 edge_tint, vec3 ior, vec3 extinction, float roughness, float anisotropy, float rotation,
                         vec3 normal, vec3 tangent, float thin_film_thickness, float thin_film_ior) {
-    Microfacets at = anisotropic_microfacets(builder, normal, unit(roughness), sqrt(1.0 - 0.9 * unit(anisotropy)), tangent, rotation);
+    Microfacets at = anisotropic_microfacets(builder, normal, unit(roughness), sqrt(1.0 - 0.9 * unit(anisotropy)),
+                                             tangent, rotation);
     if (distribution == 0) at.anisotropy |= BECKMANN;
     vec3 f0 = clamp(base_color, 0.0, 1.0), edge = clamp(edge_tint, 0.0, 1.0);
     if (fresnel_type == 0) {
@@ -95,17 +100,20 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
         f0 = clamp(conductor_reflectance(1.0, n, k), 0.0, 1.0);
         edge = clamp(conductor_reflectance(cosine, n, k) / mix(f0, vec3(1.0), schlick_interpolation(cosine)), 0.0, 1.0);
     }
-    add_metal(builder, at, vec3(weight), f0, edge, Film(thin_film_thickness, max(thin_film_ior, 1e-3)), distribution == 2);
+    add_metal(builder, at, vec3(weight), f0, edge, Film(thin_film_thickness, max(thin_film_ior, 1e-3)),
+              distribution == 2);
 }
 
 // A diffuse or a glossy surface stands in.
-void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, vec3 color, float size, float smoothness, vec3 normal) {
+void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, vec3 color, float size,
+                    float smoothness, vec3 normal) {
     if (component == 0) add_diffuse(builder, vec3(weight), max(color, 0.0), 0.0, normal);
     else add_mirror(builder, isotropic_microfacets(builder, normal, unit(size)), weight, max(color, 0.0), false);
 }
 
 // A glossy surface stretched across the fibre, or a translucent one, stands in.
-void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, vec3 color, float offset, float roughnessu,
+void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, vec3 color, float offset,
+                    float roughnessu,
                     float roughnessv, vec3 tangent) {
     if (component == 1) add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), builder.shading, 0u);
     else {
@@ -117,8 +125,10 @@ void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, v
 }
 
 // Subsurface scattering adds to the diffuse base, of a thin wall on both sides.
-void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method, int thin_wall,
-                          vec3 base_color, float metallic, float roughness, float ior, float alpha, vec3 normal, float diffuse_roughness,
+void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method,
+                          int thin_wall,
+                          vec3 base_color, float metallic, float roughness, float ior, float alpha, vec3 normal,
+                          float diffuse_roughness,
                           float subsurface_weight, vec3 subsurface_radius, float subsurface_scale, float subsurface_ior,
                           float subsurface_anisotropy, float specular_ior_level, vec3 specular_tint, float anisotropic,
                           float anisotropic_rotation, vec3 tangent, float transmission_weight, float coat_weight,
@@ -126,9 +136,12 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
                           float sheen_roughness, vec3 sheen_tint, vec3 emission_color, float emission_strength,
                           float thin_film_thickness, float thin_film_ior) {
     add_principled(builder, weight, Principled(
-        max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal, unit(diffuse_roughness),
-        unit(subsurface_weight), subsurface_anisotropy, max(specular_ior_level, 0.0), max(specular_tint, 0.0), unit(anisotropic), anisotropic_rotation, tangent,
-        unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0), coat_normal,
+        max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal,
+        unit(diffuse_roughness),
+        unit(subsurface_weight), subsurface_anisotropy, max(specular_ior_level, 0.0), max(specular_tint, 0.0),
+        unit(anisotropic), anisotropic_rotation, tangent,
+        unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0),
+        coat_normal,
         unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0), max(emission_color * emission_strength, 0.0),
         Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1, thin_wall == 1));
 }

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All that modules declare for shaders, and all variants in which shaders are compiled."""
+
+import importlib
+import pkgutil
+import re
+from dataclasses import dataclass, field
+
+import rppm_addon
+from rppm_addon.gl.sources import SHADER_FOLDER, Source, expand
+
+from .every_node import programs
+
+STAGES = (".comp", ".vert", ".frag", ".geom")
+GENERATED = "materials/generated.glsl"
+"""Stands for what the compiler of node graphs writes."""
+_LINT = re.compile(r"^\s*//\s*lint:(.*)$", re.MULTILINE)
+
+
+def import_declarations() -> None:
+    """Import every module without Blender that may declare records, constants or storage blocks."""
+    for floor in ("gl", "materials", "integrator"):
+        package = importlib.import_module(f"{rppm_addon.__name__}.{floor}")
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            importlib.import_module(module.name)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A stage file below the shader folder with values for the defines that it needs."""
+
+    name: str
+    defines: dict[str, object] = field(default_factory=dict)
+    generated: str = ""
+    """Of a node graph."""
+
+    def expand(self) -> Source:
+        """Its text; raises ShaderError."""
+        return expand(self.name, self.defines, {GENERATED: self.generated} if self.generated else {})
+
+
+def variants() -> list[Variant]:
+    """Of every stage file those that its lint lines name; of those that run node graphs, with every kind of node."""
+    import_declarations()
+    found = []
+    for path in sorted(SHADER_FOLDER.rglob("*")):
+        if path.suffix in STAGES:
+            text = path.read_text(encoding="utf-8")
+            name = path.relative_to(SHADER_FOLDER).as_posix()
+            for line in _LINT.findall(text) or [""]:
+                defines: dict[str, object] = dict(item.partition("=")[::2] for item in line.split())
+                graphs = programs().values() if GENERATED in text else [""]
+                found += [Variant(name, defines, graph) for graph in graphs]
+    return found

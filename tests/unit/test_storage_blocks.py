@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Storage blocks: declared once, and no more of them in a stage than every driver offers."""
+
+import collections
+import re
+
+import pytest
+from support.shader_declarations import variants
+
+from rppm_addon.gl import sources
+from rppm_addon.gl.records import Record
+from rppm_addon.gl.sources import SHADER_FOLDER, ShaderError, expand
+from rppm_addon.gl.storage_blocks import StorageBlock
+
+MOST_BLOCKS = 16
+"""In one stage: what every driver tried so far offers, and bindings 0 to 15."""
+
+
+@pytest.fixture
+def shader(tmp_path, monkeypatch):
+    """A shader of a text."""
+    monkeypatch.setattr(sources, "SHADER_FOLDER", tmp_path)
+    for kind in (Record, StorageBlock):
+        monkeypatch.setattr(kind, "registry", {})
+
+    def write(text: str) -> str:
+        (tmp_path / "own.comp").write_text(text)
+        return "own.comp"
+
+    return write
+
+
+def test_members_and_records_come_with_the_name(shader):
+    Record("Dot", place="vec3")
+    StorageBlock("Dots", "Dot dots[];")
+    source = expand(shader("layout(std430, binding = 3) readonly buffer Dots;  // all\nvoid main() {}\n"))
+    assert source.text.splitlines() == [
+        "struct Dot { vec3 place; }; layout(std430, binding = 3) readonly buffer Dots { Dot dots[]; };  // all",
+        "void main() {}",
+    ]
+    assert source.blocks == {"Dots": 3}
+
+
+def test_a_struct_comes_once(shader):
+    Record("Dot", place="vec3")
+    StorageBlock("Dots", "Dot dots[];")
+    StorageBlock("Others", "Dot others[];")
+    text = "#include <Dot>\nlayout(std430, binding = 0) buffer Dots;\nlayout(std430, binding = 1) buffer Others;\n"
+    assert expand(shader(text)).text.count("struct Dot") == 1
+
+
+def test_unknown_block(shader):
+    with pytest.raises(ShaderError, match="own.comp:2: there is no storage block Dots"):
+        expand(shader("\nlayout(std430, binding = 0) buffer Dots;\n"))
+
+
+def test_one_name_has_one_meaning(shader):
+    StorageBlock("Dots", "vec4 dots[];")
+    StorageBlock("Dots", "vec4 dots[];")
+    with pytest.raises(ValueError, match="Dots"):
+        StorageBlock("Dots", "vec3 dots[];")
+
+
+def test_no_block_is_spelled_out_twice():
+    spelled = re.compile(r"\bbuffer\s+(\w+)\s*\{")
+    counts = collections.Counter(
+        name for path in SHADER_FOLDER.rglob("*.*") for name in spelled.findall(path.read_text(encoding="utf-8"))
+    )
+    variants()  # declares all
+    assert not {name for name, count in counts.items() if count > 1 or name in StorageBlock.registry}
+
+
+def test_every_block_is_in_use():
+    text = "".join(path.read_text(encoding="utf-8") for path in SHADER_FOLDER.rglob("*.*"))
+    variants()  # declares all
+    assert not {name for name in StorageBlock.registry if not re.search(rf"\bbuffer\s+{name};", text)}
+
+
+def test_no_stage_needs_more_than_drivers_offer():
+    for variant in variants():
+        blocks = variant.expand().blocks
+        assert len(blocks) <= MOST_BLOCKS and max(blocks.values(), default=0) < MOST_BLOCKS, variant.name
