@@ -31,7 +31,7 @@ Record(
     radius_by_ray="float",
     most_radius_factor="float",
     gathers_again_below="float",
-    world_photon_flux="float",
+    photon_flux="float",
 )
 
 
@@ -136,7 +136,7 @@ class Importons:
                 "radius_by_ray": radius_by_ray,
                 "most_radius_factor": most_radius_factor,
                 "gathers_again_below": gathers_again_below,
-                "world_photon_flux": stages.emission.photon_flux,
+                "photon_flux": stages.emission.photon_flux,
             },
         )
 

@@ -17,7 +17,7 @@ from .living_paths import LivingPaths
 ESTIMATE_PARAMETERS = {
     "wide_radius": "float",
     "photon_count": "uint",
-    "world_photon_flux": "float",
+    "photon_flux": "float",
     "most_scattered": "uint",
 }
 """Parameters of programs that estimate densities (shaders/common/importon.glsl)."""
@@ -95,8 +95,8 @@ class StoredPhotons:
     """No more than so many of them has a diffuse surface scattered."""
     world_radiances: moderngl.Buffer
     emitted_count: int
-    world_photon_flux: float
-    """Mean flux of the world's photons, W."""
+    photon_flux: float
+    """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
     radii: SplatRadii
     largest_coordinate: float
     """Of any position, metres, by its absolute value."""
@@ -152,6 +152,6 @@ class TakingImportons:
         return {
             "wide_radius": photons.radii.wide,
             "photon_count": photons.emitted_count,
-            "world_photon_flux": photons.world_photon_flux,
+            "photon_flux": photons.photon_flux,
             "most_scattered": self.most_scattered,
         }

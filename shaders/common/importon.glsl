@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer declares before the members photon_count, world_photon_flux and most_scattered of its parameters.
+// The includer declares before the members photon_count, photon_flux and most_scattered of its parameters.
 #include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/sampling.glsl"
@@ -38,16 +38,17 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
     return value;
 }
 
-// How far the normals of photon and importon may part, as a cosine, and how far a photon may lie
-// off the importon's tangent plane in radii: beyond, they are on different surfaces.
-const float NORMAL_TOLERANCE = 0.7;
-const float PLANE_TOLERANCE = 0.35;
+// How far the geometric normals of photon and importon may part, as a cosine, and how far a photon may lie off the
+// importon's tangent plane in radii: beyond, they are on different surfaces. Around a bend photons count, since their
+// flux is weighted by the importon's own BSDF; around an edge they do not.
+const float PHOTON_NORMAL_TOLERANCE = 0.7;
+const float PHOTON_PLANE_TOLERANCE = 0.35;
 
 // The gathering ray finds the rest, unless its path ends before.
 float caustic_share(uint photon_number, float radius) {
     float radiance = world_radiances[photon_number % parameters.photon_count];
     bool found = radiance > 0.0 && photon_number / parameters.photon_count <= parameters.most_scattered;
-    return found ? world_photon_share(radiance, parameters.world_photon_flux, radius) : 1.0;
+    return found ? world_photon_share(radiance, parameters.photon_flux, radius) : 1.0;
 }
 
 // What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which an
@@ -66,10 +67,10 @@ bool density_estimate(Importon importon, Photon photon, uint photon_number, floa
     if (!within_reach(importon.gathers, importon.radius, offset, photon.flags, wide_radius)) return false;
     float radius = photon_radius(photon.flags, importon.radius, wide_radius), radius2 = radius * radius;
     vec3 geometric = unpack_unit_vector(importon.geometric_normal);
-    if (abs(dot(offset, geometric)) > PLANE_TOLERANCE * radius) return false;
+    if (abs(dot(offset, geometric)) > PHOTON_PLANE_TOLERANCE * radius) return false;
     vec3 photon_normal = unpack_unit_vector(photon.geometric_normal);
     float alignment = dot(geometric, photon_normal);
-    if (abs(alignment) < NORMAL_TOLERANCE) return false;
+    if (abs(alignment) < PHOTON_NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
     if (alignment < 0.0 && !lobe_transmits(unpack_kind(importon.lobe_kind)) && largest(importon.translucent) <= 0.0)
         return false;

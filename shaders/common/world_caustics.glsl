@@ -3,7 +3,7 @@
 // ray. The power heuristic (Veach 1997, section 9.2) shares it out by what a photon adds there, flux / (pi r)^2 for
 // white: where the world is as bright as that, both are as noisy. The share must rest on what both ways know.
 
-// photon_flux: the mean of the world's photons, W. radius: of the importon, metres.
+// photon_flux: the mean over all lights' photons, W, which are shared out by power. radius: of the importon, metres.
 float world_photon_share(float radiance, float photon_flux, float radius) {
     return first_way_share(radiance, photon_flux / (PI * PI * radius * radius));
 }

@@ -14,8 +14,11 @@ layout(std430, binding = 0) readonly buffer GatheringVertices;
 layout(std430, binding = 1) readonly buffer FoundRadiances;
 layout(std430, binding = 2) buffer Radiances;
 
-const float NORMAL_TOLERANCE = 0.9;
-const float PLANE_TOLERANCE = 0.35;
+// How far the normals of neighbours may part, as a cosine, and how far one may lie off the other's tangent plane in
+// radii. What a ray found was chosen by the cosine to its own normal and is taken over as it is, so normals must be
+// nearer to each other than those of photons and importons.
+const float SHARED_NORMAL_TOLERANCE = 0.9;
+const float SHARED_PLANE_TOLERANCE = 0.35;
 const float GOLDEN_ANGLE = 2.39996323;
 
 void main() {
@@ -43,8 +46,8 @@ void main() {
         if (!(other.shared_radius > 0.0)) continue;
         vec3 apart = other.position - vertex.position;
         float distance2 = dot(apart, apart) / (radius * radius);
-        if (distance2 >= 1.0 || abs(dot(apart, normal)) > PLANE_TOLERANCE * radius) continue;
-        if (dot(normal, unpack_unit_vector(other.normal)) < NORMAL_TOLERANCE) continue;
+        if (distance2 >= 1.0 || abs(dot(apart, normal)) > SHARED_PLANE_TOLERANCE * radius) continue;
+        if (dot(normal, unpack_unit_vector(other.normal)) < SHARED_NORMAL_TOLERANCE) continue;
         float share = 1.0 - distance2;
         sum += share * found_radiances[other_index].rgb;
         total += share;

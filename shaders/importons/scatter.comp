@@ -64,6 +64,166 @@ float environment_shadow_ray_pdf(vec3 direction) {
     return left_to_rays ? 0.0 : parameters.world_selection * world_density(direction);
 }
 
+// What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left to
+// photons but for the environment's. Shadow rays find direct light, and share the environment's with this ray.
+void end_gathering_ray(uint index, CameraPath path, vec3 direction) {
+    vec3 world = world_radiance(direction);
+    if ((path.flags & PATH_CAUSTIC) == 0u) {
+        if (parameters.next_event == 0u) return;
+        float weight = scattered_share(path.scatter_density, environment_shadow_ray_pdf(direction));
+        vec3 arrived = path.throughput * world * weight;
+        if ((path.flags & PATH_GATHERED_AGAIN) != 0u) gathering_vertices[index].found = arrived;
+        else radiances[index].rgb += gathering_vertices[index].weight * arrived;
+        return;
+    }
+    float photons = world_photon_share(largest(world), parameters.photon_flux, gathering_vertices[index].radius);
+    gathering_vertices[index].found = path.throughput * world * (1.0 - photons);
+}
+
+// Radiance and alpha of what lies behind everything. background: no light object was passed.
+vec4 seen_environment(CameraPath path, vec3 direction, bool background) {
+    bool straight = (path.flags & PATH_STRAIGHT) != 0u;
+    if (straight && background && parameters.film_transparent != 0u)
+        return vec4(vec3(0.0), -(path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
+    float share = scattered_share(path.scatter_density, environment_shadow_ray_pdf(direction));
+    vec3 world = straight ? world_radiance_seen(direction) : world_radiance(direction);
+    return vec4(path.throughput * world * share, 0.0);
+}
+
+// Radiance and alpha of a surface that shines by itself or cuts a hole.
+vec4 seen_surface(CameraPath path, Ray ray, Closure closure) {
+    vec4 seen = vec4(0.0);
+    if (largest(closure.emission) > 0.0 && (path.flags & PATH_GATHERED) == 0u) {
+        float share = 1.0;
+        if (path.scatter_density > 0.0)
+            share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle));
+        seen.rgb = path.throughput * closure.emission * share;
+    }
+    if ((path.flags & PATH_STRAIGHT) != 0u)
+        seen.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
+    return seen;
+}
+
+// The radius in which photons count at the path's new vertex.
+float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {
+    path.total_length += closure.distance;
+    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC;
+    if (parameters.segment == 0u) {
+        // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
+        float facing = max(abs(dot(unpack_unit_vector(closure.geometric_normal), direction)), 1e-4);
+        path.primary_distance = path.total_length;
+        path.primary_radius *= parameters.radius_scale * (parallel ? 1.0 : path.primary_distance) / sqrt(facing);
+    }
+    // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
+    float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
+    float radius = path.primary_radius * growth;
+    return parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
+}
+
+// How a path may go on.
+struct Event {
+    vec3 direction;
+    vec3 weight;
+    vec3 normal;        // of a diffuse one on the side of the direction
+    float probability;  // of those that all shares stand for
+    bool transmitted;
+    float density;      // in 1/sr, where shadow rays sample the same light; else 0
+    uint flags;         // of the path from here on
+};
+
+Event diffuse_event(CameraPath path, Closure closure, float u, vec2 u_direction, vec4 shares, float total,
+                    float survival) {
+    Event event;
+    float reflected = largest(path.throughput * closure.diffuse);
+    event.transmitted = u >= reflected;
+    event.probability = event.transmitted ? shares.x - reflected : reflected;
+    event.normal = unpack_unit_vector(closure.diffuse_normal);
+    if (event.transmitted) event.normal = -event.normal;
+    event.direction = sample_cosine_hemisphere(event.normal, u_direction);
+    event.weight = event.transmitted ? closure.translucent : closure.diffuse;
+    event.density = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
+    event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_DIFFUSE;
+    return event;
+}
+
+Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shares) {
+    bool shadow_rays_pass = (closure.flags & CLOSURE_SHADOWLESS) != 0u;
+    return Event(direction, closure.transparent, -direction, shares.x, true,
+                 shadow_rays_pass ? path.scatter_density : 0.0, path.flags | (shadow_rays_pass ? 0u : PATH_CAUSTIC));
+}
+
+// u: behind the share of what is no lobe.
+Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec3 u_lobe, vec4 shares, float total) {
+    Event event;
+    int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
+    event.probability = shares[1 + chosen];
+    MicrofacetLobe lobe = closure_lobe(closure, chosen);
+    event.normal = lobe_normal(lobe);
+    LobeSample sampled = sample_lobe(lobe, event.normal, viewer, u_lobe.xy, u_lobe.z, true);
+    event.density = 0.0;
+    if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
+        event.density = lobe_probability(shares, total, chosen)
+                      * lobe_density(lobe, event.normal, viewer, sampled.direction);
+    event.direction = sampled.direction;
+    event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
+    event.transmitted = sampled.transmitted;
+    event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_CAUSTIC
+                | (sampled.transmitted ? PATH_TRANSMITTED : 0u) | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u);
+    return event;
+}
+
+// The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
+void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, float radius, float caustic_radius,
+           uvec4 choices, float u) {
+    vec3 viewer = -ray.direction;
+    vec4 shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, false);
+    vec4 gathering_shares = vec4(0.0);
+    if (gathers)
+        gathering_shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, true);
+    float gathering = sum(gathering_shares), total = sum(shares) + gathering;
+    if (total <= 0.0) return;
+    float survival = path_survival(total);
+    if (u >= survival) return;
+    vec2 u_direction = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices));
+    float u_event = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)).x;
+    u *= total / survival;
+    bool sets_out = u < gathering, gathered = (path.flags & PATH_GATHERED) != 0u;
+    if (sets_out) {
+        path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED | (gathered ? PATH_GATHERED_AGAIN : 0u);
+        shares = gathering_shares;
+    } else u -= gathering;
+    Event event;
+    bool diffuse = sets_out && u < shares.x;
+    vec3 found_weight = vec3(1.0);
+    if (diffuse) {
+        event = diffuse_event(path, closure, u, u_direction, shares, total, survival);
+        vec3 facing = event.transmitted ? -event.normal : event.normal;
+        found_weight = diffuse_factor(closure, facing, viewer, event.direction);
+    } else if (u < shares.x) event = straight_event(path, closure, ray.direction, shares);
+    else event = lobe_event(path, closure, viewer, u - shares.x, vec3(u_direction, u_event), shares, total);
+    if (event.probability <= 0.0) return;
+    path.flags = event.flags;
+    path.scatter_density = event.density;
+    path.throughput *= event.weight * (total / (event.probability * survival));
+    if (sets_out) path.flags &= ~PATH_CAUSTIC;
+    if (sets_out && gathered) {
+        gathering_vertices[index].radius = caustic_radius;
+        path.throughput *= found_weight;
+    } else if (sets_out) {
+        // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
+        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput,
+                                                    pack_unit_vector(event.normal), vec3(0.0), caustic_radius);
+        path.throughput = found_weight;
+    }
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    float side = dot(event.direction, geometric);
+    if (!(largest(path.throughput) > 0.0) || (event.transmitted ? side >= 0.0 : side <= 0.0)) return;
+    if (event.transmitted) path.flags = cross_surface(path.flags, closure);
+    camera_paths[index] = path;
+    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
+    rays[index] = Ray(origin, closure.triangle, event.direction, INFINITY_DISTANCE);
+}
+
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
@@ -74,157 +234,36 @@ void main() {
     if (parameters.segment == 0u) gathering_vertices[index].shared_radius = -1.0;
     if (!(ray.maximum_distance > 0.0)) return;
     Closure closure = closures[index];
-    bool hit = closure_hit(closure);
-    bool straight = (path.flags & PATH_STRAIGHT) != 0u, gathered = (path.flags & PATH_GATHERED) != 0u;
-    // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left
-    // to photons but for the environment's. Shadow rays find direct light, and share the environment's with this ray.
+    bool hit = closure_hit(closure), gathered = (path.flags & PATH_GATHERED) != 0u;
     if (gathered && !hit) {
-        vec3 world = world_radiance(ray.direction);
-        if ((path.flags & PATH_CAUSTIC) == 0u) {
-            if (parameters.next_event == 0u) return;
-            float weight = scattered_share(path.scatter_density, environment_shadow_ray_pdf(ray.direction));
-            vec3 arrived = path.throughput * world * weight;
-            if ((path.flags & PATH_GATHERED_AGAIN) != 0u) gathering_vertices[index].found = arrived;
-            else radiances[index].rgb += gathering_vertices[index].weight * arrived;
-            return;
-        }
-        float photons = world_photon_share(largest(world), parameters.world_photon_flux,
-                                           gathering_vertices[index].radius);
-        gathering_vertices[index].found = path.throughput * world * (1.0 - photons);
+        end_gathering_ray(index, path, ray.direction);
         return;
     }
-    vec4 seen = vec4(0.0);
-
-    vec3 lights_passed = gathered ? vec3(0.0)
-                         : visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE,
-                                         camera_ray_kind(path.flags), path.scatter_density);
-    seen.rgb += path.throughput * lights_passed;
+    vec3 lights_passed = vec3(0.0);
+    if (!gathered)
+        lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE,
+                                      camera_ray_kind(path.flags), path.scatter_density);
+    vec4 seen = vec4(path.throughput * lights_passed, 0.0);
     if (!hit) {
-        bool background = largest(lights_passed) <= 0.0;
-        if (straight && background && parameters.film_transparent != 0u)
-            seen.a -= (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
-        else {
-            float share = scattered_share(path.scatter_density, environment_shadow_ray_pdf(ray.direction));
-            seen.rgb += path.throughput * (straight ? world_radiance_seen(ray.direction)
-                                           : world_radiance(ray.direction)) * share;
-        }
-        radiances[index] += seen;
+        radiances[index] += seen + seen_environment(path, ray.direction, largest(lights_passed) <= 0.0);
         return;
     }
     path.throughput *= segment_transmittance(path.flags, closure);
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
-    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    if (largest(closure.emission) > 0.0 && !gathered) {
-        float share = 1.0;
-        if (path.scatter_density > 0.0)
-            share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle));
-        seen.rgb += path.throughput * closure.emission * share;
-    }
-    if (straight)
-        seen.a -= closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
-    radiances[index] += seen;
+    radiances[index] += seen + seen_surface(path, ray, closure);
 
-    vec3 viewer = -ray.direction;
-    path.total_length += closure.distance;
-    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC;
-    if (parameters.segment == 0u) {
-        // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
-        float facing = max(abs(dot(geometric, ray.direction)), 1e-4);
-        path.primary_distance = path.total_length;
-        path.primary_radius *= parameters.radius_scale * (parallel ? 1.0 : path.primary_distance) / sqrt(facing);
-    }
-    // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
-    float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
-    float radius = path.primary_radius * growth;
-    radius = parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
+    float radius = vertex_radius(path, ray.direction, closure);
     float factor = parameters.iteration <= 1u ? parameters.most_radius_factor
-                   : radius_factors[parameters.first_pixel + index];
+                 : radius_factors[parameters.first_pixel + index];
     float caustic_radius = gathered ? max(radius, parameters.radius_by_ray) : factor * radius;
-
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_IMPORTONS << 24u));
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
-    importons[index] = make_importon(closure, path.throughput, viewer, caustic_radius, u_lobe.y,
+    importons[index] = make_importon(closure, path.throughput, -ray.direction, caustic_radius, u_lobe.y,
                                      (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u));
-
-    if (parameters.last_segment != 0u) return;
-    vec4 shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, false);
-    vec4 gathering_shares = vec4(0.0);
-    if (gathers)
-        gathering_shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, true);
-    float gathering = sum(gathering_shares), total = sum(shares) + gathering;
-    if (total <= 0.0) return;
-    float survival = path_survival(total);
-    float u = u_lobe.x;
-    if (u >= survival) return;
-    vec2 u_direction = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices));
-    float u_event = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)).x;
-    u *= total / survival;
-    vec3 direction, weight;
-    bool transmitted;
-    float probability, straight_density = path.scatter_density;
-    path.scatter_density = 0.0;
-    bool sets_out = u < gathering;
-    if (sets_out) {
-        path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED | (gathered ? PATH_GATHERED_AGAIN : 0u);
-        shares = gathering_shares;
-    } else u -= gathering;
-    bool diffuse = sets_out && u < shares.x;
-    vec3 normal = unpack_unit_vector(closure.diffuse_normal), found_weight = vec3(1.0);
-    if (diffuse) {
-        float reflected = largest(path.throughput * closure.diffuse);
-        transmitted = u >= reflected;
-        probability = transmitted ? shares.x - reflected : reflected;
-        if (transmitted) normal = -normal;
-        direction = sample_cosine_hemisphere(normal, u_direction);
-        weight = transmitted ? closure.translucent : closure.diffuse;
-        found_weight = diffuse_factor(closure, transmitted ? -normal : normal, viewer, direction);
-        path.scatter_density = probability * survival / total * max(dot(normal, direction), 0.0) / PI;
-    } else if (u < shares.x) {
-        direction = ray.direction;
-        weight = closure.transparent;
-        if ((closure.flags & CLOSURE_SHADOWLESS) == 0u) path.flags |= PATH_CAUSTIC;
-        else path.scatter_density = straight_density;  // shadow rays pass as well
-        transmitted = true;
-        probability = shares.x;
-    } else {
-        u -= shares.x;
-        int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
-        probability = shares[1 + chosen];
-        if (probability <= 0.0) return;
-        MicrofacetLobe lobe = closure_lobe(closure, chosen);
-        normal = lobe_normal(lobe);
-        LobeSample sampled = sample_lobe(lobe, normal, viewer, u_direction, u_event, true);
-        if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
-            path.scatter_density = lobe_probability(shares, total, chosen)
-                                   * lobe_density(lobe, normal, viewer, sampled.direction);
-        direction = sampled.direction;
-        weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
-        transmitted = sampled.transmitted;
-        path.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_CAUSTIC;
-        if (transmitted) path.flags |= PATH_TRANSMITTED;
-        if (lobe.alpha <= SMOOTHEST_LIT) path.flags |= PATH_SINGULAR;
-    }
-    if (diffuse) path.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_DIFFUSE;
-    path.throughput *= weight * (total / (probability * survival));
-    if (sets_out) path.flags &= ~PATH_CAUSTIC;
-    if (sets_out && gathered) {
-        gathering_vertices[index].radius = caustic_radius;
-        path.throughput *= found_weight;
-    } else if (sets_out) {
-        // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
-        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput,
-                                                    pack_unit_vector(normal),
-                                                    vec3(0.0), caustic_radius);
-        path.throughput = found_weight;
-    }
-    float side = dot(direction, geometric);
-    if (!(largest(path.throughput) > 0.0) || (transmitted ? side >= 0.0 : side <= 0.0)) return;
-    if (transmitted) path.flags = cross_surface(path.flags, closure);
-    camera_paths[index] = path;
-    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
-    rays[index] = Ray(origin, closure.triangle, direction, INFINITY_DISTANCE);
+    if (parameters.last_segment == 0u)
+        go_on(index, path, ray, closure, gathers, radius, caustic_radius, choices, u_lobe.x);
 }
