@@ -20,6 +20,7 @@ Building takes these steps, shaders of these names in shaders/deep_cubemap:
 traverse.glsl walks the result.
 """
 
+import enum
 import logging
 import time
 from collections.abc import Mapping
@@ -28,6 +29,7 @@ import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
+from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
@@ -88,6 +90,23 @@ FRAGMENT = Record(
     extent_high="uint",
 )
 BINNED_FRAGMENT = Record("BinnedFragment", cell="uint", triangle="uint", depths="uint")
+
+
+class CellKind(enum.IntEnum):
+    """What a cell that is not empty holds."""
+
+    LIST = 0
+    """A few triangles."""
+    BINS = 1
+    """Many, by depth."""
+    TILE = 2
+    """Smaller cells."""
+
+
+JOIN_MOST = 5
+"""Log2 of the slices of depth that one bin may hold: all 32 of a cell."""
+Constants("CellKinds", CELL=CellKind)
+Constants("DepthBins", signed=True, JOIN_MOST=JOIN_MOST)
 StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
 BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
 Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")

@@ -13,7 +13,7 @@
 layout(std430, binding = 11) DEPTH_BINS_ACCESS buffer DepthBins { uint bin_ends[]; };
 
 // The cell's content tells how many bins: 2^cut a slice, or one for 2^join slices.
-const int JOIN_MOST = 5;
+#include <DepthBins>
 int bins_cut(CubemapCell cell) { return max(int(content_count(cell.content)) - JOIN_MOST, 0); }
 int bins_join(CubemapCell cell) { return max(JOIN_MOST - int(content_count(cell.content)), 0); }
 

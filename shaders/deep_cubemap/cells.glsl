@@ -38,9 +38,7 @@ CubemapCell cubemap_cell(uint index) { return cubemap_cells[index]; }
 #endif
 #endif
 
-const uint CELL_LIST = 0u;
-const uint CELL_BINS = 1u;
-const uint CELL_TILE = 2u;
+#include <CellKinds>
 const uint MOST_LISTED = 6u;
 
 uint content_kind(uint content) { return content >> 30; }

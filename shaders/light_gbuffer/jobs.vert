@@ -5,11 +5,10 @@
 #include <LightGBufferParameters>
 layout(std140, binding = 0) uniform Parameters { LightGBufferParameters parameters; };
 #include "light_gbuffer/jobs.glsl"
+#include "common/quad_corners.glsl"
 
 flat out uint job_number;
 flat out ivec2 view_corner;
-
-const ivec2 CORNERS[6] = ivec2[](ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), ivec2(0, 1), ivec2(1, 0), ivec2(1, 1));
 
 void main() {
     job_number = parameters.first_job + uint(gl_VertexID) / 6u;

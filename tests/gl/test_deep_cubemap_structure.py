@@ -11,7 +11,7 @@ from deep_cubemap_device import Scene
 from deep_cubemap_scenes import CENTRES, furnished_room, room_with_meshes, sphere
 from deep_cubemap_structure import BEFORE, BEHIND, BINS, LIST, TILE, Structure, as_sets, read_structure
 
-from rppm_addon.integrator.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.deep_cubemap import JOIN_MOST, DeepCubemap
 
 POINTS = 200_000
 BASE_LEVEL = 2
@@ -127,7 +127,7 @@ def test_lists_are_for_few_triangles_and_bins_for_many(context, library):
             assert np.all(structure.bin_counts[binned] >= 1)
             assert np.all(structure.bin_counts[binned] <= np.minimum(held[binned], most))
             # each bin begins and ends at a slice in use, so that none is empty unless a slice was cut
-            joined = binned & (structure.cells["content"] & 15 <= 5)
+            joined = binned & (structure.cells["content"] & 15 <= JOIN_MOST)
             filled = np.bincount(np.unique(structure.entries[:, :2], axis=0)[:, 0], minlength=len(structure.kind))
             np.testing.assert_array_equal(filled[joined], structure.bin_counts[joined])
             used |= set(structure.cells["content"][binned] & 15)

@@ -8,6 +8,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
+from rppm_addon.integrator.records import PhotonFlag
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
 
 ANGLE = math.radians(50.0)
@@ -56,7 +57,7 @@ def scattered(mapper, surface: Material) -> tuple[np.ndarray, np.ndarray]:
     )
     mapper.iterate()
     first, second = mapper.read_photons()
-    arrived = (first["flags"] & 1 != 0) & (first["flags"] & 4 == 0)
+    arrived = (first["flags"] & PhotonFlag.ACTIVE != 0) & (first["flags"] & PhotonFlag.ESCAPED == 0)
     share = first["scattered_flux"][arrived] / first["flux"][arrived].mean(axis=0)
     return share.astype(np.float64), np.abs(second["direction"][arrived, 2])
 
