@@ -107,7 +107,8 @@ def render(case: Case, file: Path, folder: Path) -> str:
         picture = folder / (f"part{number}.exr" if case.merge else "picture_####.exr" if case.frames else "picture.exr")
         parts.append(picture)
         options = [argument.format(folder=folder) for argument in run_arguments]
-        sets = [item for name in case.sets for item in ("--set", name)]
+        # What a file allows itself in seconds would end a render whose programs are compiled first.
+        sets = [item for name in (*case.sets, "rppm.time_limit=0") for item in ("--set", name)]
         shape = ["--resolution", SHAPE, "--photons", str(case.photons)]
         run(["render", str(file), "-o", str(picture), *shape, *options, *sets])
     if case.merge:
