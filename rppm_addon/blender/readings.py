@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..integrator.bandwidth import radius_in_pixels, shrinkage
+from ..integrator.density_estimation.radii import radius_in_pixels, shrinkage
 from ..integrator.memory import Memory, expected_memory
 from ..scene import Camera, DensityEstimation, RenderSettings
 from .reports import RenderReport

@@ -45,7 +45,7 @@ class RenderReport:
     device: str = ""
     triangles: int = 0
     source_watts: dict[str, float] = field(default_factory=dict)
-    """Power by light source, as integrator/sources.py names them."""
+    """Power by light source, as integrator/lights/sources.py names them."""
     source_photons: dict[str, int] = field(default_factory=dict)
     """Photons of the last iteration by light source."""
     density_estimation: str = ""

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 
 from ..scene.passes import passes_named
 from ..scene.settings import RenderSettings
-from .bands import bands_of
-from .film import passes_memory
-from .living_paths import LivingPaths
-from .photon_grid import importon_memory
-from .records import (
+from .common.band import bands_of
+from .common.living_paths import LivingPaths
+from .common.records import (
     CAMERA_PATH,
     CLOSURE,
     DEPARTURE,
@@ -23,6 +21,8 @@ from .records import (
     PHOTON_PATH,
     RAY,
 )
+from .density_estimation.photon_grid import importon_memory
+from .stages.film import passes_memory
 
 PPM_BUFFERS = ("film", "gathered radiance", "photons")
 """Running mean of radiance (16 R), sums of splats (48 bytes a pixel of one band of rows), photons (64 M L)."""
@@ -45,6 +45,7 @@ class Memory:
 
     @property
     def ppm_bytes(self) -> int:
+        """Of all that the paper counts."""
         return sum(self.ppm.values())
 
     @property
@@ -59,6 +60,7 @@ class Memory:
 
     @property
     def total_bytes(self) -> int:
+        """Of everything on the device."""
         return self.ppm_bytes + sum(self.working_bytes.values())
 
     def as_dict(self) -> dict[str, object]:
@@ -76,7 +78,7 @@ class Memory:
         }
 
 
-def reckon_memory(groups: Mapping[str, Mapping[str, int]], pixels: int, photons: int, segments: int) -> Memory:
+def compute_memory(groups: Mapping[str, Mapping[str, int]], pixels: int, photons: int, segments: int) -> Memory:
     """Take the PPM buffers out of ``groups``, bytes by group and buffer; what remains is working memory."""
     everything = {name: size for sizes in groups.values() for name, size in sizes.items()}
     ppm = {name: everything[name] for name in PPM_BUFFERS if name in everything}
@@ -100,7 +102,7 @@ def expected_memory(
     passes: names of those that are rendered.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
-    pixels, band = width * height, width * bands_of(width, height)[0][1]
+    pixels, band = width * height, bands_of(width, height)[0].pixel_count
     groups = {
         "photon paths": {
             "photons": PHOTON.size * photons * segments,
@@ -143,4 +145,4 @@ def expected_memory(
             "radius factors": 4 * pixels,
         },
     }
-    return reckon_memory(groups, pixels, photons, segments)
+    return compute_memory(groups, pixels, photons, segments)

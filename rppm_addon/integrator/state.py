@@ -5,17 +5,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .photon_counts import PhotonCounts
+from ..scene.errors import CheckpointError
+from .common.photon_counts import PhotonCounts
+from .learning import Learning
+from .lights.lights import Lights
+from .stages.stage_set import StageSet
 
 
 @dataclass
 class RenderState:
     """A render between two iterations: a mapper that takes the same scene and this goes on bit for bit."""
 
-    left_out: int
+    skipped: int
     """So many iterations come before those of the film."""
     iteration: int
-    """The last that was run, counted from 1: ``iteration - left_out`` are in the film. The radii follow (Eq. 2)."""
+    """The last that was run, counted from 1: ``iteration - skipped`` are in the film. The radii follow (Eq. 2)."""
     photon_counts: PhotonCounts
     """Where automatic, known once the first iteration has been."""
     wide_radius: float
@@ -33,9 +37,52 @@ class RenderState:
     """(height, width) float32: times Eq. 3's radius, that for caustics of the iterations to come."""
     tallies: np.ndarray
     """(cells, 2) uint32 of the guide: photons that left through each cell, and those that were of use."""
-    learnt: np.ndarray | None
+    learned: np.ndarray | None
     """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
 
     @property
     def iterations_in_film(self) -> int:
-        return self.iteration - self.left_out
+        """How many iterations the film's means are of."""
+        return self.iteration - self.skipped
+
+
+def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: int, skipped: int) -> RenderState:
+    """What iterations to come rest on, after this one."""
+    film = stages.film
+    return RenderState(
+        skipped=skipped,
+        iteration=iteration,
+        photon_counts=learning.photon_counts,
+        wide_radius=learning.wide_radius,
+        diffused_photons_found=learning.diffused_photons_found,
+        radiance=film.read_radiance(),
+        passes=film.read_passes(),
+        pass_counts=film.read_pass_counts(),
+        radius_factors=stages.caustic_radii.read().reshape(film.height, film.width),
+        tallies=lights.guide.read_tallies(),
+        learned=lights.guide.learned,
+    )
+
+
+def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning: Learning) -> None:
+    """Go on from a state, before the first iteration.
+
+    Raises CheckpointError when the state is none of this scene.
+    """
+    film = stages.film
+    if state.radiance.shape[:2] != (film.height, film.width):
+        raise CheckpointError(
+            f"the checkpoint has {state.radiance.shape[1]}x{state.radiance.shape[0]} pixels, "
+            f"not {film.width}x{film.height}; begin anew"
+        )
+    try:
+        lights.restore(state.tallies, state.learned, state.photon_counts.later)
+    except ValueError as error:
+        raise CheckpointError(f"the checkpoint is none of this scene's: {error}; begin anew") from error
+    try:
+        film.restore(state.radiance, state.passes, state.pass_counts)
+    except KeyError as error:
+        raise CheckpointError(f"the checkpoint has no pass {error}; begin anew") from error
+    stages.caustic_radii.restore(state.radius_factors)
+    learning.photon_counts = state.photon_counts
+    learning.wide_radius, learning.diffused_photons_found = state.wide_radius, state.diffused_photons_found

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from ..integrator.photon_counts import PhotonCounts
+from ..integrator.common.photon_counts import PhotonCounts
 from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.errors import CheckpointError
@@ -81,7 +81,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
     state = pause.state
     summary = CheckpointSummary(
         render,
-        state.left_out,
+        state.skipped,
         state.iteration,
         state.photon_counts,
         state.wide_radius,
@@ -165,8 +165,8 @@ def _film_channels(state: RenderState, inspections: Mapping[str, np.ndarray]) ->
 
 def _guide_channels(state: RenderState) -> dict[str, np.ndarray]:
     tallies = {"left": state.tallies[:, 0], "useful": state.tallies[:, 1]}
-    if state.learnt is not None:
-        tallies |= {"learnt.left": state.learnt[:, 0], "learnt.useful": state.learnt[:, 1]}
+    if state.learned is not None:
+        tallies |= {"learnt.left": state.learned[:, 0], "learnt.useful": state.learned[:, 1]}
     return {name: np.ascontiguousarray(array[None]) for name, array in tallies.items()}
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from ..gl.context import Context, DeviceInformation
 from ..gl.programs import ProgramLibrary
-from ..integrator.film import Film
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
+from ..integrator.stages.film import Film
 from ..scene.passes import DEEP_CUBEMAP
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
@@ -19,7 +19,7 @@ from .results import Frame, Progress, RenderResult, RenderStatistics, empty_resu
 
 log = logging.getLogger(__name__)
 
-STRAY = 0.5
+CENTER_TOLERANCE = 0.5
 """Radii of the scene by which the camera of an animation may leave the deep cubemap's center before it is built anew.
 Measured in a room of 100 k triangles, so far off rays cost a tenth more, building a third of an iteration."""
 
@@ -86,7 +86,7 @@ class SlicedRender:
         mapper.timers.reset()
         # The pass pictures the deep cubemap: there the center is not free.
         inspected = DEEP_CUBEMAP.name in settings.passes
-        mapper.update(self._scene, stray=0.0 if inspected else STRAY)
+        mapper.update(self._scene, center_tolerance=0.0 if inspected else CENTER_TOLERANCE)
         if inspected:
             self._inspections = {DEEP_CUBEMAP.name: mapper.inspect_deep_cubemap()[..., :3]}
         yield from self._begin()
@@ -122,7 +122,7 @@ class SlicedRender:
                 )
         elif self._continuation.left_out:
             self.getting_ready = True
-            yield from mapper.leave_out(self._continuation.left_out)
+            yield from mapper.skip(self._continuation.left_out)
             self.getting_ready = False
         self.between_iterations = True
 

@@ -55,7 +55,7 @@ class RenderStatistics:
     memory_bytes: dict[str, int] = field(default_factory=dict)
     flux_watts: dict[str, float] = field(default_factory=dict)
     source_watts: dict[str, float] = field(default_factory=dict)
-    """Power by light source, as integrator/sources.py names them; the channels' mean."""
+    """Power by light source, as integrator/lights/sources.py names them; the channels' mean."""
     source_photons: dict[str, int] = field(default_factory=dict)
     """Photons of the last iteration by light source."""
     warnings: list[str] = field(default_factory=list)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Threads for the paths of a list (rppm_addon/integrator/living_paths.py), not for each that ever began.
+// Threads for the paths of a list (rppm_addon/integrator/common/living_paths.py), not for each that ever began.
 #include <LivingPathsHeader>
 #include "common/invocation.glsl"
 layout(std430, binding = 14) readonly buffer LivingPaths { LivingPathsHeader living; uint living_paths[]; };

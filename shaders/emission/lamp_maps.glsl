@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the nodes of lamps give by place or direction (integrator/lamp_maps.py).
+// What the nodes of lamps give by place or direction (integrator/lights/lamp_maps.py).
 
 layout(binding = 2) uniform sampler2D lamp_maps;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The light that a shadow ray goes to, chosen by what each may give at a point, and the light objects that a ray
-// passes (rppm_addon/integrator/light_tree.py).
+// passes (rppm_addon/integrator/lights/light_tree.py).
 
 #include <LightNode>
 #include "emission/lights.glsl"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Photons add to the sums of importons, many threads at once.
 // The includer declares the storage blocks of photons[] and importons[] and the members of SUM_PARAMETERS
-// (integrator/splat_sums.py).
+// (integrator/density_estimation/splat_sums.py).
 
 #include "splat_sums/sums.glsl"
 layout(std430, binding = 4) buffer SplatSums;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An importon collects for itself what photons add, in a thread that no other thread meets at its sums.
-// The includer declares the members of SUM_PARAMETERS (integrator/splat_sums.py).
+// The includer declares the members of SUM_PARAMETERS (integrator/density_estimation/splat_sums.py).
 
 #include "splat_sums/sums.glsl"
 layout(std430, binding = 4) buffer SplatSums;

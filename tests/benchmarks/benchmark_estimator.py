@@ -72,13 +72,13 @@ def splat_radius(subject: Subject, clock: Clock, quick: bool) -> dict:
     scale = scale_of(clock, quick)
     points = []
     with Rendering(subject, clock, scale) as rendering:
-        rendering.mapper._learn = lambda: None  # which would change photons and wide radius
         rendering.start()
         automatic = rendering.mapper.splat_radii[0]
         for factor in _RADIUS_FACTORS:
             rendering.start(radius_minimum=factor * automatic, radius_maximum=factor * automatic)
+            rendering.mapper.learning.learn = lambda *_: None  # which would change photons and wide radius
             rendering.iterate()  # finds the wide radius
-            rendering.mapper._wide_radius *= factor
+            rendering.mapper.learning.wide_radius *= factor
             # The same photons and camera rays at each radius, as these follow the iteration's number.
             seconds = rendering.mean_iteration(scale.repetitions)
             narrow, wide = rendering.mapper.splat_radii

@@ -14,8 +14,8 @@ from benchmark_machine import Clock
 from benchmark_scenes import SAMPLE, SHARED, Subject
 from bounding_volumes import build_nodes
 
-from rppm_addon.integrator.deep_cubemap import DeepCubemap
-from rppm_addon.integrator.records import NO_TRIANGLE
+from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.scene.errors import RppmError
 
 log = logging.getLogger("benchmark")

@@ -20,11 +20,11 @@ from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
-from rppm_addon.integrator.deep_cubemap import DeepCubemap
-from rppm_addon.integrator.living_paths import LivingPaths
-from rppm_addon.integrator.placement import radius_about
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.records import HIT
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.deep_cubemap.placement import radius_about
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.integrator.records import HIT
 from rppm_addon.scene import Camera, Scene, load_scene
 from rppm_addon.scene.errors import RppmError
 from rppm_addon.scene.lights import Light, LightKind
@@ -79,13 +79,13 @@ class Subject:
         camera = dataclasses.replace(scene.camera, width=64, height=48, crop=None)
         mapper.build(dataclasses.replace(scene, settings=settings, camera=camera))
         self.triangle_count = mapper.triangle_count
-        self.automatic_centre = tuple(float(c) for c in mapper.centre)
+        self.automatic_centre = tuple(float(c) for c in mapper.device_scene.center)
         self._buffers: dict[int, dict] = {}
         self._listed = LivingPaths(self.context, library, "rays to measure with", "take fewer")
 
     @property
     def geometry(self):
-        return self.mapper._geometry
+        return self.mapper.device_scene.geometry
 
     @cached_property
     def host_triangles(self) -> np.ndarray:

@@ -80,7 +80,7 @@ class Device:
 
     def take(self, scene: Scene, watch: Stopwatch) -> None:
         """Counts as upload what Geometry and the attributes of surfaces take, but for the gathering of triangles."""
-        geometry, resolve = self._mapper._geometry, self._mapper._resolve
+        geometry, resolve = self._mapper.device_scene.geometry, self._mapper.device_scene.resolve
         spent = {owner: np.zeros(2) for owner in (geometry, resolve, geometry._gather)}
 
         def timed(owner: object, work: Callable) -> Callable:
@@ -102,7 +102,7 @@ class Device:
             self._mapper.update(scene)
             self.context.finish()
         whole = np.array([time.perf_counter(), time.process_time()]) - started
-        self._mapper._build_deep_cubemap = lambda: None
+        self._mapper.device_scene._build_deep_cubemap = lambda: None
         gather = spent[geometry._gather]
         upload = spent[geometry] + spent[resolve] - gather
         for name, seconds in (("gather", gather), ("upload", upload), ("others", whole - upload - gather)):

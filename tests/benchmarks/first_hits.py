@@ -74,7 +74,7 @@ def measure(context: Context, library: ProgramLibrary, clock: Clock, scene: Scen
             seconds.append(stages(mapper))
     least = np.min(figures, axis=1)
     for mapper, (seconds, _) in zip(mappers, least, strict=True):
-        mapper._photons.first_hits.forget()
+        mapper.stages.photons.first_hits.forget()
         anew.append(max(stages(mapper)[0] - seconds, 0.0))
     films = [mapper.film.read_radiance().view(np.uint32) for mapper in mappers]
     if not np.array_equal(*films):

@@ -27,7 +27,7 @@ from support.held import HeldByFrame  # noqa: E402
 
 import rppm_addon  # noqa: E402
 from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.integrator.deep_cubemap import DeepCubemap  # noqa: E402
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap  # noqa: E402
 from rppm_addon.session.observers import RenderObserver, observing  # noqa: E402
 
 STAGES = ("Blender", "export", "update", "iterations", "result", "saving")

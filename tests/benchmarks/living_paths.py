@@ -22,7 +22,7 @@ from benchmark_machine import Clock  # noqa: E402
 from rppm_addon.commands.saved_scene import camera_at_resolution  # noqa: E402
 from rppm_addon.gl.context import Context  # noqa: E402
 from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.integrator.living_paths import LivingPaths  # noqa: E402
+from rppm_addon.integrator.common.living_paths import LivingPaths  # noqa: E402
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
 from rppm_addon.scene import load_scene  # noqa: E402
 

@@ -3,10 +3,12 @@
 
 import numpy as np
 
-from rppm_addon.integrator.deep_cubemap import DeepCubemap
-from rppm_addon.integrator.living_paths import LivingPaths
+from rppm_addon.integrator.algorithm import trace_photons
+from rppm_addon.integrator.common.iteration import Iteration
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE, RAY
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.integrator.records import HIT, NO_TRIANGLE, RAY
 
 KINDS = ("camera", "diffuse bounce", "photon")
 _MOST_ITERATIONS = 16
@@ -55,7 +57,7 @@ def record_rays(mapper: ProgressivePhotonMapper, count: int, seed: int = 0) -> d
 
 def triangles(mapper: ProgressivePhotonMapper) -> np.ndarray:
     """(n, 3, 3) float32, world space."""
-    buffer = mapper._geometry.triangles
+    buffer = mapper.device_scene.geometry.triangles
     return buffer.read(np.dtype((np.float32, 4)), 3 * mapper.triangle_count).reshape(-1, 3, 4)[:, :, :3].copy()
 
 
@@ -64,7 +66,7 @@ def trace(mapper: ProgressivePhotonMapper, rays: np.ndarray) -> np.ndarray:
     ray_buffer, hits = gl.buffer(rays.tobytes()), gl.buffer(reserve=HIT.size * len(rays))
     living = LivingPaths(mapper.context, mapper._library, "rays to measure with", "take fewer")
     living.fill(len(rays))
-    mapper._deep_cubemap.trace(ray_buffer, hits, living)
+    mapper.deep_cubemap.trace(ray_buffer, hits, living)
     result = np.frombuffer(hits.read(), HIT.dtype)
     for resource in (ray_buffer, hits, living):
         resource.release()
@@ -107,7 +109,11 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
 
     DeepCubemap.trace = take
     try:
-        mapper._photons.run(mapper._stages, iteration, mapper.scene.photon_count)
+        trace_photons(
+            mapper.device_scene.context,
+            mapper.stages.photons,
+            Iteration(iteration, mapper.scene.settings.seed, mapper.scene.photon_count),
+        )
     finally:
         DeepCubemap.trace = plain
     return taken

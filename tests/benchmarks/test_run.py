@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from benchmark_statistics import block_error, fit_line, variances
 
-from rppm_addon.integrator.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 
 RUN = Path(__file__).with_name("run.py")
 FIGURES = ["construction", "resolution", "rays", "placement"]

@@ -8,9 +8,9 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
 
 from rppm_addon.blender import following, renderer_thread
-from rppm_addon.integrator.deep_cubemap import DeepCubemap
-from rppm_addon.integrator.geometry import Geometry
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.integrator.surfaces.geometry import Geometry
 from rppm_addon.session.observers import RenderObserver, observing
 
 LAST = 6

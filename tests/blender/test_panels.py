@@ -14,9 +14,9 @@ from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.blender.panels import presets, viewport_header
 from rppm_addon.blender.panels.base import RppmPanel
 from rppm_addon.blender.reports import RenderKind, RenderReport
-from rppm_addon.integrator.bandwidth import shrinkage
+from rppm_addon.integrator.density_estimation.radii import shrinkage
+from rppm_addon.integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.integrator.memory import expected_memory
-from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.quantities import bytes_text
 

@@ -17,7 +17,7 @@ from rppm_addon.blender.operators import RPPM_OT_select_subject
 from rppm_addon.blender.readings import memory_reading, photon_shares, radius_reading
 from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
-from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
+from rppm_addon.integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.scene import RenderSettings
 from rppm_addon.session.process.client import RendererProcess
 from rppm_addon.session.process.sessions import SessionKind, SessionStatus

@@ -11,7 +11,7 @@ import PIL.Image
 import pytest
 from support.floor import floor_scene
 
-from rppm_addon.integrator.guide import LEARNING_ITERATIONS
+from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
 from rppm_addon.integrator.state import RenderState
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene import Instance, save_scene

@@ -4,9 +4,9 @@
 import numpy as np
 
 from rppm_addon.gl.records import Record
-from rppm_addon.integrator.deep_cubemap import DeepCubemap
-from rppm_addon.integrator.living_paths import LivingPaths
-from rppm_addon.integrator.records import HIT, NO_TRIANGLE, RAY
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE, RAY
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 
 BRUTE_FORCE = Record("BruteForceParameters", first_ray="uint", end_ray="uint", triangle_count="uint")
 _BRUTE_FORCE_TESTS = 1 << 24  # per dispatch

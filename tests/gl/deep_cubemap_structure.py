@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rppm_addon.integrator.deep_cubemap import CELL, JOIN_MOST, STATE, CellKind, DeepCubemap
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import CELL, JOIN_MOST, STATE, CellKind, DeepCubemap
 
 LIST, BINS, TILE = CellKind
 BEFORE, BEHIND = 2, 1

@@ -6,8 +6,8 @@ import pytest
 import scenes
 
 from rppm_addon.gl.sources import SHADER_FOLDER
-from rppm_addon.integrator.camera_view import camera_view
-from rppm_addon.integrator.records import CAMERA_PATH, CAMERA_VIEW, RAY
+from rppm_addon.integrator.common.camera_view import camera_view
+from rppm_addon.integrator.common.records import CAMERA_PATH, CAMERA_VIEW, RAY
 from rppm_addon.scene import (
     Aperture,
     Camera,

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 from test_render_state import busy_room, run_until
 
-from rppm_addon.integrator.bandwidth import EXPECTED_CAUSTIC_PHOTONS, shrinkage
-from rppm_addon.integrator.caustic_radii import CausticRadii
-from rppm_addon.integrator.records import IMPORTON, GatherFlag
-from rppm_addon.integrator.splat_sums import SplatSums
+from rppm_addon.gl.timers import StageTimers
+from rppm_addon.integrator.common.band import Band
+from rppm_addon.integrator.common.iteration import Iteration
+from rppm_addon.integrator.common.records import IMPORTON, GatherFlag
+from rppm_addon.integrator.density_estimation.caustic_radii import CausticRadii
+from rppm_addon.integrator.density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage
+from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
 from rppm_addon.scene import DensityEstimation, Scene
 
 MOST = 3.0
@@ -28,6 +31,7 @@ def test_disks_shrink_to_what_they_should_hold(context, library, roulette):
     pixels, first = 40, 8
     radii, sums = CausticRadii(context, library, pixels), SplatSums(context, pixels)
     sums.count_in(1.0, roulette, True)
+    timers = StageTimers(context)
     random = np.random.default_rng(4)
     expected = np.full(pixels, MOST)
     for iteration in (1, 2, 4):
@@ -35,7 +39,8 @@ def test_disks_shrink_to_what_they_should_hold(context, library, roulette):
         counts = random.poisson(np.linspace(0, 60, pixels)[:, None], (pixels, 2)).astype(np.uint32)
         for begin, end in ((0, first), (first, pixels)):
             sums.photon_counts.write(counts[begin:end].tobytes())
-            radii.narrow(sums, end - begin, begin, iteration, MOST, shrunk, 1.0)
+            band, of_iteration = Band(1, begin, end - begin), Radii(0.0, 1.0, 1.0, 1.0, MOST, shrunk)
+            radii.narrow(sums, band, Iteration(iteration, seed=0), of_iteration, 1.0, timers)
         held = counts[:, 1] * (2 if roulette else 1) / shrunk**2
         expected *= np.minimum(np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.maximum(held, 1.0)), 1.0)
         expected = np.maximum(expected, 1.0)
@@ -68,8 +73,8 @@ def test_a_factor_multiplies_the_radius_of_its_pixel(mapper):
         mapper.build(many_photons(use_adaptive_radius=adaptive, camera_path_length=1))
         factors = run_until(mapper, 2).radius_factors.reshape(-1)
         mapper.iterate()
-        count = mapper._count
-        importons = mapper._importons.importons.read(IMPORTON.dtype, count)
+        count = mapper.stages.bands[-1].pixel_count
+        importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count)
         assert (importons["gathers"] != GatherFlag.GATHERED_BY_RAY).all()
         seen[adaptive] = factors[-count:], importons["radius"]
     (ones, plain), (factors, radii) = seen[False], seen[True]
@@ -81,7 +86,7 @@ def test_without_adaptive_radius_limits_are_those_given(mapper):
     """Automatic limits, given as the user's, are Eq. 3's to the bit."""
     mapper.build(many_photons(use_adaptive_radius=False))
     plain = run_until(mapper, 3)
-    low, high = mapper._limits
+    low, high = mapper.learning.limits
     mapper.build(many_photons(radius_minimum=low, radius_maximum=high))
     exact = run_until(mapper, 3)
     assert (plain.radius_factors == 1.0).all() and (exact.radius_factors == 1.0).all()

@@ -18,10 +18,9 @@ from scipy.stats import norm as normal
 from scipy.stats import t as student
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator import progressive
-from rppm_addon.integrator.bandwidth import shrinkage
+from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.density_estimation.radii import shrinkage
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.integrator.records import PhotonFlag
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RayVisibility, RenderSettings, Scene
 
 CHECKPOINTS = (1, 2, 4, 8, 16, 32, 64)
@@ -304,7 +303,7 @@ def test_bias_of_a_caustic(mapper):
 
 def test_bias_of_interreflection(mapper, monkeypatch):
     """With a wide radius that holds a thousand photons: with eight, noise would hide the bias."""
-    monkeypatch.setattr(progressive, "EXPECTED_PHOTONS", 1000)
+    monkeypatch.setattr("rppm_addon.integrator.density_estimation.radii.EXPECTED_PHOTONS", 1000)
     scene = bounce(4096)
     points = pixel_points(scene)
     means, _, radii = running_means(mapper, scene, 8)
@@ -330,7 +329,7 @@ def test_variance_of_a_caustic(mapper):
 
 def test_total_error_of_interreflection(mapper, monkeypatch):
     """Both: the squared error is the predicted bias' square and the predicted variance, none of them small."""
-    monkeypatch.setattr(progressive, "EXPECTED_PHOTONS", 100)
+    monkeypatch.setattr("rppm_addon.integrator.density_estimation.radii.EXPECTED_PHOTONS", 100)
     scene = bounce(2048)
     points = pixel_points(scene)
     means, squares, radii = running_means(mapper, scene, 16)

@@ -10,8 +10,8 @@ from deep_cubemap_rays import KINDS, make_rays
 from deep_cubemap_reference import Reference
 from deep_cubemap_scenes import CENTRES, box, furnished_room, room_with_meshes
 
-from rppm_addon.integrator import deep_cubemap
-from rppm_addon.integrator.records import NO_TRIANGLE
+from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.integrator.deep_cubemap import deep_cubemap
 from rppm_addon.scene.errors import DeviceError
 
 PLAIN = CENTRES["plain"]

@@ -16,7 +16,7 @@ from deep_cubemap_files import blend_triangles, ply_triangles
 from deep_cubemap_hard_rays import KINDS, HardRays
 from deep_cubemap_scenes import box, furnished_room, room_with_meshes, sphere, torus
 
-from rppm_addon.integrator.records import HIT, NO_TRIANGLE
+from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from bounding_volumes import BoundingVolumes, build_nodes

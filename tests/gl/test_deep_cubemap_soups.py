@@ -11,7 +11,7 @@ from deep_cubemap_device import Scene, ray_records
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rppm_addon.integrator.records import NO_TRIANGLE
+from rppm_addon.integrator.common.records import NO_TRIANGLE
 
 grid = st.integers(-4, 4).map(lambda i: i / 4)
 triangles_on_grid = st.integers(1, 12).flatmap(lambda n: arrays.arrays(np.float32, (n, 3, 3), elements=grid))

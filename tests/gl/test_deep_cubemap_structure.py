@@ -11,7 +11,7 @@ from deep_cubemap_device import Scene
 from deep_cubemap_scenes import CENTRES, furnished_room, room_with_meshes, sphere
 from deep_cubemap_structure import BEFORE, BEHIND, BINS, LIST, TILE, Structure, as_sets, read_structure
 
-from rppm_addon.integrator.deep_cubemap import JOIN_MOST, DeepCubemap
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import JOIN_MOST, DeepCubemap
 
 POINTS = 200_000
 BASE_LEVEL = 2

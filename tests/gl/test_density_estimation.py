@@ -11,9 +11,10 @@ from support.lobes import Lobe, LobeKind, material
 from test_render_state import busy_room
 from test_shutter import everything_moves
 
-from rppm_addon.integrator import bands, density_estimator
-from rppm_addon.integrator.density_estimator import DensityEstimator
-from rppm_addon.integrator.records import PhotonFlag
+from rppm_addon.integrator.common import band
+from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.density_estimation import density_estimator
+from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
 from rppm_addon.scene import (
     Aperture,
     Camera,
@@ -146,7 +147,7 @@ def rendered(mapper, scene: Scene, route: DensityEstimation) -> list[np.ndarray]
     for _ in range(ITERATIONS):
         mapper.iterate()
         photons = mapper.read_photons()
-        found += [mapper._density_estimator.sums.photons_taken(mapper._count)]
+        found += [mapper.stages.density_estimator.sums.photons_taken(mapper.stages.bands[-1].pixel_count)]
         found += [(photons["contributed"] != 0) & (photons["flags"] & PhotonFlag.STORED != 0)]
     state = mapper.state()
     return [state.radiance, np.array([state.wide_radius]), state.radius_factors, *found]
@@ -162,7 +163,7 @@ def assert_same_bits(first: list[np.ndarray], second: list[np.ndarray]) -> None:
 )
 def test_both_routes_give_the_same_bits(mapper, monkeypatch, name, rows):
     """Also in bands of a few rows."""
-    monkeypatch.setattr(bands, "MAXIMUM_BAND_PIXELS", WIDTH * rows)
+    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", WIDTH * rows)
     rasterized = rendered(mapper, SCENES[name](), DensityEstimation.RASTERIZED)
     gathered = rendered(mapper, SCENES[name](), DensityEstimation.GRID)
     assert_same_bits(rasterized, gathered)

@@ -5,8 +5,9 @@ import numpy as np
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator import final_gather, progressive
-from rppm_addon.integrator.records import GATHERING_VERTEX
+from rppm_addon.integrator.common.records import GATHERING_VERTEX
+from rppm_addon.integrator.density_estimation import radii
+from rppm_addon.integrator.stages import final_gather
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 
 SIZE, SEEDS = 48, 8
@@ -47,7 +48,7 @@ def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
     scene.instances[0].materials = [len(scene.materials) - 1]
     mapper.build(scene)
     mapper.iterate()
-    vertices = mapper._final_gather.vertices.read(GATHERING_VERTEX.dtype, SIZE * SIZE)
+    vertices = mapper.stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, SIZE * SIZE)
     assert (vertices["shared_radius"] == 0).sum() > 50
     assert (vertices["shared_radius"] > 0).sum() > 500
     assert (vertices["weight"][vertices["shared_radius"] >= 0] >= 0).all()
@@ -73,8 +74,8 @@ def test_corners_are_not_dark(mapper, monkeypatch):
     """Photons around the end of a gathering ray are too few where their disk reaches beyond a wall; paths that
     gather from every surface that they come to need none of them."""
     radiance = {}
-    for corner_radii in (0.0, progressive.CORNER_RADII, 1e9):
-        monkeypatch.setattr(progressive, "CORNER_RADII", corner_radii)
+    for corner_radii in (0.0, radii.CORNER_RADII, 1e9):
+        monkeypatch.setattr(radii, "CORNER_RADII", corner_radii)
         pictures = []
         for seed in range(SEEDS):
             mapper.build(corner(seed))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.integrator import overview
+from rppm_addon.integrator import pilot_view
 from rppm_addon.scene.camera import Aperture
 
 
@@ -25,7 +25,7 @@ def camera_of(scene, name: str):
 def radii(mapper, scene) -> tuple[float, float, float]:
     mapper.build(scene)
     mapper.iterate()
-    return (*mapper._limits, mapper._widest_radius)
+    return (*mapper.learning.limits, mapper.learning.widest_radius)
 
 
 @pytest.mark.parametrize("name", ["perspective", "orthographic", "aperture", "crop"])
@@ -33,11 +33,11 @@ def test_a_coarse_look_finds_the_radii_of_all_pixels(mapper, monkeypatch, name):
     scene = scenes.room(240, photons=1024, camera_path_length=2, photon_path_length=2)
     scene.camera = camera_of(scene, name)
     coarse = radii(mapper, scene)
-    looked = mapper._leaves_importon.size
+    looked = mapper.learning.leaves_importon.size
     assert looked < 0.6 * np.prod(scene.camera.resolution)
-    monkeypatch.setattr(overview, "MOST_PIXELS", 1 << 20)
+    monkeypatch.setattr(pilot_view, "MOST_PIXELS", 1 << 20)
     full = radii(mapper, scene)
-    assert mapper._leaves_importon.size == np.prod(scene.camera.resolution)
+    assert mapper.learning.leaves_importon.size == np.prod(scene.camera.resolution)
     np.testing.assert_allclose(coarse, full, rtol=0.01)
 
 
@@ -46,4 +46,4 @@ def test_all_pixels_look_for_what_is_small(mapper):
     scene.instances = scene.instances[-1:]
     scene.camera = dataclasses.replace(scene.camera, matrix=scenes.looking((0.0, -60.0, 0.0), (0.0, 0.0, 0.0)))
     mapper.build(scene)
-    assert mapper._leaves_importon.shape == (240, 240)
+    assert mapper.learning.leaves_importon.shape == (240, 240)

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.photons import Photons
-from rppm_addon.integrator.records import FLUX_GROUP, FLUX_NAMES, PHOTON, PHOTON_PATH, PhotonFlag
+from rppm_addon.integrator.common.records import FLUX_GROUP, FLUX_NAMES, PHOTON, PHOTON_PATH, PhotonFlag
+from rppm_addon.integrator.stages.photons import Photons
 
 PATHS, SEGMENTS = 3 * FLUX_GROUP + 7, 4
 

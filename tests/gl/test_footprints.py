@@ -8,7 +8,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.records import IMPORTON
+from rppm_addon.integrator.common.records import IMPORTON
 from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 
 SIZE = 24
@@ -35,11 +35,11 @@ def test_radii_are_those_of_equations_3_and_4(mapper, orthographic):
     scene = tilted_view(orthographic, 1)
     mapper.build(scene)
     mapper.iterate()
-    direct = mapper._importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
+    direct = mapper.stages.importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
     scene.settings.camera_path_length = 2
     mapper.build(scene)
     mapper.iterate()
-    mirrored = mapper._importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
+    mirrored = mapper.stages.importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
 
     camera = scene.camera
     scale = 10.0 * SIZE / 1024
@@ -141,7 +141,7 @@ def chain_footprints(mapper, surfaces: list, meshes: list, position: tuple, targ
     instances = [Instance(index, np.eye(4), [kind]) for index, kind in enumerate(kinds)]
     mapper.build(Scene(camera, meshes, instances, materials, [sun], settings=settings))
     mapper.iterate()
-    importons = mapper._importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
+    importons = mapper.stages.importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
 
     right, up, forward = camera.matrix[:3, 0], camera.matrix[:3, 1], -camera.matrix[:3, 2]
     step = 2 * half / SIZE

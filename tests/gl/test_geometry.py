@@ -8,8 +8,8 @@ import pytest
 import scenes
 
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.integrator.geometry import Geometry
-from rppm_addon.integrator.records import TRIANGLE_ATTRIBUTES
+from rppm_addon.integrator.common.records import TRIANGLE_ATTRIBUTES
+from rppm_addon.integrator.surfaces.geometry import Geometry
 from rppm_addon.scene import Camera, Instance, Scene
 
 

@@ -9,8 +9,10 @@ import scenes
 from support.lobes import Lobe, LobeKind, image_world, material
 from test_light_sources import LIGHTS, floor_scene
 
-from rppm_addon.integrator import guide, progressive
-from rppm_addon.integrator.records import PHOTON_PATH, RAY, PhotonFlag
+from rppm_addon.integrator.common import iteration
+from rppm_addon.integrator.common.iteration import Iteration
+from rppm_addon.integrator.common.records import PHOTON_PATH, RAY, PhotonFlag
+from rppm_addon.integrator.lights import guide
 from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Scene, World
 
 
@@ -38,11 +40,13 @@ def lit_floor(name: str, aimed: bool) -> Scene:
 def emitted_moments(mapper, iterations: int) -> np.ndarray:
     """(iterations, 19) sums of flux, of flux times origin, direction, and both, over the photons of an iteration."""
     moments = []
-    for iteration in range(iterations):
-        mapper._photons._emit(mapper._stages, iteration)
-        count = mapper._photons.photon_count
-        flux = mapper._photons._paths.read(PHOTON_PATH.dtype, count)["flux"][:, 0].astype(np.float64)
-        rays = mapper._photons._rays.read(RAY.dtype, count)
+    for number in range(iterations):
+        scene = mapper.scene
+        iteration = Iteration(number, scene.settings.seed, scene.photon_count)
+        mapper.stages.photons.emit(mapper.device_scene.context, iteration)
+        count = mapper.stages.photons.photon_count
+        flux = mapper.stages.photons._paths.read(PHOTON_PATH.dtype, count)["flux"][:, 0].astype(np.float64)
+        rays = mapper.stages.photons._rays.read(RAY.dtype, count)
         used = flux > 0
         o, d = rays["origin"][used].astype(np.float64), rays["direction"][used].astype(np.float64)
         terms = [np.ones((len(o), 1)), o, d, (o[:, :, None] * d[:, None, :]).reshape(-1, 9), d * d]
@@ -56,10 +60,10 @@ def test_any_guide_emits_the_same_light(mapper, name, aimed):
     """Cells chosen at random a hundred times more or less often: the light field's moments stay."""
     mapper.build(lit_floor(name, aimed))
     plain = emitted_moments(mapper, 8)
-    count = int(np.prod(mapper._emission.guide._cells[0]))
-    assert len(mapper._emission.guide._cells) == 1 and count >= 1024
+    count = int(np.prod(mapper.device_scene.lights.guide._cells[0]))
+    assert len(mapper.device_scene.lights.guide._cells) == 1 and count >= 1024
     estimate = 10.0 ** np.random.default_rng(3).uniform(-4, 0, count)
-    mapper._emission.guide._starts.upload(guide.starts(guide.probabilities(estimate)))
+    mapper.device_scene.lights.guide._starts.upload(guide.starts(guide.probabilities(estimate)))
     guided = emitted_moments(mapper, 8)
     error = np.sqrt((plain.var(axis=0, ddof=1) + guided.var(axis=0, ddof=1)) / 8)
     difference = guided.mean(axis=0) - plain.mean(axis=0)
@@ -91,9 +95,8 @@ def lit_through_a_hole() -> Scene:
 def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
     """The picture's mean stays, its variance falls, and so does the radius that the diffused photons need."""
     results = {}
-    for learning in (0, guide.LEARNING_ITERATIONS):
-        monkeypatch.setattr(guide, "LEARNING_ITERATIONS", learning)
-        monkeypatch.setattr(progressive, "LEARNING_ITERATIONS", learning)
+    for learning in (0, iteration.LEARNING_ITERATIONS):
+        monkeypatch.setattr(iteration, "LEARNING_ITERATIONS", learning)
         means, useful = [], 0.0
         for seed in range(4):
             scene = lit_through_a_hole()
@@ -107,7 +110,7 @@ def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
                 / 4
             )
             means.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
-        results[learning] = np.mean(means), np.std(means, ddof=1) / 2, useful, mapper._wide_radius
+        results[learning] = np.mean(means), np.std(means, ddof=1) / 2, useful, mapper.learning.wide_radius
         print(learning, results[learning])
     (plain, plain_error, plain_useful, plain_radius), (guided, guided_error, useful, radius) = results.values()
     assert abs(guided - plain) < 4 * math.hypot(plain_error, guided_error) + 0.01 * plain

@@ -9,11 +9,13 @@ import pytest
 import scenes
 from test_density_estimation import SCENES, busy, wide
 
-from rppm_addon.integrator import first_hits, light_gbuffer
-from rppm_addon.integrator.first_hits import FirstHits
-from rppm_addon.integrator.light_gbuffer import LightGBuffer
-from rppm_addon.integrator.living_paths import LivingPaths
-from rppm_addon.integrator.records import HIT, NO_TRIANGLE
+from rppm_addon.integrator.common.iteration import Iteration
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE
+from rppm_addon.integrator.stages import first_hits, light_gbuffer
+from rppm_addon.integrator.stages.first_hits import FirstHits
+from rppm_addon.integrator.stages.light_gbuffer import LightGBuffer
+from rppm_addon.integrator.stages.photon_emission import PhotonEmission
 from rppm_addon.scene import FirstPhotonHits, Instance, Light, LightKind, Scene
 
 PHOTONS = 16384
@@ -68,20 +70,22 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     """HIT records of an iteration's photons, traced and rasterized, and the share that light G-buffers settle."""
     mapper.build(scene)
     mapper.iterate()
-    stages, photons = mapper._stages, mapper._photons
+    context, photons = mapper.device_scene.context, mapper.stages.photons
     rays, hits = photons._rays.buffer, photons._hits
-    count, emission = scene.settings.photons, stages.emission
+    count, lights = scene.settings.photons, context.lights
     photons._living.fill(count)
-    emission.run(rays, photons._paths.buffer, photons.world_radiances.buffer, count, 3, 2)
-    stages.deep_cubemap.trace(rays, hits.buffer, photons._living)
+    paths, world_radiances = photons._paths.buffer, photons.world_radiances.buffer
+    PhotonEmission(library).emit(lights, rays, paths, world_radiances, count, Iteration(2, seed=3))
+    context.deep_cubemap.trace(rays, hits.buffer, photons._living)
     traced = hits.read(HIT.dtype, count).copy()
     hits.clear()
     gbuffer = LightGBuffer(mapper.context, library)
     left = LivingPaths(mapper.context, library, "left", "")
-    emission.rasterize_views(gbuffer, stages.geometry)
-    gbuffer.find(emission.buffers["Lights"], stages.geometry, rays, hits.buffer, count, left)
+    geometry = context.geometry
+    gbuffer.build(lights.table, geometry.centre, lights.scene_radius, geometry)
+    gbuffer.find(lights.buffers["Lights"], context.geometry, rays, hits.buffer, count, left)
     settled = 1.0 - left.read_count() / count
-    stages.deep_cubemap.trace(rays, hits.buffer, left)
+    context.deep_cubemap.trace(rays, hits.buffer, left)
     rasterized = hits.read(HIT.dtype, count).copy()
     gbuffer.release()
     left.release()

@@ -11,7 +11,8 @@ from support.lobes import Lobe, LobeKind, material
 from test_light_sources import floor_scene
 
 from rppm_addon.gl.records import Record
-from rppm_addon.integrator.emission import LIGHT_PARAMETERS
+from rppm_addon.integrator.common.iteration import Iteration
+from rppm_addon.integrator.lights.lights import LIGHT_PARAMETERS
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Scene
 
@@ -163,11 +164,16 @@ def mapper(context, library):
 def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float = 0.0) -> dict[str, np.ndarray]:
     """Samples of the scene's first light from a point: direction, distance, weight, density, seen, seen_density."""
     results = mapper.context.moderngl.buffer(reserve=48 * count)
-    mapper._emission.environment.use()
+    mapper.device_scene.lights.environment.use()
     library.compute(str(FOLDER / "light_samples.comp")).run(
         count,
-        {**mapper._emission.buffers, "Results": results},
-        {**mapper._emission.parameters(3, 1), "count": count, "point": point, "emitted": emitted},
+        {**mapper.device_scene.lights.buffers, "Results": results},
+        {
+            **mapper.device_scene.lights.parameters(Iteration(1, seed=3)),
+            "count": count,
+            "point": point,
+            "emitted": emitted,
+        },
     )
     table = np.frombuffer(results.read(), np.float32).reshape(count, 3, 4).astype(np.float64)
     results.release()

@@ -8,9 +8,9 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, image_world, material
 
-from rppm_addon.integrator import bands
-from rppm_addon.integrator.living_paths import LivingPaths
-from rppm_addon.integrator.records import LIVING_PATHS_HEADER, PHOTON, RAY, PhotonFlag
+from rppm_addon.integrator.common import band
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.records import LIVING_PATHS_HEADER, PHOTON, RAY, PhotonFlag
 from rppm_addon.scene import (
     Aperture,
     DirectLight,
@@ -144,7 +144,7 @@ KINDS = [
 def test_pictures_are_those_of_all_paths(mapper, other_mapper, monkeypatch, kind):
     """Bit for bit, with photons, tallies and what is counted: lists change what is run, and nothing else."""
     if kind == "bands":
-        monkeypatch.setattr(bands, "MAXIMUM_BAND_PIXELS", SIZE * 8)
+        monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", SIZE * 8)
     got = outcome(mapper, shown_by(kind))
     monkeypatch.setattr(LivingPaths, "keep", lambda paths, rays: None)
     monkeypatch.setattr(LivingPaths, "take", lambda paths, others, rays: paths.fill(others.most))

@@ -93,7 +93,7 @@ def test_materials_of_one_structure_share_a_program(mapper, library):
 def test_the_programs_of_a_scene_are_its_structures(mapper):
     mapper.build(shown(painted(), painted(scale=3.0), NodeGraph()))
     # The room's own diffuse, glass and mirror; the painted and the black one.
-    assert len(mapper._materials.programs) == 5
+    assert len(mapper.device_scene.materials.programs) == 5
 
 
 def test_a_chain_of_five_hundred_nodes(mapper):

@@ -6,7 +6,7 @@ import dataclasses
 import pytest
 import scenes
 
-from rppm_addon.integrator.bands import MAXIMUM_BAND_PIXELS
+from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS
 from rppm_addon.integrator.memory import expected_memory
 from rppm_addon.scene import DensityEstimation
 

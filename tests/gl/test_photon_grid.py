@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.integrator.living_paths import LivingPaths
-from rppm_addon.integrator.photon_grid import PhotonGrid
-from rppm_addon.integrator.records import IMPORTON, PHOTON, GatherFlag, PhotonFlag
-from rppm_addon.integrator.splat_sums import SplatSums
-from rppm_addon.integrator.stored_photons import PhotonList, SplatRadii, StoredPhotons, TakingImportons
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.records import IMPORTON, PHOTON, GatherFlag, PhotonFlag
+from rppm_addon.integrator.density_estimation.photon_grid import PhotonGrid
+from rppm_addon.integrator.density_estimation.radii import SplatRadii
+from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
+from rppm_addon.integrator.density_estimation.stored_photons import PhotonList, StoredPhotons, TakingImportons
 
 UP = 0
 """The packed unit vector (0, 0, 1)."""
@@ -34,7 +35,7 @@ class Device:
         listed.collect(buffers[0].buffer, len(photons), indirect_only=False)
         sums = SplatSums(self._context, len(importons))
         sums.count_in(1e-6, 0, True)
-        sums.begin()
+        sums.clear()
         grid = PhotonGrid(self._context, self._library, len(importons))
         stored = StoredPhotons(
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,

@@ -9,7 +9,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.sources import SURFACES, SURROUNDINGS, source_name
+from rppm_addon.integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
 from rppm_addon.scene import Light, LightKind, World
 
 SETTINGS = {

@@ -9,8 +9,8 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 from test_shutter import everything_moves
 
-from rppm_addon.integrator import bands
-from rppm_addon.integrator.guide import LEARNING_ITERATIONS
+from rppm_addon.integrator.common import band
+from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.state import RenderState
 from rppm_addon.scene import DirectLight, Light, LightKind, Scene
@@ -48,7 +48,7 @@ def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
 
 @pytest.fixture(autouse=True)
 def several_bands(monkeypatch):
-    monkeypatch.setattr(bands, "MAXIMUM_BAND_PIXELS", 16 * 6)
+    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", 16 * 6)
 
 
 def run_until(mapper: ProgressivePhotonMapper, iteration: int) -> RenderState:
@@ -110,10 +110,10 @@ def test_automatic_photons_are_those_of_the_whole(mapper, other_mapper, moving):
         other_mapper.resume(state)
         assert_same(run_until(other_mapper, LAST), whole)
     other_mapper.update(scene)
-    for _ in other_mapper.leave_out(LEARNING_ITERATIONS + 1):
+    for _ in other_mapper.skip(LEARNING_ITERATIONS + 1):
         pass
     part = run_until(other_mapper, LAST)
-    assert_same(part, whole, "iteration", "photon_counts", "wide_radius", "radius_factors", "tallies", "learnt")
+    assert_same(part, whole, "iteration", "photon_counts", "wide_radius", "radius_factors", "tallies", "learned")
     assert other_mapper.photons_emitted(3) == 3 * later
 
 
@@ -136,11 +136,11 @@ def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mappe
     before = run_until(mapper, left_out)
     whole = run_until(mapper, LAST)
     other_mapper.build(scene)
-    for _ in other_mapper.leave_out(left_out):
+    for _ in other_mapper.skip(left_out):
         pass
     assert other_mapper.iterations_in_film == 0
     part = run_until(other_mapper, LAST)
-    assert_same(part, whole, "iteration", "wide_radius", "radius_factors", "tallies", "learnt")
+    assert_same(part, whole, "iteration", "wide_radius", "radius_factors", "tallies", "learned")
     assert part.iterations_in_film == LAST - left_out
     radiance = (left_out * before.radiance.astype(np.float64) + (LAST - left_out) * part.radiance) / LAST
     np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
@@ -165,10 +165,10 @@ def test_moments_of_an_open_shutter_are_those_of_the_whole(mapper, other_mapper)
     mapper.build(scene)
     before = run_until(mapper, 18)
     other_mapper.build(scene)
-    for _ in other_mapper.leave_out(18):
+    for _ in other_mapper.skip(18):
         pass
     part = run_until(other_mapper, LAST)
-    assert_same(part, whole, "wide_radius", "tallies", "learnt")
+    assert_same(part, whole, "wide_radius", "tallies", "learned")
     radiance = (18 * before.radiance.astype(np.float64) + part.radiance) / LAST
     np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
 

@@ -124,12 +124,12 @@ def test_changes_one_after_the_other(mapper, other_mapper):
 def test_the_centre_of_the_deep_cubemap_changes_no_picture(mapper, other_mapper):
     scene = first_scene()
     mapper.build(scene)
-    centre = mapper.centre.copy()
+    centre = mapper.device_scene.center.copy()
     moved = moved_camera(scene)
-    mapper.update(moved, stray=math.inf)
-    np.testing.assert_array_equal(mapper.centre, centre)
+    mapper.update(moved, center_tolerance=math.inf)
+    np.testing.assert_array_equal(mapper.device_scene.center, centre)
     other_mapper.build(moved)
-    assert not np.array_equal(other_mapper.centre, centre)
+    assert not np.array_equal(other_mapper.device_scene.center, centre)
     kept, built = pictures(mapper), pictures(other_mapper)
     # Splats and rays start from other cells: the same photons and hits all the same.
     for a, b in zip(kept, built, strict=True):
@@ -141,8 +141,8 @@ def test_only_what_changed_is_built(mapper, monkeypatch):
     scene = first_scene()
     mapper.build(scene)
     done: list[str] = []
-    for part in ("_geometry", "_materials", "_emission", "_deep_cubemap"):
-        stage = getattr(mapper, part)
+    for part in ("geometry", "materials", "lights", "deep_cubemap"):
+        stage = getattr(mapper.device_scene, part)
         whole = stage.build
         monkeypatch.setattr(stage, "build", lambda *a, whole=whole, part=part, **k: (done.append(part), whole(*a, **k)))
 
@@ -150,13 +150,13 @@ def test_only_what_changed_is_built(mapper, monkeypatch):
         nonlocal scene
         scene = change(scene)
         done.clear()
-        mapper.update(scene, stray=math.inf)
+        mapper.update(scene, center_tolerance=math.inf)
         return list(done)
 
     assert built_by(moved_camera) == []
-    assert built_by(other_material) == ["_materials", "_emission"]
-    assert built_by(brighter_light) == ["_emission"]
-    assert built_by(moved_object) == ["_geometry", "_emission", "_deep_cubemap"]
+    assert built_by(other_material) == ["materials", "lights"]
+    assert built_by(brighter_light) == ["lights"]
+    assert built_by(moved_object) == ["geometry", "lights", "deep_cubemap"]
     assert built_by(lambda scene: with_(scene)) == []
 
 

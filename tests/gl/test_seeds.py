@@ -9,9 +9,9 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 from test_convergence import blurred, lamp, lamp_radiance, pixel_points
 
-from rppm_addon.integrator import bands
-from rppm_addon.integrator.gbuffer import filter_offsets
-from rppm_addon.integrator.guide import LEARNING_ITERATIONS
+from rppm_addon.integrator.common import band
+from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
+from rppm_addon.integrator.stages.gbuffer import filter_offsets
 from rppm_addon.scene import DirectLight, Scene
 from rppm_addon.session.renderer import Renderer
 
@@ -35,7 +35,7 @@ def arrays(renderer: Renderer, scene: Scene) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("direct_light", DirectLight)
 def test_a_seed_gives_the_same_picture(renderer, monkeypatch, direct_light):
-    monkeypatch.setattr(bands, "MAXIMUM_BAND_PIXELS", 32 * 12)  # three bands
+    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", 32 * 12)  # three bands
     first = arrays(renderer, busy_room(direct_light))
     other = arrays(renderer, busy_room(direct_light, seed=4))
     again = arrays(renderer, busy_room(direct_light))

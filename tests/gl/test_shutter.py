@@ -8,8 +8,8 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
+from rppm_addon.integrator.device_scene.shutter import moment
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.integrator.shutter import moment
 from rppm_addon.scene import (
     Aperture,
     Camera,
@@ -109,11 +109,16 @@ def test_a_state_goes_on_in_the_middle(mapper, other_mapper):
 def test_radii_are_those_of_the_whole_time(mapper):
     scene = open_for(room(), instances=[way(BALL, room().instances[BALL].matrix, 4.0, 0.0, 3.0)])
     mapper.update(scene)
-    limits, bounds = mapper._limits, (mapper._geometry.bounds_low, mapper._geometry.bounds_high)
+    limits, bounds = (
+        mapper.learning.limits,
+        (mapper.device_scene.geometry.bounds_low, mapper.device_scene.geometry.bounds_high),
+    )
     for _ in range(3):
         mapper.iterate()
-        assert mapper._limits == limits
-        np.testing.assert_allclose((mapper._geometry.bounds_low, mapper._geometry.bounds_high), bounds, rtol=1e-6)
+        assert mapper.learning.limits == limits
+        np.testing.assert_allclose(
+            (mapper.device_scene.geometry.bounds_low, mapper.device_scene.geometry.bounds_high), bounds, rtol=1e-6
+        )
 
 
 @pytest.mark.parametrize(
@@ -121,8 +126,8 @@ def test_radii_are_those_of_the_whole_time(mapper):
     [
         ({}, []),
         ({"camera": True}, []),
-        ({"lights": True}, ["_emission"]),
-        ({"instances": True}, ["_geometry", "_emission", "_deep_cubemap"]),
+        ({"lights": True}, ["lights"]),
+        ({"instances": True}, ["geometry", "lights", "deep_cubemap"]),
     ],
 )
 def test_only_what_moves_is_built(mapper, monkeypatch, members, parts):
@@ -130,11 +135,10 @@ def test_only_what_moves_is_built(mapper, monkeypatch, members, parts):
     kept = {name: getattr(moving.shutter, name) for name in members}
     mapper.update(open_for(moving, **kept))
     done: list[str] = []
-    for part in ("_geometry", "_materials", "_emission", "_deep_cubemap"):
-        whole = getattr(mapper, part).build
-        monkeypatch.setattr(
-            getattr(mapper, part), "build", lambda *a, whole=whole, part=part, **k: (done.append(part), whole(*a, **k))
-        )
+    for part in ("geometry", "materials", "lights", "deep_cubemap"):
+        built = getattr(mapper.device_scene, part)
+        whole = built.build
+        monkeypatch.setattr(built, "build", lambda *a, whole=whole, part=part, **k: (done.append(part), whole(*a, **k)))
     mapper.iterate()
     assert done == parts
 

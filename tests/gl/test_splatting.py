@@ -6,8 +6,9 @@ import pytest
 import scenes
 from test_geometry import unpack
 
-from rppm_addon.integrator import splat_sums, splatting
-from rppm_addon.integrator.records import IMPORTON, GatherFlag, PhotonFlag
+from rppm_addon.integrator.common.records import IMPORTON, GatherFlag, PhotonFlag
+from rppm_addon.integrator.density_estimation import splat_sums, splatting
+from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
 from rppm_addon.scene import DensityEstimation, DirectLight
 
 ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
@@ -52,8 +53,8 @@ def diffuse_room(**settings):
 
 def last_importons(mapper, count: int) -> np.ndarray:
     """(count,) importons of the last segment, with radius 0 where the path has ended before."""
-    importons = mapper._importons.importons.read(IMPORTON.dtype, count).copy()
-    ended = np.setdiff1d(np.arange(count), mapper._importons.living.read())
+    importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count).copy()
+    ended = np.setdiff1d(np.arange(count), mapper.stages.importons.living.read())
     importons["radius"][ended] = 0.0
     return importons
 
@@ -63,10 +64,10 @@ def test_direct_splats_are_all_pairs(mapper, route):
     mapper.build(diffuse_room(camera_path_length=1, density_estimation=route))
     mapper.iterate()
     count = 24 * 24
-    importons = mapper._importons.importons.read(IMPORTON.dtype, count)
+    importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count)
     expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
     got = mapper.film.read_radiance().reshape(-1, 4)[:, :3]
-    light = mapper._importons.radiances.read(np.float32, 4 * count).reshape(-1, 4)[:, :3]
+    light = mapper.stages.importons.radiances.read(np.float32, 4 * count).reshape(-1, 4)[:, :3]
     assert (expected > 0).any(axis=1).mean() > 0.8
     np.testing.assert_allclose(got - light, expected, rtol=2e-3, atol=2e-4 * expected.max())
 
@@ -81,12 +82,12 @@ def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
     for segments in (1, 2):  # the sums hold the direct splats, too
         mapper.build(diffuse_room(camera_path_length=segments))
         if centre is not None:
-            mapper.centre = np.array(centre)
+            mapper.device_scene.center = np.array(centre)
         mapper.iterate()
-        gathered.append(mapper._density_estimator.sums.read(count)[:, 0])
+        gathered.append(mapper.stages.density_estimator.sums.read(count)[:, 0])
     importons = last_importons(mapper, count)  # those seen in the mirror
     expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
-    got = (gathered[1] - gathered[0]) * mapper._density_estimator.sums.quantum
+    got = (gathered[1] - gathered[0]) * mapper.stages.density_estimator.sums.quantum
     assert (expected > 0).any(axis=1).sum() > 15
     np.testing.assert_allclose(got, expected, rtol=2e-3, atol=2e-4 * expected.max())
 
@@ -96,19 +97,20 @@ def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
     """First hits take what came straight or by the mirror; where the gathering rays end, all photons count."""
     mapper.build(diffuse_room(camera_path_length=2, use_final_gather=True, density_estimation=route))
     count, first = 24 * 24, []
-    direct_splatting = mapper._direct_splatting
+    splat = DensityEstimator.splat
 
-    def watched() -> None:
-        first.append(mapper._importons.importons.read(IMPORTON.dtype, count))
-        direct_splatting()
+    def watched(estimator, importons, timers) -> None:
+        if importons.raster is not None:
+            first.append(mapper.stages.importons.importons.read(IMPORTON.dtype, count))
+        splat(estimator, importons, timers)
 
-    monkeypatch.setattr(mapper, "_direct_splatting", watched)
+    monkeypatch.setattr(DensityEstimator, "splat", watched)
     mapper.iterate()
     last = last_importons(mapper, count)
     photons, wide = mapper.read_photons().ravel(), mapper.splat_radii[1]
     assert (first[0]["gathers"][first[0]["radius"] > 0] == GatherFlag.GATHERS_BY_RAY).all()
     parts = [brute_force(importons, photons, wide) for importons in (first[0], last)]
-    sums = mapper._density_estimator.sums
+    sums = mapper.stages.density_estimator.sums
     got = sums.read(count) * sums.quantum
     found = (last["gathers"][:, None] & GatherFlag.GATHERED_BY_RAY) != 0
     assert all((part > 0).any(axis=1).mean() > 0.5 for part in parts)
@@ -131,7 +133,7 @@ def test_sums_do_not_depend_on_what_they_count_in(mapper, monkeypatch, shift, ro
     expected = gathered_picture(mapper, density_estimation=route)
     monkeypatch.setattr(splat_sums, "_PHOTON_QUANTA", 1 << shift)
     got = gathered_picture(mapper, density_estimation=route)
-    assert (mapper._density_estimator.sums.read(24 * 24) >= 1 << 32).any() == (shift == 40)
+    assert (mapper.stages.density_estimator.sums.read(24 * 24) >= 1 << 32).any() == (shift == 40)
     np.testing.assert_allclose(got, expected, rtol=1e-6, atol=2.0 ** -min(shift, 20) * expected.mean())
 
 

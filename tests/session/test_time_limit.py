@@ -21,7 +21,7 @@ class Clock:
     def perf_counter(self):
         return self.now
 
-    def update(self, scene, stray):
+    def update(self, scene, center_tolerance):
         self.now += 0.5
 
     def steps(self):

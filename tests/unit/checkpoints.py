@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from rppm_addon.integrator.photon_counts import PhotonCounts
+from rppm_addon.integrator.common.photon_counts import PhotonCounts
 from rppm_addon.integrator.state import RenderState
 from rppm_addon.pictures import Placement
 from rppm_addon.session.checkpoint_file import StillRender, write_checkpoint

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.targets import caustic_targets
+from rppm_addon.integrator.lights.caustic_casters import caustic_targets
 from rppm_addon.scene import Camera, Material, NodeGraph, Scene
 
 

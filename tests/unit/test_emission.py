@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.emission import _spread_share, share_out, spot_share, spread_constants
-from rppm_addon.integrator.environment import distribution_of
+from rppm_addon.integrator.lights.environment import distribution_of
+from rppm_addon.integrator.lights.light_entry import spot_share, spread_constants, spread_share
+from rppm_addon.integrator.lights.lights import share_out
 from rppm_addon.materials.emitted import Emits, emits
 
 
@@ -43,7 +44,7 @@ def test_soft_spot_has_the_flux_of_the_smooth_step():
 
 @pytest.mark.parametrize("degrees", [170, 120, 90, 60, 20, 5])
 def test_spread_keeps_the_flux_of_an_area_light(degrees):
-    assert _spread_share(*spread_constants(math.radians(degrees))) == pytest.approx(math.pi, rel=2e-3)
+    assert spread_share(*spread_constants(math.radians(degrees))) == pytest.approx(math.pi, rel=2e-3)
     assert spread_constants(math.pi) == (0.0, 1.0)
 
 

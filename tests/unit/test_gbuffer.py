@@ -4,18 +4,18 @@
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.bands import MAXIMUM_BAND_PIXELS, bands_of
-from rppm_addon.integrator.camera_view import camera_view
-from rppm_addon.integrator.gbuffer import filter_offsets
+from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS, bands_of
+from rppm_addon.integrator.common.camera_view import camera_view
+from rppm_addon.integrator.stages.gbuffer import filter_offsets
 from rppm_addon.scene import Camera
 from rppm_addon.scene.errors import SceneError
 
 
 @pytest.mark.parametrize("size", [(1, 1), (128, 128), (1920, 1080), (7680, 4320), (300000, 3), (3, 300000)])
 def test_bands_cover_every_row_once(size):
-    rows = [row for first, count in bands_of(*size) for row in range(first, first + count)]
+    rows = [row for band in bands_of(*size) for row in range(band.first_row, band.first_row + band.rows)]
     assert rows == list(range(size[1]))
-    assert all(size[0] * count <= max(MAXIMUM_BAND_PIXELS, size[0]) for _, count in bands_of(*size))
+    assert all(band.pixel_count <= max(MAXIMUM_BAND_PIXELS, size[0]) for band in bands_of(*size))
 
 
 def test_offsets_have_the_moments_of_the_filter():

@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.guide import _DEFENSIVE, _FINEST, cells_of, learns_after, probabilities, starts, usefulness
+from rppm_addon.integrator.common.iteration import learns_after
+from rppm_addon.integrator.lights.guide import _DEFENSIVE, _FINEST, cells_of, probabilities, starts, usefulness
 
 
 @pytest.mark.parametrize("kind", _FINEST)

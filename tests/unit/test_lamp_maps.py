@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rppm_addon.integrator.lamp_maps import _bordered, _mean, _packed
+from rppm_addon.integrator.lights.lamp_maps import _bordered, _mean, _packed
 from rppm_addon.materials.emitted import lamp_variation
 from rppm_addon.materials.evaluation import MapShape
 from rppm_addon.scene import Light, LightKind, NodeGraph

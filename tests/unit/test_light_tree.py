@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.light_tree import tree_of, triangle_leaves
-from rppm_addon.integrator.records import EMISSIVE_TRIANGLE, LIGHT_NODE
+from rppm_addon.integrator.common.records import EMISSIVE_TRIANGLE, LIGHT_NODE
+from rppm_addon.integrator.lights.light_tree import tree_of, triangle_leaves
 
 
 def random_leaves(count: int, two_sided: bool) -> np.ndarray:

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.light_gbuffer import light_views, views_side
-from rppm_addon.integrator.records import LIGHT, LightShape
+from rppm_addon.integrator.common.records import LIGHT, LightShape
+from rppm_addon.integrator.stages.light_gbuffer import light_views, views_side
 
 CENTRE, RADIUS = np.array([1.0, 2.0, 3.0]), 5.0
 

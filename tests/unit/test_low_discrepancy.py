@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.low_discrepancy import scrambled_sobol, van_der_corput
+from rppm_addon.integrator.common.low_discrepancy import scrambled_sobol, van_der_corput
 
 
 @pytest.mark.parametrize("start", [0, 64, 4096])

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.film import passes_memory
 from rppm_addon.integrator.memory import expected_memory
+from rppm_addon.integrator.stages.film import passes_memory
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.errors import SettingsError

@@ -3,7 +3,7 @@
 
 import pytest
 
-from rppm_addon.integrator.photon_counts import PhotonCounts, later_photons
+from rppm_addon.integrator.common.photon_counts import PhotonCounts, later_photons
 
 
 @pytest.mark.parametrize(

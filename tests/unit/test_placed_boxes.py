@@ -5,8 +5,8 @@ import itertools
 
 import numpy as np
 
-from rppm_addon.integrator.geometry import placed_boxes
-from rppm_addon.integrator.surface_attributes import _inverses
+from rppm_addon.integrator.surfaces.geometry import placed_boxes
+from rppm_addon.integrator.surfaces.surface_attributes import _inverses
 
 
 def affine(count: int) -> np.ndarray:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.placement import FAR, cubemap_centres, radius_about
+from rppm_addon.integrator.deep_cubemap.placement import FAR, cubemap_centers, radius_about
 
 GEOMETRY = SimpleNamespace(centre=np.array([1.0, 0.0, 0.0]), radius=2.0)
 
@@ -15,7 +15,7 @@ def centres(position, wanted=None):
     matrix = np.eye(4)
     matrix[:3, 3] = position
     scene = SimpleNamespace(camera=SimpleNamespace(matrix=matrix), cubemap_centre=wanted)
-    return list(cubemap_centres(scene, GEOMETRY))
+    return list(cubemap_centers(scene, GEOMETRY))
 
 
 def test_it_goes_to_the_camera():

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ...integrator.sources import SURFACES, SURROUNDINGS, source_name
+from ...integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
 from ..readings import photon_shares
 from ..reports import RenderReport, reports_of
 from .base import RppmPanel

@@ -10,8 +10,8 @@ import numpy as np
 
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
-from ...integrator.film import Film
 from ...integrator.progressive import ProgressivePhotonMapper
+from ...integrator.stages.film import Film
 from ...scene.errors import RppmError
 from ...scene.scene import Scene
 from ..renderer import log, read_combined
@@ -112,7 +112,7 @@ class Viewing:
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
         mapper, settings = self._mapper, scene.settings
-        mapper.update(at_level(scene, level), stray=math.inf if level < 1.0 else 0.0)
+        mapper.update(at_level(scene, level), center_tolerance=math.inf if level < 1.0 else 0.0)
         built = time.perf_counter()
         yield
         while mapper.iteration < settings.iterations:

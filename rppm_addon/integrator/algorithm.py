@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Algorithm 1 of the paper, Rasterization-based Progressive Photon Mapping. Its Init is in device_scene.py."""
+
+from collections.abc import Iterator
+
+from ..scene.settings import DirectLight
+from .common.iteration import Iteration
+from .density_estimation.radii import Radii
+from .device_scene.stage_context import StageContext
+from .learning import Learning
+from .stages.gbuffer import jittered_view
+from .stages.photons import Photons
+from .stages.stage_set import StageSet
+
+
+def iterate(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Iterator[None]:
+    """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
+    photons, importons, camera_hits = stages.photons, stages.importons, stages.camera_hits
+    estimator, film = stages.density_estimator, stages.film
+    trace_photons(context, photons, iteration)
+    radii = store_photons(context, stages, learning, iteration)
+    photons_taken = []
+    yield
+    for band in stages.bands:
+        stages.clear(context)
+        view = jittered_view(context.scene.camera, context.settings.filter_width, band, iteration)
+        camera_hits.find(context, importons, view, band, iteration)  # DirectCameraHits
+        yield
+        for segment in range(context.settings.camera_path_length):  # TraceImportons
+            if segment > 0 and not importons.trace(context):
+                break
+            importons.resolve(context, iteration, segment)
+            film.add_passes(context, camera_hits.camera, importons, band, iteration, segment)
+            yield
+            stages.shadow_catcher.cast(context, importons, band, iteration, segment)
+            stages.direct_light.add(context, importons, stages.final_gather, band, iteration, segment, radii)
+            yield
+            importons.scatter(context, stages.scatter_blocks, band, iteration, segment, radii)
+            raster = camera_hits.raster(band) if segment == 0 else None
+            estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
+            yield
+        if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
+            stages.final_gather.share(context, estimator.sums, importons.radiances, band, iteration, radii)
+            film.accumulate(context, importons.radiances, estimator.sums, band, iteration)
+        if iteration.precedes_learning:
+            photons_taken.append(estimator.sums.photons_taken(band.pixel_count)[:, 0])
+            fewer = learning.fewer(iteration)
+            stages.caustic_radii.narrow(estimator.sums, band, iteration, radii, fewer, context.timers)
+    if iteration.is_tallied:
+        learning.tally(context, photons, photons_taken)
+    yield
+
+
+def trace_photons(context: StageContext, photons: Photons, iteration: Iteration) -> None:
+    """DirectPhotonHits and TracePhotons."""
+    photons.emit(context, iteration)
+    for segment in range(photons.segments):
+        if segment > 0 and not photons.trace(context):
+            break
+        photons.resolve(context, iteration, segment)
+        photons.scatter(context, iteration, segment)
+
+
+def store_photons(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Radii:
+    """Offer the photons that were stored to the importons; returns the radii within which these take them."""
+    estimator = stages.density_estimator
+    # With shadow rays direct photons would count direct light twice.
+    indirect_only = context.settings.direct_light is DirectLight.RAYS
+    buffer, slots = stages.photons.photons.buffer, stages.photons.slots
+    listed = estimator.collect(buffer, slots, indirect_only, context.timers)
+    radii = learning.radii_for(iteration, listed)
+    estimator.begin(context.settings, stages.photons.stored(context, listed, radii), iteration)
+    return radii

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bands of rows, in which the camera side of an iteration works."""
+
+from dataclasses import dataclass
+
+MAXIMUM_BAND_PIXELS = 1 << 18
+"""Pixels of a band: bounds the memory of camera paths and the length of one dispatch."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """Whole rows of a region, row 0 at the bottom."""
+
+    columns: int
+    first_row: int
+    rows: int
+
+    @property
+    def first_pixel(self) -> int:
+        """Its place in the region's pixels, row by row."""
+        return self.first_row * self.columns
+
+    @property
+    def pixel_count(self) -> int:
+        """Columns times rows."""
+        return self.rows * self.columns
+
+
+def bands_of(width: int, height: int) -> list[Band]:
+    """The bands of a width x height region, from below."""
+    rows = max(1, min(height, MAXIMUM_BAND_PIXELS // width))
+    return [Band(width, first, min(rows, height - first)) for first in range(0, height, rows)]

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every stage of an iteration is told of it."""
+
+from dataclasses import dataclass
+
+LEARNING_ITERATIONS = 16
+"""Later iterations do not learn: given the seed, they depend on these only."""
+
+
+def learns_after(number: int) -> bool:
+    """Whether what the iterations so far have tallied is put to use after this one: 1, 2, 4, ..."""
+    return number <= LEARNING_ITERATIONS and number & (number - 1) == 0
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One iteration of Algorithm 1, as it is known before it begins."""
+
+    number: int
+    """i of Eq. 2, from 1; 0 is the pilot view."""
+    seed: int
+    photon_count: int = 0
+    """Photons that leave the lights; none for the pilot view."""
+    skipped: int = 0
+    """So many iterations come before those of the film."""
+
+    @property
+    def number_in_film(self) -> int:
+        """From 1, among those of the film; 0 before them."""
+        return max(self.number - self.skipped, 0)
+
+    @property
+    def enters_film(self) -> bool:
+        """Whether what the iteration finds is added to the film."""
+        return self.number > self.skipped
+
+    @property
+    def precedes_learning(self) -> bool:
+        """Whether the photons that pixels take are counted, for the next iteration to learn from."""
+        return learns_after(self.number)
+
+    @property
+    def is_tallied(self) -> bool:
+        """Whether photons that contributed are counted."""
+        return self.number <= LEARNING_ITERATIONS
+
+    @property
+    def roulette_seed(self) -> int:
+        """Odd, so never 0, and another one for each iteration and seed."""
+        return (2 * (self.number + 0x9E3779B1 * self.seed) + 1) % (1 << 32)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lists of the paths that still go on, so that each segment costs what its living paths cost."""
+
+from collections.abc import Mapping
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, ComputeProgram, ProgramLibrary
+from ...gl.records import Record
+from .records import LIVING_PATHS_HEADER
+
+Record("CountParameters", count="uint")
+
+_GROUPS = LIVING_PATHS_HEADER.offset("groups")
+_FIRST = LIVING_PATHS_HEADER.size // 4
+
+
+class LivingPaths:
+    """The numbers of living paths, with the arguments of the dispatches over them, on the device.
+
+    A list begins with all paths; each segment keeps those whose rays are to be traced. Programs over the paths of a
+    list include shaders/common/living_paths.glsl. The order of a list is nearly that of the numbers and changes no
+    picture. Paths that are not on the list keep what they left in their buffers: nothing may read it.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary, name: str, remedy: str) -> None:
+        self._context = context
+        self._fill = library.compute("living_paths/fill.comp")
+        self._keep = library.compute("living_paths/keep.comp")
+        self._lists = [GrowingBuffer(context, name, remedy)]
+        """The list, and where there is to be ``keep``, room for the next one."""
+        self.most = 0
+        """Paths that the list may have: as many as the list began with."""
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        """The list: LIVING_PATHS_HEADER and the numbers, uint32."""
+        return self._lists[0].buffer
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {self._lists[0].name: sum(paths.size for paths in self._lists)}
+
+    @staticmethod
+    def size(paths: int) -> int:
+        """Bytes of a list of so many paths."""
+        return LIVING_PATHS_HEADER.size + 4 * paths
+
+    def require(self, paths: int, to_keep: bool = False) -> None:
+        """Make room for so many, and for ``keep`` to leave some of them out; what was listed is gone.
+
+        Raises DeviceError.
+        """
+        if to_keep and len(self._lists) == 1:
+            first = self._lists[0]
+            self._lists.append(GrowingBuffer(self._context, first.name, first.remedy))
+        for buffer in self._lists:
+            buffer.require(self.size(paths))
+
+    def fill(self, paths: int) -> None:
+        """List the paths from 0 to below ``paths``."""
+        self.require(paths)
+        self.most = paths
+        groups = -(-paths // GROUP_SIZE)
+        self._begin(self._lists[0], paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
+        self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
+
+    def begin(self, most: int) -> None:
+        """List none, for a program to list up to so many (shaders/living_paths/kept.glsl)."""
+        self.require(most)
+        self.most = most
+        self._begin(self._lists[0], 0, (0, 0, 1))
+
+    def keep(self, rays: moderngl.Buffer) -> None:
+        """Leave out the paths whose rays (RAY, by path) are inactive; room for that must have been required."""
+        self._keep_of(self, self._lists[1], rays)
+        self._lists.reverse()
+
+    def take(self, paths: "LivingPaths", rays: moderngl.Buffer) -> None:
+        """List those of another list's paths whose rays (RAY, by path) are active."""
+        self.require(paths.most)
+        self.most = paths.most
+        self._keep_of(paths, self._lists[0], rays)
+
+    def _keep_of(self, paths: "LivingPaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
+        self._begin(kept, 0, (0, 0, 1))
+        paths.run(self._keep, {"Rays": rays, "KeptPaths": kept.buffer})
+
+    @staticmethod
+    def _begin(paths: GrowingBuffer, count: int, groups: tuple[int, int, int]) -> None:
+        header = LIVING_PATHS_HEADER.zeros(1)
+        header["first"], header["count"], header["groups"] = _FIRST, count, groups
+        paths.write(header)
+
+    def run(
+        self, program: ComputeProgram, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None = None
+    ) -> None:
+        """Run a program for the paths of the list."""
+        program.run_indirect(self.buffer, _GROUPS, {**buffers, "LivingPaths": self.buffer}, parameters)
+
+    @property
+    def known_empty(self) -> bool:
+        """Whether nothing lives any more, where that is known at no cost.
+
+        A driver on the processor has always done what it was given. A GPU would have to be waited for, longer than
+        dispatches of no groups take it.
+        """
+        return self._context.is_software and self.read_count() == 0
+
+    def read_count(self) -> int:
+        """How many paths are listed. Waits for the device."""
+        return int(self._lists[0].read(LIVING_PATHS_HEADER.dtype, 1)["count"][0])
+
+    def read(self) -> np.ndarray:
+        """(count,) uint32 numbers of the listed paths. Waits for the device."""
+        return self._lists[0].read(np.uint32, self.read_count(), LIVING_PATHS_HEADER.size)
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in self._lists:
+            buffer.release()

@@ -1,0 +1,411 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Records that stages hand to each other. Lengths in metres, flux in W, radiance in W/(m^2 sr)."""
+
+import enum
+
+from ...gl.constants import Constants
+from ...gl.programs import GROUP_SIZE
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from ...scene.camera import PanoramaKind
+from ...scene.meshes import RayVisibility
+
+NO_TRIANGLE = 0xFFFFFFFF
+INFINITY_DISTANCE = 1e30
+"""Metres, of rays that may go on for ever."""
+Constants("Distances", NO_TRIANGLE=NO_TRIANGLE, INFINITY_DISTANCE=INFINITY_DISTANCE)
+Constants("RayVisibility", RAY=RayVisibility)
+
+
+@enum.unique
+class RandomStage(enum.IntEnum):
+    """What random numbers are for: those of one stage have nothing to do with those of another."""
+
+    EMISSION = 1
+    PHOTONS = 2
+    IMPORTONS = 3
+    DIRECT_LIGHT = 4
+    RESOLVE = 5
+    SPLATTING = 6
+    GATHERING = 7
+    CAMERA = 8
+    SHADOW_CATCHER = 9
+
+
+Constants("RandomStages", STAGE=RandomStage)
+
+RAY = Record("Ray", origin="vec3", source_triangle="uint", direction="vec3", maximum_distance="float")
+"""A ray to be traced; maximum_distance <= 0 marks it inactive, source_triangle is never hit."""
+StorageBlock("Rays", "Ray rays[];")
+StorageBlock("ShadowRays", "Ray shadow_rays[];")
+
+HIT = Record("Hit", triangle="uint", b1="float", b2="float", distance="float")
+"""What any kind of visibility yields; triangle NO_TRIANGLE is a miss.
+The point is (1 - b1 - b2) v0 + b1 v1 + b2 v2."""
+StorageBlock("Hits", "Hit hits[];")
+StorageBlock("Visibility", "uint visibility[];")
+"""Of shadow rays: 1 where nothing is in the way."""
+
+LIVING_PATHS_HEADER = Record(
+    "LivingPathsHeader",
+    first="uint",
+    count="uint",
+    unused0="uint",
+    unused1="uint",
+    groups="uvec3",
+    unused2="uint",
+)
+"""How a list of paths begins (living_paths.py): their ``count``, and the ``groups`` of a dispatch over them. It is laid
+out as a range of shaders/resolve/ranges.glsl, ``first`` being the word where the numbers begin: a list stands for the
+order of the hits where one program resolves them all."""
+StorageBlock("KeptPaths", "LivingPathsHeader kept; uint kept_paths[];")
+
+TRIANGLE_ATTRIBUTES = Record(
+    "TriangleAttributes",
+    normal0="uint",
+    normal1="uint",
+    normal2="uint",
+    material="uint",
+    uv0="vec2",
+    uv1="vec2",
+    uv2="vec2",
+    instance="uint",
+    unused="uint",
+)
+"""Shading normals (octahedral, two 16-bit parts), UV, material and instance of a world triangle."""
+StorageBlock("Attributes", "TriangleAttributes attributes[];")
+StorageBlock("Triangles", "vec4 triangle_vertices[];")
+"""Three a triangle; for the fourth components see shaders/geometry/gather.comp."""
+
+MICROFACET_LOBE = Record(
+    "MicrofacetLobe",
+    weight="vec3",
+    kind="uint",
+    f0="vec3",
+    alpha="float",
+    tint="vec3",
+    ior="float",
+    normal="uint",
+    anisotropy="uint",
+)
+"""A GGX or sheen lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
+(weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
+``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
+(common/bsdf/ggx.glsl), ``normal`` octahedral."""
+
+
+class MicrofacetKind(enum.IntEnum):
+    """What a lobe is."""
+
+    NONE = 0
+    MIRROR = 1
+    """Reflects all."""
+    METAL = 2
+    """Schlick's Fresnel from f0 to white; tint is of the edge at 82 degrees."""
+    DIELECTRIC = 3
+    """Reflection of a dielectric, f0 tinted."""
+    GLASS = 4
+    """Reflects and refracts; tint is of the reflectance at normal incidence."""
+    REFRACTION = 5
+    """Refracts only, without Fresnel's loss."""
+    COATED_GLASS = 6
+    """Glass whose reflectance at normal incidence is the tint."""
+    SHEET = 7
+    """Passes all through a sheet without thickness: a mirror's light, on the other side."""
+    SHEEN = 8
+    """f0.xy are the coefficients of sheen_density."""
+    VELVET = 9
+    """f0.x is sigma."""
+
+
+Constants("MicrofacetKinds", LOBE=MicrofacetKind)
+
+CLOSURE = Record(
+    "Closure",
+    position="vec3",
+    triangle="uint",
+    diffuse="vec3",
+    flags="uint",
+    emission="vec3",
+    geometric_normal="uint",
+    transparent="vec3",
+    shading_normal="uint",
+    translucent="vec3",
+    diffuse_normal="uint",
+    lobe0_weight="vec3",
+    lobe0_kind="uint",
+    lobe0_f0="vec3",
+    lobe0_alpha="float",
+    lobe1_weight="vec3",
+    lobe1_kind="uint",
+    lobe1_f0="vec3",
+    lobe1_alpha="float",
+    lobe2_weight="vec3",
+    lobe2_kind="uint",
+    lobe2_f0="vec3",
+    lobe2_alpha="float",
+    lobe_ior="vec3",
+    distance="float",
+    lobe_normals="uvec3",
+    material="uint",
+    lobe_anisotropies="uvec3",
+    diffuse_roughness="uint",
+)
+"""All that scattering, storing and estimating need to know about a hit. Normals face the arriving
+path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The kind of a lobe
+comes with its tint (MicrofacetKind), the diffuse roughness with the albedo that its
+interreflection takes (common/bsdf/diffuse.glsl)."""
+StorageBlock("Closures", "Closure closures[];")
+
+PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
+"""Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
+(PhotonFlag) with the volumes it is in (materials/medium.glsl)."""
+StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
+StorageBlock("WorldRadiances", "float world_radiances[];")
+
+DEPARTURE = Record("Departure", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint")
+"""How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
+closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
+the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on."""
+StorageBlock("Departures", "Departure departures[];")
+
+PHOTON = Record(
+    "Photon",
+    position="vec3",
+    flags="uint",
+    flux="vec3",
+    geometric_normal="uint",
+    direction="vec3",
+    triangle="uint",
+    scattered_flux="vec3",
+    contributed="uint",
+)
+"""One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
+``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it."""
+StorageBlock("Photons", "Photon photons[];")
+StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint stored_photons[];")
+"""How many are stored, how many of these are diffused, and the numbers of the stored ones."""
+
+FLUX_GROUP = GROUP_SIZE
+"""Paths whose fluxes the device sums (shaders/photons/balance.comp)."""
+FLUX_NAMES = ("emitted", "absorbed", "deposited", "escaped", "lost")
+FLUX_SUMS = Record("FluxSums", **dict.fromkeys((*FLUX_NAMES, "unused0", "unused1", "unused2"), "float"))
+
+
+class PhotonFlag(enum.IntFlag):
+    """Flags of photons and of their paths."""
+
+    ACTIVE = 1
+    STORED = 2
+    ESCAPED = 4
+    DIFFUSED = 8
+    """A diffuse or rough surface has scattered the path before."""
+    INDIRECT = 16
+    """What stores photons has scattered it."""
+    DIRECT = 32
+    """Nothing has scattered it, but for objects that cast no shadow."""
+    NOT_DIFFUSE = 64
+    """While it is direct: from a light that diffuse events do not see."""
+    NOT_GLOSSY = 128
+    NOT_TRANSMITTED = 256
+    CASTS_SHADOWS = 512
+    """Nothing but transparency lies between it and its light, which is not the world."""
+
+
+Constants("PhotonFlags", PHOTON=PhotonFlag)
+
+CAMERA_PATH = Record(
+    "CameraPath",
+    throughput="vec3",
+    scatter_density="float",
+    total_length="float",
+    primary_distance="float",
+    primary_radius="float",
+    flags="uint",
+)
+"""A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
+the clip start,
+``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit (before it, the radius of a pixel's
+cone at distance 1, or of its beam of parallel rays), ``scatter_density`` that of the
+scattered direction in 1/sr where next-event rays sample the same light, else 0."""
+StorageBlock("CameraPaths", "CameraPath camera_paths[];")
+StorageBlock("Radiances", "vec4 radiances[];")
+"""Of the pixels of a band, W/(m^2 sr), and alpha."""
+StorageBlock("RadiusFactors", "float radius_factors[];")
+StorageBlock("Contributions", "vec4 contributions[];")
+StorageBlock("LightTriangles", "uint light_triangles[];")
+"""What shadow rays add where nothing is in their way, and the emissive triangles that they go to."""
+
+IMPORTON = Record(
+    "Importon",
+    position="vec3",
+    radius="float",
+    direction="vec3",
+    geometric_normal="uint",
+    diffuse="vec3",
+    diffuse_normal="uint",
+    translucent="vec3",
+    diffuse_roughness="uint",
+    lobe_weight="vec3",
+    lobe_kind="uint",
+    lobe_f0="vec3",
+    lobe_alpha="float",
+    lobe_ior="float",
+    lobe_normal="uint",
+    lobe_anisotropy="uint",
+    next="uint",
+    gathers="uint",
+    shading_normal="uint",
+    unused0="uint",
+    unused1="uint",
+)
+"""A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
+the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
+``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag."""
+StorageBlock("Importons", "Importon importons[];")
+
+
+class GatherFlag(enum.IntFlag):
+    """What importons gather; without the first they take all photons."""
+
+    GATHERS_BY_RAY = 1
+    """It leaves indirect photons to the path, which goes on for them."""
+    GATHERED_BY_RAY = 2
+    """It stands where that led, and counts for the vertex that the path set out from."""
+
+
+Constants("GatherFlags", **GatherFlag.__members__)
+
+GATHERING_VERTEX = Record(
+    "GatheringVertex",
+    position="vec3",
+    shared_radius="float",
+    weight="vec3",
+    normal="uint",
+    found="vec3",
+    radius="float",
+)
+"""Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
+the importon's, metres, and so is ``shared_radius``, but for 0 where what the ray finds is not shared; less than 0
+marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
+sharp surfaces, but for the photons' share, or from a second such vertex, of which ``radius`` then is."""
+StorageBlock("GatheringVertices", "GatheringVertex gathering_vertices[];")
+StorageBlock("FoundRadiances", "vec4 found_radiances[];")
+
+
+class LightShape(enum.IntEnum):
+    """Kinds of lights on the device: the emissive meshes are one, and so is the world."""
+
+    POINT = 0
+    SPOT = 1
+    SUN = 2
+    RECTANGLE = 3
+    ELLIPSE = 4
+    MESH = 5
+    WORLD = 6
+
+
+LIGHT_SOFT = 32
+"""Of a light's flags, behind the bits of RayVisibility: a disk that faces each point it lights."""
+Constants("Lights", LIGHT=LightShape, LIGHT_SOFT=LIGHT_SOFT)
+
+LIGHT = Record(
+    "Light",
+    position="vec3",
+    kind="uint",
+    axis_u="vec3",
+    radius="float",
+    axis_v="vec3",
+    area="float",
+    normal="vec3",
+    selection_probability="float",
+    strength="vec3",
+    selection_end="float",
+    cosine_cone="float",
+    blend="float",
+    spread_tangent="float",
+    spread_scale="float",
+    first_photon="uint",
+    photon_count="uint",
+    flags="uint",
+    first_cell="uint",
+    cells="uvec4",
+    falloff="float",
+    smoothing="float",
+    map_shape="uint",
+    map_extent="float",
+    map="vec4",
+)
+"""A light as integrator/lights/light_entry.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
+unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
+``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
+``first_cell`` those of lights/guide.py; ``map`` where its map lies among the lamps' maps, left, bottom, width
+and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
+``map_extent`` the tangent of half of what a cone's map shows."""
+
+EMISSIVE_TRIANGLE = Record(
+    "EmissiveTriangle",
+    radiance="vec3",
+    triangle="uint",
+    area="float",
+    cumulated="float",
+    share="float",
+    uneven="float",
+)
+"""A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
+choosing it, and that of choosing it or one before."""
+StorageBlock("EmissiveTriangles", "EmissiveTriangle emissive_triangles[];")
+
+LIGHT_NODE = Record(
+    "LightNode",
+    low="vec3",
+    intensity="float",
+    high="vec3",
+    cosine_normals="float",
+    axis="vec3",
+    cosine_emission="float",
+    member="uint",
+    two_sided="uint",
+    unused0="uint",
+    unused1="uint",
+)
+"""Lights below a node of the light tree: their box, metres; the sum of their intensities, W/sr, of a sun its
+irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; and of
+a leaf the number of its light or emissive triangle."""
+
+PROJECTIONS = ("PERSPECTIVE", "ORTHOGRAPHIC", *(kind.name for kind in PanoramaKind))
+"""Of cameras, by number."""
+Constants("Projections", PROJECTION={name: number for number, name in enumerate(PROJECTIONS)})
+
+CAMERA_VIEW = Record(
+    "CameraView",
+    position="vec3",
+    projection="uint",
+    right="vec3",
+    clip_start="float",
+    up="vec3",
+    clip_end="float",
+    forward="vec3",
+    pixel_area="float",
+    window="vec4",
+    width="uint",
+    height="uint",
+    aperture_blades="uint",
+    aperture_radius="float",
+    focus_distance="float",
+    aperture_rotation="float",
+    aperture_ratio="float",
+    field_of_view="float",
+    panorama_range="vec4",
+    sensor="vec2",
+    lens="float",
+    polynomial_constant="float",
+    polynomial="vec4",
+)
+"""The band of the frame being rendered: ``window`` is left, right, bottom, top of the band with the
+iteration's jitter; ``pixel_area`` is a pixel's area on the window: at distance 1 of perspective
+cameras, m^2 of orthographic ones, share of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
+``panorama_range`` is left, right, bottom, top in radians or of a cylinder of radius 1; ``sensor`` and
+``lens`` are in millimetres."""
+StorageBlock("Camera", "CameraView camera;")

@@ -1,0 +1,520 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The deep cubemap (DIRT): builds it by rasterization, traces rays through it.
+
+All triangles are sorted into the cells of a cubemap around a centre and, within a cell, by depth.
+Cells that hold many triangles are divided into tiles of 4 x 4 cells, level by level, so that a small
+detailed object in a large scene gets small cells and a bare wall large ones.
+Building takes these steps, shaders of these names in shaders/deep_cubemap:
+
+1. plant: divides the faces down to the base level; list_overlap_jobs: per triangle, the tiles of the
+   base level that it may touch;
+2. overlap: rasterizes the jobs; the fragment shader tests triangle against cell exactly and appends a
+   fragment (cell, triangle, depth interval). A compute shader can do the same, for devices that have
+   much arithmetic and few units that rasterize;
+3. divide: decides which cells get a tile and which a list of entries; hand_down: hands the fragments
+   on to either. What went to tiles is rasterized again (2), until nothing is divided any more;
+4. allocate_bins, count_entries, place_entries, scatter_entries: a counting sort into depth bins for cells that hold
+   much and cannot be divided with gain;
+5. merge_tiles: what the cells above the base level hold.
+
+traverse.glsl walks the result.
+"""
+
+import enum
+import logging
+import time
+from collections.abc import Mapping
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from ...gl.texel_buffers import DEFINE as TEXEL_BUFFERS
+from ...gl.texel_buffers import TEXEL_SIZE, most_texels
+from ...scene.errors import DeviceError
+from ..common import records  # noqa: F401  the kernels include Ray and Hit
+from ..common.living_paths import LivingPaths
+
+log = logging.getLogger(__name__)
+
+STATE = Record(
+    "DeepCubemapState",
+    centre="vec3",
+    margin="float",
+    low_complement="uvec3",
+    root_exponent="uint",
+    high="uvec3",
+    root_count="uint",
+    core_radius="float",
+    scene_radius="float",
+    base_level="uint",
+    last_level="uint",
+    least_gain="uint",
+    most_bins="uint",
+    triangle_count="uint",
+    bin_count="uint",
+    handed_binned_count="uint",
+    tile_count="uint",
+    tile_capacity="uint",
+    job_count="uint",
+    job_capacity="uint",
+    fragment_count="uint",
+    fragment_capacity="uint",
+    fragment_limit="uint",
+    reserved_count="uint",
+    entry_count="uint",
+    entry_capacity="uint",
+    binned_cell_count="uint",
+    binned_cell_capacity="uint",
+    binned_fragment_count="uint",
+    binned_fragment_capacity="uint",
+    core_count="uint",
+    core_capacity="uint",
+)
+"""Lengths in metres. ``margin``: how far cells are widened; ``root_exponent``: log2 of the roots along
+a face's side. The counts may pass the capacities, then something was dropped and building starts over."""
+
+CELL = Record("CubemapCell", near_complement="uint", far="uint", slices="uint", content="uint")
+FRAGMENT = Record(
+    "OverlapFragment",
+    cell="uint",
+    triangle="uint",
+    near="uint",
+    far="uint",
+    extent_low="uint",
+    extent_high="uint",
+)
+BINNED_FRAGMENT = Record("BinnedFragment", cell="uint", triangle="uint", depths="uint")
+
+
+class CellKind(enum.IntEnum):
+    """What a cell that is not empty holds."""
+
+    LIST = 0
+    """A few triangles."""
+    BINS = 1
+    """Many, by depth."""
+    TILE = 2
+    """Smaller cells."""
+
+
+JOIN_MOST = 5
+"""Log2 of the slices of depth that one bin may hold: all 32 of a cell."""
+Constants("CellKinds", CELL=CellKind)
+Constants("DepthBins", signed=True, JOIN_MOST=JOIN_MOST)
+StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
+BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
+Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
+Record("DivideLevel", first_tile="uint", end_tile="uint", level="uint", side_exponent="uint", fragment_count="uint")
+Record("MergeLevel", first_cell="uint", end_cell="uint")
+Record("TraceParameters", first_place="uint")
+
+FINEST_RESOLUTION = 1 << 14
+
+# Of the scene's radius. The margin is thirty times the rounding error of float positions, so that a
+# point that a ray reaches is found in the cells of its triangle.
+_MARGIN = 2.0**-20
+# Nearer to the centre than this many margins, rays test a list.
+_CORE_MARGINS = 64.0
+_BASE_LEVEL = 2
+_LEAST_GAIN = 32
+_MOST_BINS = 64
+_JOB_SIZE = 16
+_ENTRY_SIZE = 8
+_MOST_ROOTS = 24
+_PICTURE_SIDE = 4096
+"""Pixels of the picture that jobs are drawn into: a tile takes 4 x 4."""
+
+# Triangles to try both routes with.
+_TRIAL_LEAST, _TRIAL_MOST = 1000, 16384
+
+# Work per submission, so that no driver watchdog mistakes it for a hang.
+_RAYS_PER_DISPATCH = 1 << 18
+_JOBS_PER_DRAW = 1 << 16
+
+_READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
+
+_REMEDY = "lower the cubemap resolution or simplify the geometry"
+
+
+class _TooShort(Exception):
+    """A list did not hold everything; it has been grown."""
+
+
+class _TooLong(Exception):
+    """A list that the cells of ``level`` needed is longer than the device allows; the cause says which."""
+
+    def __init__(self, level: int) -> None:
+        self.level = level
+
+
+class DeepCubemap:
+    """A deep cubemap on the GPU. Buffers are kept between builds and grow with need.
+
+    ``resolution`` (cells along a face's side where they are finest), ``centre`` (three floats, metres)
+    and ``counts`` are those of the last build; ``fragment`` counts those of all levels.
+    ``rasterize``: whether triangles are found in cells by rasterization or in a compute shader, which leave the
+    same behind; None takes the one that is faster, found by trying both with the first scene of a thousand triangles.
+    ``least_gain``: cells are divided where that leaves so many fewer triangles in each.
+    ``most_bins``: depth bins that a cell may have at most.
+    ``texel_buffers``: whether rays read cells, entries and triangles as texels, which changes no hit; None leaves it
+    to the kind of driver. What is too long for that is read from storage blocks.
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        library: ProgramLibrary,
+        rasterize: bool | None = None,
+        least_gain: int = _LEAST_GAIN,
+        most_bins: int = _MOST_BINS,
+        texel_buffers: bool | None = None,
+    ) -> None:
+        self._context = context
+        self._rasterize = rasterize
+        self._library = library
+        self._least_gain, self._most_bins = least_gain, most_bins
+        self._texel_buffers = context.is_software if texel_buffers is None else texel_buffers
+        self._most_texel_bytes = TEXEL_SIZE * most_texels(context)
+
+        def buffer(name: str) -> GrowingBuffer:
+            return GrowingBuffer(context, f"deep cubemap {name}", _REMEDY)
+
+        self._state, self._cells, self._bins = buffer("state"), buffer("cells"), buffer("depth bins")
+        self._old_fragments = buffer("fragments of the level above")
+        self._tiles = buffer("tiles")
+        self._lists = {
+            "job": (buffer("jobs"), _JOB_SIZE),
+            "fragment": (buffer("fragments"), FRAGMENT.size),
+            "entry": (buffer("entries"), _ENTRY_SIZE),
+            "binned_cell": (buffer("binned cells"), BINNED_CELL.size),
+            "binned_fragment": (buffer("binned fragments"), BINNED_FRAGMENT.size),
+            "core": (buffer("core list"), 4),
+        }
+        self._framebuffer: moderngl.Framebuffer | None = None
+        self._triangles: moderngl.Buffer | None = None
+        self._too_many, self._last_level = 1 << 32, 0
+        self._fragments_found = 0
+        self.resolution = 0
+        self.centre = (0.0, 0.0, 0.0)
+        self.counts: dict[str, int] = {}
+
+    def build(
+        self,
+        triangles: moderngl.Buffer,
+        triangle_count: int,
+        centre: tuple[float, float, float],
+        scene_radius: float,
+        resolution: int = 0,
+    ) -> None:
+        """Sort triangles into the cubemap.
+
+        ``triangles`` holds three vec4 a triangle and must stay as it is while rays are traced.
+        ``scene_radius``: the greatest distance from ``centre`` of any vertex (metres); nothing farther
+        out is hit. Rays may start anywhere, yet lose precision from some ten radii on.
+        ``resolution``: the most cells along a face's side, a power of two from 4 to FINEST_RESOLUTION, which 0 stands
+        for too. Triangles with infinite or NaN coordinates are left out.
+        Raises ValueError for other resolutions, and DeviceError where the device's limits are too low.
+        """
+        resolution = resolution or FINEST_RESOLUTION
+        if not 4 <= resolution <= FINEST_RESOLUTION or resolution & (resolution - 1):
+            raise ValueError(f"cubemap resolution {resolution} is not a power of two from 4 to {FINEST_RESOLUTION}")
+        self._triangles = triangles
+        self.centre = tuple(float(c) for c in centre)
+        exponent = resolution.bit_length() - 1
+        scene_radius = max(float(scene_radius), 1e-20)
+        state = STATE.zeros(1)[0]
+        state["centre"] = self.centre
+        state["margin"] = scene_radius * _MARGIN
+        state["core_radius"] = scene_radius * _MARGIN * _CORE_MARGINS
+        state["scene_radius"] = scene_radius
+        state["root_exponent"] = exponent % 2
+        state["root_count"] = 6 << (2 * state["root_exponent"])
+        state["last_level"] = exponent // 2
+        state["base_level"] = min(_BASE_LEVEL, exponent // 2)
+        state["least_gain"] = self._least_gain
+        state["most_bins"] = self._most_bins
+        state["triangle_count"] = triangle_count
+        self._expect(triangle_count)
+        if self._rasterize is None and triangle_count >= _TRIAL_LEAST:
+            self._rasterize = self._is_faster_rasterized(state)
+        self._build(state)
+        state = self._read_state()
+        state["fragment_count"] = self._fragments_found
+        self.counts = {
+            name: int(state[f"{name}_count"])
+            for name in ("triangle", "fragment", "tile", "entry", "binned_fragment", "bin", "core")
+        }
+        log.debug("deep cubemap: %s", self.counts)
+
+    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths) -> None:
+        """Find the nearest hits of the living paths' Ray records; writes Hit records.
+
+        A hit at just maximum_distance counts, one at distance 0 does not. Where nothing is hit,
+        triangle is NO_TRIANGLE and the rest without meaning.
+        """
+        self._trace("deep_cubemap/trace.comp", {"Rays": rays, "Hits": hits}, living)
+
+    def occluded(self, rays: moderngl.Buffer, visibility: moderngl.Buffer, living: LivingPaths) -> None:
+        """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0."""
+        self._trace("deep_cubemap/occluded.comp", {"Rays": rays, "Visibility": visibility}, living)
+
+    @property
+    def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
+        """Buffers by block name that kernels which include deep_cubemap/traverse.glsl need."""
+        return {
+            "Triangles": self._triangles,
+            "DeepCubemap": self._state.buffer,
+            "CubemapCells": self._cells.buffer,
+            "DepthBins": self._bins.buffer,
+            "CellEntries": self._list("entry"),
+            "CoreTriangles": self._list("core"),
+        }
+
+    @property
+    def route(self) -> str | None:
+        """How triangles are found in cells; None where that has not been decided yet (a compute shader serves)."""
+        return {True: "rasterization", False: "compute shader", None: None}[self._rasterize]
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes held, by buffer name."""
+        return {buffer.name: buffer.size for buffer in self._buffers()}
+
+    def release(self) -> None:
+        """Give all GPU memory back."""
+        for buffer in self._buffers():
+            buffer.release()
+        if self._framebuffer is not None:
+            self._framebuffer.release()
+
+    def _buffers(self) -> list[GrowingBuffer]:
+        return [
+            self._state, self._cells, self._bins, self._old_fragments, self._tiles,
+            *(buffer for buffer, _ in self._lists.values()),
+        ]  # fmt: skip
+
+    def _list(self, name: str) -> moderngl.Buffer:
+        return self._lists[name][0].buffer
+
+    def _trace(self, kernel: str, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> None:
+        as_texels = self._texel_buffers and all(
+            self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS
+        )
+        program = self._library.compute(kernel, {TEXEL_BUFFERS: 1} if as_texels else {})
+        buffers = {**self.traversal_buffers, **buffers}
+        if living.most <= _RAYS_PER_DISPATCH:
+            living.run(program, buffers, {"first_place": 0})
+            return
+        for first in range(0, living.most, _RAYS_PER_DISPATCH):
+            threads = min(_RAYS_PER_DISPATCH, living.most - first)
+            program.run(threads, {**buffers, "LivingPaths": living.buffer}, {"first_place": first})
+
+    def _read_state(self) -> np.void:
+        return self._state.read(STATE.dtype, 1)[0].copy()
+
+    def _is_faster_rasterized(self, state: np.void) -> bool:
+        """Build with the first triangles by both routes, twice as the first time compiles, and compare the clock."""
+        trial = state.copy()
+        trial["triangle_count"] = min(int(trial["triangle_count"]), _TRIAL_MOST)
+        seconds = {}
+        for self._rasterize in (False, True, False, True):
+            self._context.finish()
+            start = time.perf_counter()
+            self._build(trial)
+            self._context.finish()
+            seconds[self._rasterize] = time.perf_counter() - start
+        log.debug("deep cubemap: %.1f ms by compute shader, %.1f ms rasterized", *(1e3 * s for s in seconds.values()))
+        return seconds[True] < seconds[False]
+
+    def _expect(self, triangle_count: int) -> None:
+        """Room for an ordinary scene of so many triangles, as far as the device allows it."""
+        limit = self._context.storage_block_limit
+        for name, expected in _expected(triangle_count).items():
+            size = 16 * CELL.size if name == "tile" else self._lists[name][1]
+            self._grow(name, min(expected, limit // size - 2))
+
+    def _grow(self, name: str, count: int) -> None:
+        """Make room for ``count`` items of a list, with some to spare where the device allows it."""
+        limit = self._context.storage_block_limit
+
+        def room(number: int, spacious: int) -> int:
+            return -(-max(number, min(spacious, limit)) // TEXEL_SIZE) * TEXEL_SIZE
+
+        spacious = count + count // 4
+        if name == "tile":
+            self._tiles.require(room(4 * count, 4 * spacious))
+            self._cells.require(room(CELL.size * (_MOST_ROOTS + 16 * count), CELL.size * (_MOST_ROOTS + 16 * spacious)))
+            return
+        buffer, size = self._lists[name]
+        if count * size > buffer.size:
+            buffer.require(room(count * size, spacious * size))
+        if name == "fragment":
+            self._old_fragments.require(buffer.size)
+
+    def _set_capacities(self, state: np.void) -> None:
+        state["tile_capacity"] = min((self._cells.size // CELL.size - _MOST_ROOTS) // 16, self._tiles.size // 4)
+        for name, (buffer, size) in self._lists.items():
+            state[f"{name}_capacity"] = buffer.size // size
+        state["fragment_limit"] = self._context.storage_block_limit // FRAGMENT.size
+        state["fragment_capacity"] = min(int(state["fragment_capacity"]), self._old_fragments.size // FRAGMENT.size)
+
+    def _check_lists(self, state: np.void, level: int) -> None:
+        """Raise _TooShort when lists were, which cells of a level needed, after making room.
+
+        Raises _TooLong where the device does not allow that.
+        """
+        names = [name for name in ("tile", *self._lists) if state[f"{name}_count"] > state[f"{name}_capacity"]]
+        for name in names:
+            log.debug("deep cubemap: %d of %d %s", state[f"{name}_count"], state[f"{name}_capacity"], name)
+            try:
+                self._grow(name, int(state[f"{name}_count"]))
+            except DeviceError as error:
+                raise _TooLong(level) from error
+        if names:
+            raise _TooShort
+
+    def _build(self, state: np.void) -> None:
+        """Try until all lists are long enough, with coarser cells where the device cannot hold them."""
+        state = state.copy()
+        if state["triangle_count"] >= self._too_many:
+            state["last_level"] = min(state["last_level"], self._last_level)
+        while True:
+            try:
+                return self._try(state)
+            except _TooShort:
+                continue
+            except _TooLong as too_long:
+                if state["last_level"] > state["base_level"]:
+                    state["last_level"] = min(too_long.level, int(state["last_level"])) - 1
+                elif state["base_level"] > 1:
+                    state["base_level"] = state["last_level"] = 1
+                else:
+                    raise too_long.__cause__ from None
+                # builds to come of as many triangles start with that
+                self._too_many, self._last_level = int(state["triangle_count"]), int(state["last_level"])
+                log.warning(
+                    "%s; for now cells stay at a resolution of %d, which slows rays down",
+                    too_long.__cause__,
+                    1 << int(state["root_exponent"] + 2 * state["last_level"]),
+                )
+
+    def _try(self, parameters: np.void) -> None:
+        state = parameters.copy()
+        self._set_capacities(state)
+        root_exponent, base = int(state["root_exponent"]), int(state["base_level"])
+        level_tiles = [int(state["root_count"]) * 16**level for level in range(base)]
+        state["tile_count"] = sum(level_tiles)
+        self._state.upload(state)
+        buffers = {
+            "DeepCubemap": self._state.buffer,
+            "CubemapCells": self._cells.buffer,
+            "CubemapTiles": self._tiles.buffer,
+            "OverlapJobs": self._list("job"),
+            "NewFragments": self._list("fragment"),
+            "OldFragments": self._old_fragments.buffer,
+            "BinnedFragments": self._list("binned_fragment"),
+            "BinnedCells": self._list("binned_cell"),
+            "CellEntries": self._list("entry"),
+            "CoreTriangles": self._list("core"),
+            "Triangles": self._triangles,
+        }
+
+        def run(name: str, threads: int, parameters: dict | None = None) -> None:
+            program = self._library.compute(f"deep_cubemap/{name}.comp")
+            program.run(threads, {block: buffers[block] for block in program.blocks}, parameters)
+
+        run("plant", int(state["tile_count"]))
+        run("list_overlap_jobs", int(state["triangle_count"]))
+        first_tile, level = sum(level_tiles[:-1]), base
+        self._fragments_found = 0
+        while True:
+            state = self._read_state()
+            self._check_lists(state, level)
+            side_exponent = root_exponent + 2 * level
+            end_tile = int(state["tile_count"])
+            self._classify(buffers, int(state["job_count"]), first_tile, end_tile, side_exponent)
+            state = self._read_state()
+            self._check_lists(state, level)
+            fragments = int(state["fragment_count"])
+            self._fragments_found += fragments
+            self._old_fragments, new = self._lists["fragment"][0], self._old_fragments
+            self._lists["fragment"] = new, FRAGMENT.size
+            buffers["NewFragments"], buffers["OldFragments"] = new.buffer, self._old_fragments.buffer
+            state["job_count"] = state["fragment_count"] = state["reserved_count"] = 0
+            self._state.upload(state)
+            division = {
+                "first_tile": first_tile, "end_tile": end_tile, "level": level, "side_exponent": side_exponent,
+                "fragment_count": fragments,
+            }  # fmt: skip
+            run("divide", end_tile - first_tile, division)
+            run("hand_down", fragments, division)
+            state = self._read_state()
+            self._check_lists(state, level + 1)
+            if int(state["tile_count"]) == end_tile:
+                break
+            first_tile, level = end_tile, level + 1
+        self.resolution = 1 << side_exponent
+        if state["binned_fragment_count"]:
+            buffers["DepthBins"] = self._bins.buffer
+            run("allocate_bins", int(state["binned_cell_count"]))
+            try:
+                self._bins.require(4 * int(self._read_state()["bin_count"]))
+            except DeviceError as error:
+                raise _TooLong(level) from error
+            self._bins.clear()
+            buffers["DepthBins"] = self._bins.buffer
+            run("count_entries", int(state["binned_fragment_count"]))
+            run("place_entries", int(state["binned_cell_count"]))
+            self._check_lists(self._read_state(), level)
+            run("scatter_entries", int(state["binned_fragment_count"]))
+        for upper in range(base - 1, -1, -1):
+            first = sum(level_tiles[:upper])
+            run("merge_tiles", level_tiles[upper], {"first_cell": first, "end_cell": first + level_tiles[upper]})
+        state = self._read_state()
+        state["last_level"] = level
+        self._state.upload(state)
+
+    def _classify(
+        self, buffers: Mapping[str, moderngl.Buffer], jobs: int, first_tile: int, end_tile: int, side_exponent: int
+    ) -> None:
+        if self._rasterize:
+            program = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag")
+            side = min(
+                _PICTURE_SIDE,
+                int(self._context.limits["GL_MAX_TEXTURE_SIZE"]),
+                *map(int, self._context.limits["GL_MAX_VIEWPORT_DIMS"]),
+            )
+            if self._framebuffer is None:
+                self._framebuffer = self._context.moderngl.empty_framebuffer((side, side))
+        else:
+            program, side = self._library.compute("deep_cubemap/overlap.comp"), 1 << 30
+        buffers = {block: buffers[block] for block in program.blocks}
+        for picture_tile in range(first_tile, end_tile, (side // 4) ** 2):
+            for first in range(0, jobs, _JOBS_PER_DRAW):
+                end = min(first + _JOBS_PER_DRAW, jobs)
+                parameters = {
+                    "first_job": first, "end_job": end, "side_exponent": side_exponent, "first_tile": picture_tile,
+                    "picture_side": side,
+                }  # fmt: skip
+                if self._rasterize:
+                    program.draw(self._framebuffer, 6 * (end - first), buffers, parameters)
+                else:
+                    program.run(end - first, buffers, parameters)
+
+
+def _expected(triangle_count: int) -> dict[str, int]:
+    """Lengths of lists that ordinary scenes of so many triangles do not pass."""
+    return {
+        "job": 5 * triangle_count // 2 + 4096,
+        "fragment": 4 * triangle_count + 16384,
+        "tile": triangle_count // 32 + 4096,
+        "entry": 7 * triangle_count + 16384,
+        "binned_cell": triangle_count // 4 + 4096,
+        "binned_fragment": 5 * triangle_count + 16384,
+    }

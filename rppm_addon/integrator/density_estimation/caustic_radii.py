@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Radii for caustics that follow the photons, pixel by pixel.
+
+Where few photons come, Eq. 3's disk holds next to none, and the picture is noise until many iterations have passed.
+So pixels begin with a multiple of it, and come back to it as they are seen to take many. Factors only fall, by what
+earlier iterations took; Eq. 2 shrinks what remains, so the estimate stays consistent.
+"""
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...gl.timers import StageTimers
+from ..common.band import Band
+from ..common.iteration import Iteration
+from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
+from .splat_sums import SplatSums
+
+Record("NarrowParameters", count="uint", first_pixel="uint", iteration="uint", most_factor="float", expected="float")
+
+
+class CausticRadii:
+    """What Eq. 3's radius of each pixel of the film is multiplied by, from the second iteration on."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+        self._program = library.compute("caustic_radii/narrow.comp")
+        self._factors = GrowingBuffer(context, "radius factors", "lower the resolution")
+        self._factors.require(4 * pixels)
+        self._pixels = pixels
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {self._factors.name: self._factors.size}
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        """(pixels,) float32 factors."""
+        return self._factors.buffer
+
+    def narrow(
+        self, sums: SplatSums, band: Band, iteration: Iteration, radii: Radii, fewer: float, timers: StageTimers
+    ) -> None:
+        """Learn from the photons that a band's pixels took in an iteration.
+
+        fewer: photons of the next over those of this one.
+        """
+        with timers.stage("learning"):
+            self._program.run(
+                band.pixel_count,
+                {"PhotonCounts": sums.photon_counts, "RadiusFactors": self._factors.buffer},
+                {
+                    "count": band.pixel_count,
+                    "first_pixel": band.first_pixel,
+                    "iteration": iteration.number,
+                    "most_factor": radii.most_factor,
+                    "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 / (fewer * sums.photons_for_one),
+                },
+            )
+
+    def read(self) -> np.ndarray:
+        """(pixels,) float32 factors, once the first iteration has been."""
+        return self._factors.read(np.float32, self._pixels).copy()
+
+    def restore(self, factors: np.ndarray) -> None:
+        """Take what read gave."""
+        self._factors.upload(factors)
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self._factors.release()

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Density estimation: photons meet importons (Eq. 1) by one of two routes, which give the same sums bit for bit.
+
+Splatting (splatting.py) rasterizes photons, as the paper does; importons gather from a photon grid (photon_grid.py).
+"""
+
+import logging
+import time
+from weakref import WeakKeyDictionary
+
+import moderngl
+
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.timers import StageTimers
+from ...scene.settings import DensityEstimation, RenderSettings
+from ..common.iteration import Iteration
+from .photon_grid import PhotonGrid
+from .splat_sums import SplatSums, radiance_quantum
+from .splatting import Splatting
+from .stored_photons import PhotonList, StoredPhotons, TakingImportons
+
+log = logging.getLogger(__name__)
+
+_FEWEST_TO_TRY = 1000
+"""Photons, and importons, to try both routes with."""
+_WARM_UP_PHOTONS = 64
+"""To compile with."""
+_UNDECIDED = DensityEstimation.GRID
+_faster: WeakKeyDictionary[ProgramLibrary, DensityEstimation] = WeakKeyDictionary()
+"""The faster route once both were tried, by the open device's programs."""
+
+
+def _may_rasterize(context: Context) -> bool:
+    """Whether rasterization may be the faster route: where no unit rasterizes it takes 9 to 19 times as long as the
+    grid, and the trial half of the first iteration."""
+    return not context.is_software
+
+
+class DensityEstimator:
+    """Estimates densities at the importons of a band by the route that the settings ask for.
+
+    AUTOMATIC takes the faster one: with the first photons and importons that are a thousand and more both are tried,
+    but for software devices, on which the grid always is.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
+        self._context = context
+        self._library = library
+        self._width, self._rows = width, rows
+        self._wanted = DensityEstimation.AUTOMATIC
+        self._routes: dict[DensityEstimation, Splatting | PhotonGrid] = {}
+        self._prepared: DensityEstimation | None = None
+        self._photons: StoredPhotons | None = None
+        self.photon_list = PhotonList(context, library)
+        self.sums = SplatSums(context, width * rows)
+
+    @property
+    def route(self) -> DensityEstimation:
+        """The one that is taken, which nothing but speed depends on."""
+        if self._wanted is not DensityEstimation.AUTOMATIC:
+            return self._wanted
+        return _faster.get(self._library, _UNDECIDED)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        parts = (self.photon_list, self.sums, *self._routes.values())
+        return {name: size for part in parts for name, size in part.memory_bytes.items()}
+
+    def collect(self, photons: moderngl.Buffer, slots: int, indirect_only: bool, timers: StageTimers) -> PhotonList:
+        """List the photons that importons may take (PhotonList.collect)."""
+        with timers.stage("photon list"):
+            self.photon_list.collect(photons, slots, indirect_only)
+        return self.photon_list
+
+    def begin(self, settings: RenderSettings, photons: StoredPhotons, iteration: Iteration) -> None:
+        """Take an iteration's photons."""
+        self._wanted, self._photons, self._prepared = settings.density_estimation, photons, None
+        self.sums.count_in(
+            radiance_quantum(photons.photon_flux, max(photons.radii.caustic, photons.radii.wide)),
+            iteration.roulette_seed if settings.use_splat_roulette else 0,
+            iteration.precedes_learning,
+        )
+
+    def prepare(self) -> None:
+        """Bring the photons into the order that the route needs, unless that was done; release the other route."""
+        route = self.route
+        for other in self._routes.keys() - {route}:
+            self._routes.pop(other).release()
+        if self._prepared is not route:
+            self._get(route).prepare(self._photons)
+            self._prepared = route
+
+    def splat(self, importons: TakingImportons, timers: StageTimers) -> None:
+        """DirectSplatting or IndirectSplatting: add to the sums what the photons give."""
+        with timers.stage("indirect splatting" if importons.raster is None else "direct splatting"):
+            if not self._photons.count:
+                return
+            if self._is_undecided:
+                self._try_both(importons)
+            self.prepare()
+            self._get(self.route).splat(self._photons, importons, self.sums)
+
+    @property
+    def _is_undecided(self) -> bool:
+        automatic = self._wanted is DensityEstimation.AUTOMATIC
+        return automatic and self._library not in _faster and _may_rasterize(self._context)
+
+    def _try_both(self, importons: TakingImportons) -> None:
+        """Take the route that is faster with these importons, if they are many and take all photons.
+
+        Nothing is added, and what contributes is marked as it will be anyway.
+        """
+        photons = self._photons
+        if importons.gathers or min(photons.count, importons.living.read_count()) < _FEWEST_TO_TRY:
+            return
+        self._prepared = None
+        with self.sums.left_alone():
+            self._seconds(DensityEstimation.GRID, photons.first(_WARM_UP_PHOTONS), importons)
+            if self._get(DensityEstimation.GRID).visited < _FEWEST_TO_TRY:
+                return
+            by_grid = self._seconds(DensityEstimation.GRID, photons, importons)
+            # Ever more photons until it is clear, lest the trial take long where rasterization does.
+            count, rasterized, growth = _WARM_UP_PHOTONS, 0.0, 16.0
+            self._seconds(DensityEstimation.RASTERIZED, photons.first(count), importons)
+            while rasterized <= by_grid and count < photons.count:
+                count = min(int(growth * count), photons.count)
+                rasterized = self._seconds(DensityEstimation.RASTERIZED, photons.first(count), importons)
+                growth = min(max(1.5 * by_grid / rasterized, 2.0), 16.0)
+        _faster[self._library] = DensityEstimation.RASTERIZED if rasterized <= by_grid else DensityEstimation.GRID
+        log.debug(
+            "density estimation: %.1f ms from the grid, %.1f ms rasterized with %d of %d photons",
+            1e3 * by_grid, 1e3 * rasterized, count, photons.count,
+        )  # fmt: skip
+
+    def _seconds(self, name: DensityEstimation, photons: StoredPhotons, importons: TakingImportons) -> float:
+        route = self._get(name)
+        route.prepare(photons)  # buffers grow
+        self._context.finish()
+        start = time.perf_counter()
+        route.prepare(photons)
+        route.splat(photons, importons, self.sums)
+        self._context.finish()
+        return time.perf_counter() - start
+
+    def _get(self, route: DensityEstimation) -> Splatting | PhotonGrid:
+        if route not in self._routes:
+            self._routes[route] = (
+                Splatting(self._context, self._library, self._width, self._rows)
+                if route is DensityEstimation.RASTERIZED
+                else PhotonGrid(self._context, self._library, self._width * self._rows)
+            )
+        return self._routes[route]
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for part in (self.photon_list, self.sums, *self._routes.values()):
+            part.release()

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photons in hashed grids, from which each importon gathers those around it: the same sums as splatting gives.
+
+Photons are sorted into the buckets of several grids by a counting sort, once an iteration. The importons of a segment
+are grouped by cells in the same way, so that threads side by side walk the same photons. Nothing depends on the order
+in which photons or importons come to lie.
+"""
+
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from .splat_sums import SUM_PARAMETERS, SplatSums
+from .stored_photons import ESTIMATE_PARAMETERS, StoredPhotons, TakingImportons
+
+_GRID_PARAMETERS = {
+    "caustic_sides": "vec4",
+    "wide_side": "float",
+    "caustic_buckets": "uint",
+    "wide_buckets": "uint",
+}
+Record("GridParameters", count="uint", **_GRID_PARAMETERS)
+Record("AllocateParameters", count="uint")
+Record("GroupParameters", buckets="uint", side="float", group_size="uint")
+Record(
+    "GatherPhotonsParameters",
+    most_rounds="uint",
+    rounding="float",
+    caustics="uint",
+    **_GRID_PARAMETERS,
+    **SUM_PARAMETERS,
+    **ESTIMATE_PARAMETERS,
+)
+StorageBlock("Buckets", "uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[];")
+StorageBlock("SortedPhotons", "uvec4 sorted_photons[];")
+StorageBlock("Visits", "uint visit_groups[3]; uint visit_count; uvec2 visits[];")
+
+_FINER_SIDES = (1.0, 1.0 / 3.0, 1.0 / 9.0)
+"""Caustic grids after the first, which is for the ends of gathering rays, by their radius as a part of the largest
+elsewhere: importons whose radius is that much smaller, since they are near the camera or take many photons, look at
+fewer."""
+_CAUSTIC_GRIDS, _WIDE_GRIDS = 1 + len(_FINER_SIDES), 2
+Constants("PhotonGrids", CAUSTIC_GRIDS=_CAUSTIC_GRIDS)
+_FEWEST_BUCKETS = 1 << 10
+_HEADER, _BUCKET, _SORTED_PHOTON, _VISIT = 16, 8, 16, 8
+_ROUNDING_STEPS = 8.0
+"""Float spacings at the largest coordinate: more than the rounding of a sphere's ends and of their division."""
+_MOST_ROUNDS = 2000
+"""Of a thread on software devices: llvmpipe ends the loops of a thread after 65535 rounds in all. The threads of a
+vector, up to 16, may have to wait for each other in both loops."""
+_NO_LIMIT = 0xFFFFFFFF
+
+
+def _buckets(count: int) -> int:
+    """A power of two, at least the count."""
+    return max(_FEWEST_BUCKETS, 1 << (max(count, 1) - 1).bit_length())
+
+
+class PhotonGrid:
+    """Adds photons to the importons of a band, one route of density estimation (density_estimator.py)."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+        self._count_photons = library.compute("photon_grid/count_photons.comp")
+        self._place_photons = library.compute("photon_grid/place_photons.comp")
+        self._count_importons = library.compute("photon_grid/count_importons.comp")
+        self._place_importons = library.compute("photon_grid/place_importons.comp")
+        self._allocate = library.compute("photon_grid/allocate.comp")
+        self._gather = library.compute("photon_grid/gather.comp")
+        self._most_rounds = _MOST_ROUNDS if context.is_software else _NO_LIMIT
+        remedy = "lower the photons per iteration or the photon path length"
+        self._grid = GrowingBuffer(context, "photon grid", remedy)
+        self._sorted_photons = GrowingBuffer(context, "sorted photons", remedy)
+        remedy = "lower the resolution"
+        self._importon_grid = GrowingBuffer(context, "importon grid", remedy)
+        self._visits = GrowingBuffer(context, "importon visits", remedy)
+        self._unfinished_visits = GrowingBuffer(context, "unfinished importon visits", remedy)
+        for name, size in importon_memory(pixels).items():
+            next(buffer for buffer in self._buffers if buffer.name == name).require(size)
+        self._parameters: dict[str, object] = {}
+
+    @property
+    def _buffers(self) -> tuple[GrowingBuffer, ...]:
+        photons = self._grid, self._sorted_photons
+        return *photons, self._importon_grid, self._visits, self._unfinished_visits
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {buffer.name: buffer.size for buffer in self._buffers}
+
+    @property
+    def visited(self) -> int:
+        """Importons of the last splat that gathered; waits for the device."""
+        return int(self._importon_grid.read(np.uint32, 1)[0])
+
+    def prepare(self, photons: StoredPhotons) -> None:
+        """Sort an iteration's photons into the grids."""
+        radii, caustics = photons.radii, photons.caustic_count
+        spacing = float(np.spacing(np.float32(photons.largest_coordinate)))
+        self._rounding = max(_ROUNDING_STEPS * spacing, 1e-30)
+        caustic_radii = radii.by_ray, *(part * radii.caustic for part in _FINER_SIDES)
+        self._parameters = {
+            "caustic_sides": [self._side(radius) for radius in caustic_radii],
+            "wide_side": self._side(max(radii.by_ray, radii.wide)),
+            "caustic_buckets": _buckets(caustics),
+            "wide_buckets": _buckets(photons.diffused_count),
+        }
+        self._holds_caustics = caustics > 0
+        buckets = _CAUSTIC_GRIDS * _buckets(caustics) + _WIDE_GRIDS * _buckets(photons.diffused_count)
+        self._grid.require(_HEADER + _BUCKET * buckets)
+        self._sorted_photons.require(_SORTED_PHOTON * max(1, _CAUSTIC_GRIDS * caustics + photons.diffused_count))
+        cells = {"Buckets": self._grid.buffer}
+        parameters = {**self._parameters, "count": photons.count}
+        self._grid.clear()
+        self._count_photons.run(photons.count, {**photons.list_blocks, **cells}, parameters)
+        self._allocate.run(buckets, cells, {"count": buckets})
+        self._place_photons.run(
+            photons.count, {**photons.list_blocks, **cells, "SortedPhotons": self._sorted_photons.buffer}, parameters
+        )
+
+    def _side(self, radius: float) -> float:
+        """Of cells for spheres up to a radius, whose reach shaders/photon_grid/gather.comp makes a little longer."""
+        return 2.0 * (1.001 * radius + 2.0 * self._rounding)
+
+    def splat(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
+        """Add to the sums what the photons that were prepared give."""
+        self._group(importons)
+        visits, unfinished = self._visits, self._unfinished_visits
+        while True:
+            unfinished.buffer.write(np.array([0, 1, 1, 0], np.uint32).tobytes())
+            self._gather.run_indirect(
+                visits.buffer,
+                0,
+                {
+                    **photons.blocks,
+                    "Importons": importons.importons,
+                    "Buckets": self._grid.buffer,
+                    "SortedPhotons": self._sorted_photons.buffer,
+                    **sums.blocks,
+                    "Visits": visits.buffer,
+                    "UnfinishedVisits": unfinished.buffer,
+                },
+                {
+                    "most_rounds": self._most_rounds,
+                    "rounding": self._rounding,
+                    "caustics": self._holds_caustics,
+                    **self._parameters,
+                    **sums.parameters,
+                    **importons.parameters(photons),
+                },
+            )
+            if self._most_rounds == _NO_LIMIT or not unfinished.read(np.uint32, 1)[0]:
+                return
+            visits, unfinished = unfinished, visits
+
+    def _group(self, importons: TakingImportons) -> None:
+        """List the importons that gather, those of a cell side by side."""
+        buckets = _buckets(importons.living.most)
+        cells = {"Buckets": self._importon_grid.buffer}
+        parameters = {
+            "buckets": buckets,
+            "side": 0.5 * self._parameters["wide_side"],
+            "group_size": self._gather.local_size,
+        }
+        self._importon_grid.clear()
+        self._visits.buffer.write(np.array([0, 1, 1, 0], np.uint32).tobytes())
+        importons.living.run(self._count_importons, {"Importons": importons.importons, **cells}, parameters)
+        self._allocate.run(buckets, cells, {"count": buckets})
+        importons.living.run(
+            self._place_importons,
+            {"Importons": importons.importons, **cells, "Visits": self._visits.buffer},
+            parameters,
+        )
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in self._buffers:
+            buffer.release()
+
+
+def importon_memory(pixels: int) -> dict[str, int]:
+    """Bytes by buffer that follow from a band's pixels."""
+    visits = _HEADER + _VISIT * pixels
+    return {
+        "importon grid": _HEADER + _BUCKET * _buckets(pixels),
+        "importon visits": visits,
+        "unfinished importon visits": visits,
+    }

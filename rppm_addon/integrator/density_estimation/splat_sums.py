@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sums of what photons add to the importons of each pixel, in whole quanta of radiance."""
+
+import contextlib
+import math
+from collections.abc import Iterator
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.storage_blocks import StorageBlock
+
+SUM_PARAMETERS = {"quanta": "float", "roulette": "uint", "counting": "uint"}
+"""Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl or collect.glsl."""
+
+StorageBlock("SplatSums", "uint sum_words[];")
+StorageBlock("PhotonCounts", "uint photon_counts[];")
+
+_PHOTON_QUANTA = 1 << 24
+_SUMS, _COUNTS = 48, 8
+
+
+def radiance_quantum(photon_flux: float, radius: float) -> float:
+    """W/(m^2 sr), a power of two: what the sums of splats count in.
+
+    A white diffuse surface reflects about 2^24 of them when a photon of mean flux (W) is spread over a disk of the
+    largest splat radius (m). Sums end at 2^64.
+    """
+    radiance = photon_flux / (math.pi**2 * max(radius, 1e-12) ** 2) / _PHOTON_QUANTA
+    return 2.0 ** math.floor(math.log2(min(max(radiance, 1e-30), 1e20)))
+
+
+class SplatSums:
+    """The sums of a band's pixels (shaders/splat_sums/sums.glsl), and how many photons each of them took."""
+
+    def __init__(self, context: Context, pixels: int) -> None:
+        remedy = "lower the resolution"
+        self._sums = GrowingBuffer(context, "gathered radiance", remedy)
+        self._photon_counts = GrowingBuffer(context, "photon counts", remedy)
+        self._sums.require(_SUMS * pixels)
+        self._photon_counts.require(_COUNTS * pixels)
+        self.count_in(1.0, 0, False)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {buffer.name: buffer.size for buffer in (self._sums, self._photon_counts)}
+
+    def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
+        """Set what the sums count in, W/(m^2 sr), the seed of the roulette (0 keeps all pairs of a photon and a pixel),
+        and whether to count the photons that pixels take."""
+        self.quantum = quantum
+        self.counting = counting
+        self.parameters = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette, "counting": counting}
+        """Values of SUM_PARAMETERS."""
+
+    @contextlib.contextmanager
+    def left_alone(self) -> Iterator[None]:
+        """What is splatted meanwhile adds nothing."""
+        parameters = self.parameters
+        self.parameters = parameters | {"quanta": 0.0, "counting": False}
+        try:
+            yield
+        finally:
+            self.parameters = parameters
+
+    def clear(self) -> None:
+        """Forget the band before."""
+        self._sums.clear()
+        if self.counting:
+            self._photon_counts.clear()
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        """To be read by shaders/splat_sums/read.glsl."""
+        return self._sums.buffer
+
+    @property
+    def blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that add to the sums."""
+        return {"SplatSums": self._sums.buffer, "PhotonCounts": self._photon_counts.buffer}
+
+    def read(self, count: int) -> np.ndarray:
+        """(count, 2, 3) uint64 quanta of the band's first pixels: what their importons took, what their rays found."""
+        return self._sums.read(np.uint64, 6 * count).reshape(-1, 2, 3)
+
+    @property
+    def photons_for_one(self) -> int:
+        """How many photons one that is counted stands for."""
+        return 2 if self.parameters["roulette"] else 1
+
+    @property
+    def photon_counts(self) -> moderngl.Buffer:
+        """Words at diffused_place and caustic_place (shaders/splat_sums/sums.glsl)."""
+        return self._photon_counts.buffer
+
+    def photons_taken(self, count: int) -> np.ndarray:
+        """(count, 2) how many photons the importons of each of the band's pixels took, where they are counted:
+        diffused ones, and caustic ones but for those at the ends of gathering rays."""
+        return self._photon_counts.read(np.uint32, 2 * count).reshape(-1, 2) * self.photons_for_one
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self._sums.release()
+        self._photon_counts.release()

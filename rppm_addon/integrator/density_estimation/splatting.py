@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photon splatting by rasterization: onto the camera view (direct) and onto cubemap views (indirect), section 4.2."""
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import DrawProgram, ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from .splat_sums import SUM_PARAMETERS, SplatSums
+from .stored_photons import ESTIMATE_PARAMETERS, CameraRaster, StoredPhotons, TakingImportons
+
+_CUBE_RESOLUTION, _BLOCK_SIZE = 128, 8
+Constants("SplatCubemap", signed=True, BLOCK_SIZE=_BLOCK_SIZE)
+_FEW_IMPORTONS = 40_000
+"""Up to so many have a cubemap of half the side: the same picture, on llvmpipe in 7 to 23 % less time."""
+_JOB_HEADER, _JOB = 16, 16
+_FACES_OF_A_SPLAT = 3
+"""A cone of 30 degrees touches at most so many faces of a cube."""
+
+Record("SplatParameters", count="uint", radius="float", wide_radius="float", gathers="uint")
+Record("QuadParameters", width="uint", height="uint", **SUM_PARAMETERS, **ESTIMATE_PARAMETERS)
+Record(
+    "CubeParameters",
+    centre="vec3",
+    count="uint",
+    radius="float",
+    resolution="uint",
+    gathers="uint",
+    **SUM_PARAMETERS,
+    **ESTIMATE_PARAMETERS,
+)
+StorageBlock("Heads", "uint heads[];")
+StorageBlock("Core", "uint core_count; uint core_importons[];")
+StorageBlock("Jobs", "uint job_vertices; uint draw_arguments[3]; SplatJob jobs[];")
+
+
+class Splatting:
+    """Adds photons to the importons of a band, one route of density estimation (density_estimator.py)."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
+        gl = context.moderngl
+        self._direct_jobs = library.compute("splatting/direct_jobs.comp")
+        self._direct_program = library.draw("splatting/quads.vert", "splatting/direct.frag")
+        self._insert = library.compute("splatting/insert.comp")
+        self._indirect_jobs = library.compute("splatting/indirect_jobs.comp")
+        self._indirect_program = library.draw("splatting/quads.vert", "splatting/indirect.frag")
+        self._core_program = library.compute("splatting/core.comp")
+        remedy = "lower the photons per iteration or the photon path length"
+        self._jobs = GrowingBuffer(context, "splat jobs", remedy)
+        self._heads = GrowingBuffer(context, "splat cubemap")
+        self._core = GrowingBuffer(context, "splat core list")
+        few = width * rows <= _FEW_IMPORTONS
+        self._resolution = max(_BLOCK_SIZE, _CUBE_RESOLUTION // 2) if few else _CUBE_RESOLUTION
+        self._heads.require(4 * 6 * (self._resolution**2 + (self._resolution // _BLOCK_SIZE) ** 2 + 4))
+        self._core.require(4 * (width * rows + 1))
+        self._direct_view = gl.empty_framebuffer((width, rows))
+        self._cube_size = (3 * self._resolution, 2 * self._resolution)
+        self._cube_view = gl.empty_framebuffer(self._cube_size)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {buffer.name: buffer.size for buffer in (self._jobs, self._heads, self._core)}
+
+    def prepare(self, photons: StoredPhotons) -> None:
+        """Make room for an iteration's photons."""
+        self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, photons.count))
+
+    def splat(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
+        """Add to the sums what the photons that were prepared for give."""
+        if importons.raster is not None:
+            self._direct(photons, importons, sums, importons.raster)
+        else:
+            self._indirect(photons, importons, sums)
+
+    def _reset_jobs(self) -> None:
+        """The arguments of the indirect draw: no vertices yet, one instance."""
+        self._jobs.buffer.write(np.array([0, 1, 0, 0], np.uint32).tobytes())
+
+    def _draw(
+        self,
+        program: DrawProgram,
+        view: moderngl.Framebuffer,
+        size: tuple[int, int],
+        blocks: dict[str, moderngl.Buffer],
+        parameters: dict[str, object],
+    ) -> None:
+        """The quads of the jobs, into a view's part of that size."""
+        width, height = size
+        program.draw(
+            view,
+            self._jobs.buffer,
+            {"Jobs": self._jobs.buffer, **blocks},
+            {"width": width, "height": height, **parameters},
+            viewport=(0, 0, width, height),
+        )
+
+    def _direct(
+        self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums, raster: CameraRaster
+    ) -> None:
+        """DirectSplatting: onto the importons of the camera's first hits."""
+        self._reset_jobs()
+        self._direct_jobs.run(
+            photons.count,
+            {**photons.list_blocks, "Camera": raster.camera, "Jobs": self._jobs.buffer},
+            {
+                "count": photons.count,
+                "radius": importons.narrow_radius(photons),
+                "wide_radius": photons.radii.wide,
+                "gathers": importons.gathers,
+            },
+        )
+        self._draw(
+            self._direct_program,
+            self._direct_view,
+            (raster.width, raster.rows),
+            {**photons.blocks, "Importons": importons.importons, **sums.blocks},
+            {**sums.parameters, **importons.parameters(photons)},
+        )
+
+    def _indirect(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
+        """IndirectSplatting: onto importons anywhere, by the cubemap's lists."""
+        self._heads.clear()
+        self._core.buffer.write(bytes(4))
+        self._reset_jobs()
+        estimate = {**sums.parameters, **importons.parameters(photons)}
+        cube = {
+            "centre": importons.center,
+            "radius": importons.narrow_radius(photons),
+            "resolution": self._resolution,
+            "gathers": importons.gathers,
+            **estimate,
+        }
+        importons.living.run(
+            self._insert,
+            {"Importons": importons.importons, "Heads": self._heads.buffer, "Core": self._core.buffer},
+            {**cube, "count": importons.living.most},
+        )
+        self._indirect_jobs.run(
+            photons.count,
+            {**photons.list_blocks, "Heads": self._heads.buffer, "Jobs": self._jobs.buffer},
+            {**cube, "count": photons.count},
+        )
+        splats = {**photons.blocks, "Importons": importons.importons, **sums.blocks}
+        self._draw(
+            self._indirect_program,
+            self._cube_view,
+            self._cube_size,
+            {"Heads": self._heads.buffer, **splats},
+            estimate,
+        )
+        self._core_program.run(
+            photons.count,
+            {"Core": self._core.buffer, **photons.list_blocks, **splats},
+            {**cube, "count": photons.count},
+        )
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for resource in (self._jobs, self._heads, self._core, self._direct_view, self._cube_view):
+            resource.release()

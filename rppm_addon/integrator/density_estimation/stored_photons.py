@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What density estimation works with: the stored photons of an iteration, and importons that take of them."""
+
+import dataclasses
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ..common.living_paths import LivingPaths
+from .radii import SplatRadii
+
+ESTIMATE_PARAMETERS = {
+    "wide_radius": "float",
+    "photon_count": "uint",
+    "photon_flux": "float",
+    "most_scattered": "uint",
+}
+"""Parameters of programs that estimate densities (shaders/common/importon.glsl)."""
+
+Record("StoredParameters", count="uint", indirect_only="uint")
+
+_HEADER = 8
+
+
+class PhotonList:
+    """The numbers of the photons that importons may take: ``count`` of them, ``diffused_count`` of these diffused."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._program = library.compute("stored_photons/list.comp")
+        remedy = "lower the photons per iteration or the photon path length"
+        self._numbers = GrowingBuffer(context, "stored photons", remedy)
+        self.count = self.diffused_count = 0
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        """Two uint32, ``count`` and ``diffused_count``, and the numbers."""
+        return self._numbers.buffer
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {self._numbers.name: self._numbers.size}
+
+    def collect(self, photons: moderngl.Buffer, slots: int, indirect_only: bool) -> None:
+        """List those of so many slots (PHOTON) that are stored, or those of them that are no direct light."""
+        self._numbers.require(_HEADER + 4 * slots)
+        self._numbers.buffer.write(bytes(_HEADER))
+        self._program.run(
+            slots,
+            {"Photons": photons, "StoredPhotons": self._numbers.buffer},
+            {"count": slots, "indirect_only": indirect_only},
+        )
+        self.count, self.diffused_count = map(int, self._numbers.read(np.uint32, 2))
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self._numbers.release()
+
+
+@dataclass(frozen=True)
+class StoredPhotons:
+    """The photons of an iteration that importons may take, and what else their estimate depends on."""
+
+    photons: moderngl.Buffer
+    numbers: moderngl.Buffer
+    """PhotonList's."""
+    count: int
+    caustic_count: int
+    """No more than so many of them have come by specular surfaces or from a light only."""
+    diffused_count: int
+    """No more than so many of them has a diffuse surface scattered."""
+    world_radiances: moderngl.Buffer
+    emitted_count: int
+    photon_flux: float
+    """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
+    radii: SplatRadii
+    largest_coordinate: float
+    """Of any position, metres, by its absolute value."""
+
+    def first(self, count: int) -> "StoredPhotons":
+        """No more than so many of them."""
+        fewer = (min(count, number) for number in (self.count, self.caustic_count, self.diffused_count))
+        return dataclasses.replace(self, **dict(zip(("count", "caustic_count", "diffused_count"), fewer)))
+
+    @property
+    def list_blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that go through the list."""
+        return {"Photons": self.photons, "StoredPhotons": self.numbers}
+
+    @property
+    def blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that estimate densities."""
+        return {"Photons": self.photons, "WorldRadiances": self.world_radiances}
+
+
+@dataclass(frozen=True)
+class CameraRaster:
+    """The band of pixels on which the camera's first hits were rasterized."""
+
+    camera: moderngl.Buffer
+    width: int
+    rows: int
+
+
+@dataclass(frozen=True)
+class TakingImportons:
+    """The importons of a segment of a band's camera paths, one a pixel."""
+
+    importons: moderngl.Buffer
+    living: LivingPaths
+    """The paths that came to this segment: what others have left in ``importons`` is of segments before."""
+    gathers: bool
+    """Whether the paths go on from there to gather: then the importons take no indirect photons."""
+    by_ray: bool
+    """Whether gathering rays may have led there, which widens the narrow radius."""
+    most_scattered: int
+    """Caustics of the world by up to so many surfaces are found by gathering rays as well, if there are any."""
+    raster: CameraRaster | None
+    """Where first hits lie on the camera's raster."""
+    center: np.ndarray
+    """Of the splat cubemap for all others, (3,) metres, which changes no sum."""
+
+    def narrow_radius(self, photons: StoredPhotons) -> float:
+        """That the narrow radii of these importons do not exceed, metres."""
+        return photons.radii.by_ray if self.by_ray else photons.radii.caustic
+
+    def parameters(self, photons: StoredPhotons) -> dict[str, object]:
+        """Values of ESTIMATE_PARAMETERS."""
+        return {
+            "wide_radius": photons.radii.wide,
+            "photon_count": photons.emitted_count,
+            "photon_flux": photons.photon_flux,
+            "most_scattered": self.most_scattered,
+        }

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Init of Algorithm 1: a scene on the device, built anew where it has changed or moves."""
+
+import contextlib
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.timers import StageTimers
+from ...materials.tables import MaterialTables
+from ...scene.moving_scene import MovingScene
+from ...scene.scene import Scene
+from ..common.iteration import Iteration
+from ..deep_cubemap.deep_cubemap import DeepCubemap
+from ..deep_cubemap.placement import cubemap_centers, radius_about
+from ..lights.lights import Lights
+from ..surfaces.geometry import Geometry
+from ..surfaces.resolve import Resolve
+from .changes import Changes, changes_between, snapshot
+from .shutter import moment, swept_bounds
+from .stage_context import StageContext
+
+_MOST_CORE_TRIANGLES = 64
+_NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
+
+
+class DeviceScene:
+    """What of a scene lies on the device: geometry, materials, lights and the deep cubemap."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, timers: StageTimers) -> None:
+        self._timers = timers
+        self.geometry = Geometry(context, library)
+        self.materials = MaterialTables(context, library)
+        self.lights = Lights(context, library)
+        # Where no unit rasterizes that takes two to three times as long, and trying it most of the first build.
+        self.deep_cubemap = DeepCubemap(context, library, rasterize=False if context.is_software else None)
+        self.resolve = Resolve(context, library)
+        self.scene: Scene | None = None
+        """With a shutter, as it is at the iteration's moment."""
+        self.center = np.full(3, np.nan)
+        """Of the deep cubemap, (3,) metres."""
+        self._source_scene: Scene | None = None
+        """The scene, its shutter included."""
+        self._uploaded_scene: Scene | None = None
+        """What stands on the device; None is nothing that a change could be told from."""
+        self._warnings: dict[str, list[str]] = {}
+        """What was said when a part was built, which holds for scenes after it as well."""
+        self._moving: MovingScene | None = None
+        self._swept = _NOWHERE
+        """What things move through while the shutter is open (swept_bounds)."""
+        self._wanted_center = np.full(3, np.nan)
+
+    @property
+    def moves(self) -> bool:
+        """Whether iterations have moments of their own (move_to)."""
+        return self._moving is not None
+
+    @property
+    def context(self) -> StageContext:
+        """For stages, at the moment that the scene was last moved to."""
+        return StageContext(
+            self.scene,
+            self.geometry,
+            self.materials,
+            self.lights,
+            self.deep_cubemap,
+            self.center,
+            self.resolve,
+            self._timers,
+        )
+
+    def forget(self) -> None:
+        """Have the next update build everything."""
+        self._uploaded_scene = None
+
+    def update(self, scene: Scene, center_tolerance: float = 0.0) -> None:
+        """Take a scene; build only what rests on members that are not the very objects of the scene before.
+
+        center_tolerance: how far from where the deep cubemap's center should be it may stay, in radii of the scene,
+        which changes no picture. Raises SceneError or DeviceError; what is built then is built anew the next time.
+        """
+        changes = changes_between(self._uploaded_scene, scene)
+        self._take(scene)
+        self._moving = MovingScene(scene) if scene.shutter is not None else None
+        swept = swept_bounds(scene) if scene.shutter is not None else _NOWHERE
+        changes.geometry |= not np.array_equal(swept, self._swept)
+        self._swept = swept
+        self._build_parts(changes, scene.photon_count)
+        wanted = next(cubemap_centers(scene, self.geometry))
+        is_near = np.linalg.norm(wanted - self._wanted_center) <= center_tolerance * self.geometry.radius
+        if changes.geometry or changes.cubemap or not is_near:
+            self._build_deep_cubemap()
+        for text in itertools.chain(*self._warnings.values()):
+            scene.warn(text)
+        self._uploaded_scene = snapshot(scene)
+
+    def upload_geometry(self, scene: Scene) -> None:
+        """Take a scene and build what rays need, to be looked at: nothing can be rendered. Raises as update does."""
+        self._take(scene)
+        self.materials.build(scene)
+        self.geometry.build(scene, self.materials.default_material)
+        self._build_deep_cubemap()
+
+    def move_to(self, iteration: Iteration) -> None:
+        """Take the scene as it is at the iteration's moment, and build anew what rests on what has moved.
+
+        The deep cubemap's center stays: it changes no picture, and a camera that moves alone costs nothing.
+        """
+        time = self._source_scene.shutter.time_of(moment(iteration.number, iteration.seed))
+        self.scene = self._moving.at(time)
+        changes = changes_between(self._uploaded_scene, self.scene)
+        self._uploaded_scene = None
+        with self._timers.stage("motion"):
+            self._build_parts(changes, iteration.photon_count, keep_learned=True)
+        if changes.geometry:
+            self._build_deep_cubemap()
+        self._uploaded_scene = snapshot(self.scene)
+
+    def _take(self, scene: Scene) -> None:
+        self._uploaded_scene = None
+        self.scene = self._source_scene = scene
+
+    def _build_parts(self, changes: Changes, photons: int, keep_learned: bool = False) -> None:
+        """What rests on the scene's members that have changed, but for the deep cubemap.
+
+        photons: of the iteration. keep_learned: go on with what was learned of the lights.
+        """
+        scene = self.scene
+        self.materials.follow(scene)
+        if changes.materials:
+            with self._collect_warnings("materials"):
+                self.materials.build(scene)
+        if changes.geometry:
+            self.geometry.build(scene, self.materials.default_material, self._swept)
+        if changes.geometry or changes.materials:
+            with self._collect_warnings("resolve"):
+                self.resolve.build(scene, self.geometry, self.materials)
+        self.resolve.look_from(scene.camera, scene.settings.seed)
+        if changes.geometry or changes.materials or changes.lights:
+            with self._collect_warnings("lights"):
+                self.lights.build(
+                    scene,
+                    self.geometry,
+                    self.materials,
+                    self.resolve,
+                    photons,
+                    not changes.world,
+                    not changes.lamps,
+                    keep_learned,
+                )
+        elif not keep_learned:
+            self.lights.begin(photons)
+
+    @contextlib.contextmanager
+    def _collect_warnings(self, part: str) -> Iterator[None]:
+        """Keep what is said while a part is built."""
+        before, self.scene.warnings = self.scene.warnings, []
+        try:
+            yield
+            self._warnings[part] = self.scene.warnings
+        finally:
+            self.scene.warnings = before
+
+    def _build_deep_cubemap(self) -> None:
+        """Where few triangles touch the center: those are tested by every ray that passes it."""
+        centers = list(cubemap_centers(self._source_scene, self.geometry))
+        self._wanted_center = centers[0]
+        with self._timers.stage("deep cubemap"):
+            for center in centers:
+                self.center = center
+                self.deep_cubemap.build(
+                    self.geometry.triangles.buffer,
+                    self.geometry.triangle_count,
+                    center,
+                    radius_about(center, self.geometry),
+                    self.scene.settings.cubemap_resolution,
+                )
+                if self.deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
+                    return
+
+    @property
+    def memory_bytes(self) -> dict[str, dict[str, int]]:
+        """Bytes on the device by group and buffer."""
+        return {
+            "scene": self.geometry.memory_bytes | self.materials.memory_bytes | self.lights.memory_bytes,
+            "deep cubemap": self.deep_cubemap.memory_bytes,
+            "resolve": self.resolve.memory_bytes,
+        }
+
+    def release(self) -> None:
+        """Give all buffers back."""
+        for part in (self.geometry, self.materials, self.lights, self.deep_cubemap, self.resolve):
+            part.release()

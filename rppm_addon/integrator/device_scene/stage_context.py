@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every stage of an iteration works with."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...gl.timers import StageTimers
+from ...materials.tables import MaterialTables
+from ...scene.scene import Scene
+from ...scene.settings import RenderSettings
+from ..deep_cubemap.deep_cubemap import DeepCubemap
+from ..lights.lights import Lights
+from ..surfaces.geometry import Geometry
+from ..surfaces.resolve import Resolve
+
+
+@dataclass(frozen=True)
+class StageContext:
+    """The scene on the device, at the iteration's moment, and the passes shared by photons and importons."""
+
+    scene: Scene
+    geometry: Geometry
+    materials: MaterialTables
+    lights: Lights
+    deep_cubemap: DeepCubemap
+    center: np.ndarray
+    """Of the deep cubemap, (3,) metres."""
+    resolve: Resolve
+    timers: StageTimers
+
+    @property
+    def settings(self) -> RenderSettings:
+        """The scene's."""
+        return self.scene.settings
+
+    @property
+    def gathers(self) -> bool:
+        """Whether camera paths go on from the first surface that stores photons to gather indirect light."""
+        return self.settings.use_final_gather and self.settings.camera_path_length > 1

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What iterations learn for those that come: how wide the radii have to be, and where photons are sent."""
+
+import math
+
+import numpy as np
+
+from .common.iteration import Iteration
+from .common.photon_counts import PhotonCounts, later_photons
+from .density_estimation.radii import (
+    Radii,
+    expected_photons,
+    fitted_wide_radius,
+    most_radius_factor,
+    photons_found,
+    photons_found_by_ray,
+    radius_in_pixels,
+    radius_limits,
+    shrinkage,
+    wide_radius,
+    widest_radius,
+)
+from .density_estimation.stored_photons import PhotonList
+from .device_scene.stage_context import StageContext
+from .pilot_view import at_pixels
+from .stages.photons import Photons
+
+
+class Learning:
+    """The radii of a picture's iterations. They begin with what the pilot view shows."""
+
+    def __init__(self, context: StageContext, footprints: np.ndarray) -> None:
+        """footprints: the pilot view's, (rows, columns) metres."""
+        settings, camera, geometry = context.settings, context.scene.camera, context.geometry
+        self._geometry = geometry
+        self._alpha = settings.alpha
+        self._by_ray = context.gathers
+        self._expected = expected_photons(context.gathers)
+        self._scale = radius_in_pixels(settings, camera)
+        self._most_factor = most_radius_factor(settings)
+        self._size = camera.resolution
+        self.leaves_importon = footprints > 0
+        """(rows, columns) of the pilot view."""
+        self.limits = radius_limits(settings, footprints, geometry.radius)
+        """r_min and r_max of the first iteration, metres."""
+        self.widest_radius = widest_radius(footprints, geometry.bounds_low, geometry.bounds_high)
+        self._automatic = settings.photons == 0
+        self.photon_counts = PhotonCounts(context.scene.photon_count, context.scene.photon_count)
+        self.wide_radius = 0.0
+        """Of the first iteration, metres: what diffused photons are spread over. Known once its photons are."""
+        self.diffused_photons_found: float | None = None
+        """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
+
+    def radii_for(self, iteration: Iteration, listed: PhotonList) -> Radii:
+        """Those of an iteration whose stored photons are known. The first one's say how many later ones have."""
+        if iteration.number == 1:
+            if self._automatic:
+                by_photons = listed.count - listed.diffused_count if self._by_ray else listed.count
+                first, (columns, rows) = self.photon_counts.first, self._size
+                later = later_photons(first, columns * rows, by_photons, listed.count)
+                self.photon_counts = PhotonCounts(first, later)
+            bounds = self._geometry.bounds_low, self._geometry.bounds_high
+            self.wide_radius = min(wide_radius(listed.diffused_count, self._expected, *bounds), self.widest_radius)
+        return self.radii(iteration.number)
+
+    def radii(self, number: int) -> Radii:
+        """Those of the iteration of this number, from 1, as far as it is known."""
+        shrunk = shrinkage(number, self._alpha)
+        return Radii(*self.limits, self.wide_radius, self._scale, self._most_factor, shrunk)
+
+    def fewer(self, iteration: Iteration) -> float:
+        """Photons of the next iteration over those of this one."""
+        return self.photon_counts.of(iteration.number + 1) / iteration.photon_count
+
+    def tally(self, context: StageContext, photons: Photons, photons_taken: list[np.ndarray]) -> None:
+        """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band."""
+        with context.timers.stage("learning"):
+            context.lights.tally(photons.photons.buffer, photons.segments)
+            self.diffused_photons_found = None
+            if photons_taken:
+                counts = np.concatenate(photons_taken)[at_pixels(self.leaves_importon, *self._size)]
+                self.diffused_photons_found = photons_found_by_ray(counts) if self._by_ray else photons_found(counts)
+
+    def learn(self, context: StageContext, number: int) -> None:
+        """Put to use what the iterations up to this number have tallied."""
+        with context.timers.stage("learning"):
+            gain = context.lights.learn(self.photon_counts.of(number + 1))
+            shrunk = self.wide_radius * shrinkage(number, self._alpha)
+            # Few photons make bold promises: the radius is at most halved before they are kept.
+            fitted = fitted_wide_radius(shrunk, self._expected, self.diffused_photons_found) / math.sqrt(min(gain, 4.0))
+            self.wide_radius = min(fitted, self.widest_radius)
+            self.diffused_photons_found = None

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangles that emit light: how brightly, and how likely each is chosen."""
+
+import math
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...materials.emitted import Emits
+from ...materials.tables import MaterialTables
+from ...scene.scene import Scene
+from ..common.living_paths import LivingPaths
+from ..common.records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY
+from ..surfaces.geometry import Geometry, Placement
+from ..surfaces.resolve import Resolve
+from .light_tree import triangle_leaves
+
+Record("EmittersParameters", photons="uint")
+
+_POINTS = 8
+"""Places of a triangle, on either side in turn, where an emission that varies is asked for."""
+_CHUNK = 1 << 16
+_LEAST_SHARE = 0.05
+"""Of a material's mean radiance: what triangles count for at least, since points may miss what shines."""
+_STEPS = 1 << 24
+"""Shares are multiples of 2^-24: random numbers have no more steps."""
+
+
+class Emitters:
+    """The emissive triangles of a scene, and the emission of those whose material has it vary over the surface.
+
+    ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves``
+    are theirs of the light tree.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._mark = library.compute("emission/mark.comp")
+        self._find = library.compute("emission/emitters.comp")
+        self._tint_photons = library.compute("emission/tint_photons.comp")
+        self._tint_contributions = library.compute("emission/tint_contributions.comp")
+        self.triangles = GrowingBuffer(context, "emissive triangles")
+        self._rays = GrowingBuffer(context, "rays to emitters")
+        self._hits = GrowingBuffer(context, "places on emitters")
+        self._closures = GrowingBuffer(context, "closures of emitters")
+        self._asked = LivingPaths(context, library, "rays to emitters to resolve", "lower the resolution")
+        self.count = 0
+        self.power = np.zeros(3)
+        self.leaves = LIGHT_NODE.zeros(0)
+        self._varying = False
+        self._world_triangles: moderngl.Buffer | None = None
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        buffers = self.triangles, self._rays, self._hits, self._closures
+        return {buffer.name: buffer.size for buffer in buffers} | self._asked.memory_bytes
+
+    def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
+        """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
+        dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
+        found = [
+            _may_emit(scene, placement, materials)
+            for placement in geometry.placements
+            if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
+        ]
+        records, corners, kinds, varying = (
+            np.concatenate([parts[k] for parts in found]) if found else np.zeros((0,), kind)
+            for k, kind in enumerate((EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool))
+        )
+        self._ask(records, corners, kinds, varying, resolve)
+        bright = records["radiance"].max(axis=1, initial=0.0) > 0
+        records, varying = records[bright], varying[bright]
+        self.leaves = triangle_leaves(records, corners[bright].reshape(-1, 3, 3))
+        self._varying = bool(varying.any())
+        self._world_triangles = geometry.triangles.buffer
+        self.count = len(records)
+        weights = records["radiance"].mean(axis=1, dtype=np.float64) * records["area"]
+        self.power = 2 * math.pi * (records["radiance"].T.astype(np.float64) @ records["area"])
+        if self.count:
+            steps = chances(weights)
+            records["share"] = steps / _STEPS
+            records["cumulated"] = np.cumsum(steps) / _STEPS
+            records["uneven"] = varying
+        self.triangles.upload(records if self.count else EMISSIVE_TRIANGLE.zeros(1))
+        self._mark.run(
+            self.count,
+            {"EmissiveTriangles": self.triangles.buffer, "Triangles": geometry.triangles.buffer},
+            {"count": self.count},
+        )
+
+    def _ask(
+        self, records: np.ndarray, corners: np.ndarray, kinds: np.ndarray, varying: np.ndarray, resolve: Resolve
+    ) -> None:
+        """Fill in the radiance: one place tells it for each material that emits evenly, several for each triangle of
+        the others."""
+        radiance = np.zeros((len(records), 3))
+        even = np.nonzero(~varying)[0]
+        _, first, inverse = np.unique(kinds[even], return_index=True, return_inverse=True)
+        if len(even):
+            radiance[even] = self._emission(records["triangle"][even[first]], corners[even[first]], 1, resolve)[inverse]
+        uneven = np.nonzero(varying)[0]
+        if len(uneven):
+            radiance[uneven] = self._emission(records["triangle"][uneven], corners[uneven], _POINTS, resolve)
+            for kind in np.unique(kinds[uneven]):
+                of_kind = uneven[kinds[uneven] == kind]
+                mean = np.average(radiance[of_kind], axis=0, weights=records["area"][of_kind])
+                radiance[of_kind] = np.maximum(radiance[of_kind], _LEAST_SHARE * mean)
+        records["radiance"] = radiance
+
+    def _emission(self, triangles: np.ndarray, corners: np.ndarray, points: int, resolve: Resolve) -> np.ndarray:
+        """(n, 3) mean radiance at ``points`` places of each triangle, seen straight on."""
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        total = np.zeros((len(triangles), 3))
+        for point in range(points):
+            u = np.array([(point + 0.5) / points, (0.5 + point * 0.6180339887) % 1.0])
+            root = math.sqrt(u[0])
+            b1, b2 = (1 / 3, 1 / 3) if points == 1 else (root * (1 - u[1]), root * u[1])
+            for start in range(0, len(triangles), _CHUNK):
+                part = slice(start, start + _CHUNK)
+                total[part] += self._emission_at(triangles[part], normals[part] * (-1) ** point, b1, b2, resolve)
+        return total / points
+
+    def _emission_at(
+        self, triangles: np.ndarray, viewers: np.ndarray, b1: float, b2: float, resolve: Resolve
+    ) -> np.ndarray:
+        count = len(triangles)
+        rays, hits = RAY.zeros(count), HIT.zeros(count)
+        rays["direction"], rays["maximum_distance"], rays["source_triangle"] = -viewers, 1.0, NO_TRIANGLE
+        hits["triangle"], hits["b1"], hits["b2"], hits["distance"] = triangles, b1, b2, 1.0
+        self._rays.upload(rays)
+        self._hits.upload(hits)
+        self._closures.require(CLOSURE.size * count)
+        self._asked.fill(count)
+        resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, 0, 0)
+        emission = self._closures.read(CLOSURE.dtype, count)["emission"]
+        return np.where(np.isfinite(emission), emission, 0.0)
+
+    def tint_photons(
+        self,
+        resolve: Resolve,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        closures: moderngl.Buffer,
+        photon_paths: moderngl.Buffer,
+        living: LivingPaths,
+        iteration: int,
+    ) -> None:
+        """Give photons that leave emitters with varying emission the radiance of their place and direction.
+
+        ``hits`` and ``closures`` are overwritten.
+        """
+        if not self._varying:
+            return
+        self._rays.require(RAY.size * living.most)
+        self._locate(rays, rays, hits, living, photons=True)
+        resolve.run(self._rays.buffer, hits, closures, self._asked, iteration, 0)
+        self._asked.run(self._tint_photons, {"Closures": closures, "PhotonPaths": photon_paths})
+
+    def tint_contributions(
+        self,
+        resolve: Resolve,
+        shadow_rays: moderngl.Buffer,
+        light_triangles: moderngl.Buffer,
+        contributions: moderngl.Buffer,
+        living: LivingPaths,
+        iteration: int,
+    ) -> None:
+        """Give next-event rays to emitters with varying emission the radiance of the place that they sampled."""
+        if not self._varying:
+            return
+        for buffer, record in ((self._rays, RAY), (self._hits, HIT), (self._closures, CLOSURE)):
+            buffer.require(record.size * living.most)
+        self._locate(shadow_rays, light_triangles, self._hits.buffer, living, photons=False)
+        resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, iteration, 0)
+        self._asked.run(self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions})
+
+    def _locate(
+        self,
+        rays: moderngl.Buffer,
+        light_triangles: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        living: LivingPaths,
+        photons: bool,
+    ) -> None:
+        """Rays that look at the emitters' places, and the places as hits; those that are to be asked are listed."""
+        living.run(
+            self._find,
+            {
+                "Rays": rays,
+                "LightTriangles": light_triangles,
+                "Triangles": self._world_triangles,
+                "EmitterRays": self._rays.buffer,
+                "EmitterHits": hits,
+            },
+            {"photons": photons},
+        )
+        self._asked.take(living, self._rays.buffer)
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in (self.triangles, self._rays, self._hits, self._closures, self._asked):
+            buffer.release()
+
+
+def chances(weights: np.ndarray) -> np.ndarray:
+    """(n,) int64 steps of 2^24 in proportion to positive weights, each at least one."""
+    steps = np.maximum(1, np.floor(weights / weights.sum() * max(_STEPS - len(weights), 1))).astype(np.int64)
+    steps[np.argmax(steps)] += _STEPS - steps.sum()
+    return steps
+
+
+def _may_emit(scene: Scene, placement: Placement, materials: MaterialTables) -> tuple[np.ndarray, ...]:
+    """Of one instance: records without radiance, corners (n, 3, 3) in metres, material and whether it varies."""
+    instance = placement.instance
+    mesh = scene.meshes[instance.mesh]
+    slots = np.array([m if 0 <= m < len(scene.materials) else -1 for m in instance.materials] or [-1])
+    emits = np.array([materials.emits[m] is not Emits.NOTHING for m in slots])
+    which = np.zeros(0, np.int64)
+    if emits.any():
+        which = np.nonzero(emits[np.minimum(mesh.triangle_slots, len(slots) - 1)])[0]
+    corners = mesh.positions[mesh.corner_vertices[mesh.triangle_corners[which]]].astype(np.float64)
+    corners = corners @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    good = np.isfinite(area) & (area > 0)
+    which, corners = which[good], corners[good]
+    records = EMISSIVE_TRIANGLE.zeros(len(which))
+    records["triangle"], records["area"] = placement.first_triangle + which, area[good]
+    kinds = slots[np.minimum(mesh.triangle_slots[which], len(slots) - 1)]
+    varying = np.array([materials.emits[m] is Emits.VARYING for m in kinds], bool)
+    return records, corners, kinds, varying

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The world as a map of all directions and as a distribution to sample directions from."""
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...materials.emitted import Emits, emits, reachable
+from ...materials.tables import MaterialTables
+from ...scene.images import Image
+from ...scene.lights import World
+from ...scene.node_graphs import Link, NodeGraph, ShaderNode
+
+_WIDEST = 512
+_NARROWEST_MAP, _WIDEST_MAP = 1024, 4096
+
+
+def _reduced(brightness: np.ndarray) -> np.ndarray:
+    """Brightness averaged over whole blocks until it is at most _WIDEST wide."""
+    step = -(-brightness.shape[1] // _WIDEST)
+    height, width = (n // step * step for n in brightness.shape)
+    if step == 1 or height == 0:
+        return brightness
+    return brightness[:height, :width].reshape(height // step, step, width // step, step).mean(axis=(1, 3))
+
+
+def distribution_of(brightness: np.ndarray) -> np.ndarray:
+    """Cumulated shares of rows, then of the cells of each row, flat float32.
+
+    ``brightness`` is (height, width), row 0 at the bottom; rows count by the sine of their polar angle.
+    """
+    height, _ = brightness.shape
+    sine = np.sin(np.pi * (np.arange(height) + 0.5) / height)[:, None]
+    weight = (brightness + 0.01 * brightness.mean()) * sine
+    rows = weight.sum(axis=1)
+    cells = np.cumsum(weight, axis=1) / rows[:, None]
+    cells[:, -1] = 1.0
+    cumulated = np.cumsum(rows) / rows.sum()
+    cumulated[-1] = 1.0
+    return np.concatenate([cumulated, cells.ravel()]).astype(np.float32)
+
+
+class Environment:
+    """The world for shaders/emission/environment.glsl; width 0 stands for a constant world.
+
+    ``radiance`` (3,) is that of a constant world, or 1 where textures give it; ``mean_radiance`` (3,) W/(m^2 sr).
+    """
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self.distribution = GrowingBuffer(context, "environment distribution")
+        self._textures: list[moderngl.Texture] = []
+        self.width = self.height = 0
+        self.radiance = self.mean_radiance = np.zeros(3)
+
+    @property
+    def memory_bytes(self) -> int:
+        """Bytes on the device."""
+        return self.distribution.size + sum(16 * texture.width * texture.height for texture in self._textures)
+
+    def build(self, world: World, images: list[Image], materials: MaterialTables) -> None:
+        """Evaluate the world's nodes: once where they give one colour, else for a map of all directions, and for
+        another of what the camera sees where Light Path nodes tell it apart."""
+        self._release_textures()
+        self.width = self.height = 0
+        self.radiance = self.mean_radiance = np.maximum(world.radiance, 0.0).astype(np.float64)
+        if world.graph is None or emits(world.graph) is not Emits.VARYING:
+            if world.graph is not None:
+                self.radiance = self.mean_radiance = self.radiance * np.maximum(
+                    materials.evaluate(world.graph)[0, 0], 0.0
+                )
+            self._textures = [self._texture(np.ones((1, 1, 3), np.float32))]
+            return
+        kinds = {world.graph.nodes[index].kind for index in reachable(world.graph, world.graph.surface)}
+        width = _map_width(world, images)
+        maps = [materials.evaluate(world.graph, width, width // 2)]
+        if "light_path" in kinds:
+            maps.append(materials.evaluate(world.graph, width, width // 2, from_camera=True))
+        maps = [np.maximum(pixels * self.radiance.astype(np.float32), 0.0) for pixels in maps]
+        self.radiance = np.ones(3)
+        self._textures = [self._texture(pixels) for pixels in maps]
+        sine = np.sin(np.pi * (np.arange(width // 2) + 0.5) / (width // 2))[:, None, None]
+        self.mean_radiance = (maps[0] * sine).mean(axis=(0, 1), dtype=np.float64) / sine.mean()
+        brightness = _reduced(maps[0].mean(axis=2, dtype=np.float64))
+        self.height, self.width = brightness.shape
+        self.distribution.upload(distribution_of(brightness if brightness.max() > 0 else np.ones_like(brightness)))
+
+    def _texture(self, pixels: np.ndarray) -> moderngl.Texture:
+        rgba = np.ones((*pixels.shape[:2], 4), np.float32)
+        rgba[..., :3] = pixels
+        texture = self._context.moderngl.texture(pixels.shape[1::-1], 4, rgba.tobytes(), dtype="f4")
+        texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        texture.repeat_x, texture.repeat_y = True, False
+        return texture
+
+    def use(self) -> None:
+        """Bind the maps to texture units 0 and 1, where environment.glsl reads them."""
+        self._textures[0].use(0)
+        self._textures[-1].use(1)
+
+    def _release_textures(self) -> None:
+        for texture in self._textures:
+            texture.release()
+        self._textures = []
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self.distribution.release()
+        self._release_textures()
+
+
+def _map_width(world: World, images: list[Image]) -> int:
+    """Pixels across the map: those of an image that is shown as it is, else enough to show its pixels anywhere."""
+    used = [node for node in world.graph.nodes if 0 <= node.image < len(images)]
+    widest = max((images[node.image].pixels.shape[1] for node in used), default=0)
+    patterns = any(node.kind.startswith("tex_") and node.image < 0 for node in world.graph.nodes)
+    if used and not patterns and all(_is_plain(world.graph, node) for node in used):
+        return int(np.clip(widest + widest % 2, 2, _WIDEST_MAP))
+    return int(np.clip(2 * widest, _NARROWEST_MAP, _WIDEST_MAP))
+
+
+def _is_plain(graph: NodeGraph, node: ShaderNode) -> bool:
+    """Whether an image lies in the map pixel on pixel."""
+    where = node.inputs.get("vector")
+    linear = node.options.get("interpolation", "Linear") == "Linear"
+    equirectangular = node.kind == "tex_environment" and node.options.get("projection") in {None, "EQUIRECTANGULAR"}
+    direction = isinstance(where, Link) and (graph.nodes[where.node].kind, where.output) in _DIRECTIONS
+    return linear and equirectangular and direction
+
+
+_DIRECTIONS = {("generated_coord", "generated"), ("new_geometry", "position"), ("tex_coord", "object")}
+"""Nodes and outputs that are the direction in a world."""

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photons sent where earlier ones came to importons.
+
+After Hachisuka and Jensen, Robust Adaptive Photon Tracing using Photon Path Visibility (2011), with tallies in place
+of their Markov chains: the unit cube of the random numbers that place and direct a light's photons is cut into
+cells, and a cell is chosen by how often its photons were of use. Every cell keeps a share, and the flux is divided
+by the density, so energy stays as it is.
+"""
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from ..common.records import LightShape
+
+StorageBlock("PhotonCells", "uint photon_cells[];")
+Constants("GuideCells", NO_CELL=0xFFFFFFFF)
+Record("LearnParameters", count="uint", segments="uint")
+
+_DEFENSIVE = 0.25
+"""Share of the photons that leave as if there were no guide: none has more than four times its plain flux."""
+
+_PRIOR_PHOTONS = 4.0
+"""Photons that a cell needs until it is believed more than the cells around it."""
+
+_FINEST = {
+    LightShape.POINT: (1, 1, 128, 128),
+    LightShape.SPOT: (1, 1, 128, 128),
+    LightShape.SUN: (128, 128, 1, 1),
+    LightShape.RECTANGLE: (8, 8, 16, 16),
+    LightShape.ELLIPSE: (8, 8, 16, 16),
+    LightShape.MESH: (16, 1, 32, 32),
+    LightShape.WORLD: (16, 16, 16, 16),
+}
+"""Cells along the place on the light and the direction, by kind; for MESH the first is the triangle."""
+
+
+def cells_of(kind: int, photons: int) -> tuple[int, int, int, int]:
+    """Cells along each number, powers of two: at most one for each photon."""
+    cells = list(_FINEST[kind])
+    while np.prod(cells) > max(photons, 1):
+        most = max(cells)
+        cells[3 - cells[::-1].index(most)] //= 2
+    return tuple(cells)
+
+
+def usefulness(left: np.ndarray, useful: np.ndarray) -> np.ndarray:
+    """Share of each cell's photons that are of use, from tallies of any shape of powers of two.
+
+    A cell with few photons is taken for the coarser cell that it lies in, that for the next coarser, and so on.
+    """
+    if left.size == 1:
+        return (useful + 0.5) / (left + 1.0)
+    halves = tuple(n for size in left.shape for n in ((size // 2, 2) if size > 1 else (1, 1)))
+    pairs = tuple(range(1, 2 * left.ndim, 2))
+    coarse = usefulness(left.reshape(halves).sum(pairs), useful.reshape(halves).sum(pairs))
+    for axis, size in enumerate(left.shape):
+        if size > 1:
+            coarse = np.repeat(coarse, 2, axis)
+    return (useful + _PRIOR_PHOTONS * coarse) / (left + _PRIOR_PHOTONS)
+
+
+def probabilities(estimate: np.ndarray) -> np.ndarray:
+    """What to choose cells by, (n,) summing to 1: the square root of the usefulness gives the sum of photons the least
+    variance, and a share is defensive."""
+    weight = np.sqrt(estimate)
+    return (1.0 - _DEFENSIVE) * weight / weight.sum() + _DEFENSIVE / weight.size
+
+
+def starts(probability: np.ndarray) -> np.ndarray:
+    """(n,) uint32 where each cell's part of [0, 2^32) begins."""
+    cumulated = np.concatenate([[0.0], np.cumsum(probability)[:-1]])
+    return np.minimum(np.floor(cumulated * 2.0**32), 2.0**32 - 1).astype(np.uint32)
+
+
+class Guide:
+    """Cells of all lights: what is known of them, and what an iteration adds."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._program = library.compute("emission/learn.comp")
+        self._starts = GrowingBuffer(context, "emission guide")
+        self._tallies = GrowingBuffer(context, "emission tallies")
+        self._photon_cells = GrowingBuffer(context, "photon cells", "lower the photons per iteration")
+        self._cells: list[tuple[int, int, int, int]] = []
+        self._probabilities: list[np.ndarray] = []
+        self.learned: np.ndarray | None = None
+        """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
+
+    @property
+    def buffers(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of emission/emit.comp."""
+        return {"Guide": self._starts.buffer, "PhotonCells": self._photon_cells.buffer}
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {buffer.name: buffer.size for buffer in (self._starts, self._tallies, self._photon_cells)}
+
+    @property
+    def _cell_count(self) -> int:
+        return sum(int(np.prod(cells)) for cells in self._cells)
+
+    def build(self, lights: np.ndarray, photons: int) -> None:
+        """Forget all; set ``cells`` and ``first_cell`` of LIGHT records that have their kind and photon count."""
+        self._cells = [cells_of(int(light["kind"]), int(light["photon_count"])) for light in lights]
+        counts = np.prod(self._cells, axis=1)
+        lights["cells"] = self._cells
+        lights["first_cell"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        self._choose_by([np.full(count, 1.0 / count) for count in counts])
+        self.learned = None
+        self._tallies.upload(np.zeros((counts.sum(), 2), np.uint32))
+        self._photon_cells.require(4 * photons)
+
+    def tally(self, photons: moderngl.Buffer, count: int, segments: int) -> None:
+        """Count an iteration's photons that were of use, once they have been splatted."""
+        self._program.run(
+            count,
+            {"Photons": photons, "PhotonCells": self._photon_cells.buffer, "Tallies": self._tallies.buffer},
+            {"count": count, "segments": segments},
+        )
+
+    def _choose_by(self, found: list[np.ndarray]) -> None:
+        self._probabilities = found
+        self._starts.upload(np.concatenate([starts(probability) for probability in found]))
+
+    def read_tallies(self) -> np.ndarray:
+        """(cells, 2) uint32: the photons that left through each cell so far, and those that were of use."""
+        return self._tallies.read(np.uint32, 2 * self._cell_count).reshape(-1, 2).copy()
+
+    def learn(self) -> tuple[np.ndarray, np.ndarray]:
+        """Choose cells by the tallies from now on.
+
+        Returns each light's mean root of the usefulness, (n,), and the shares of its photons that should have been
+        of use before and will be from now on, (n, 2).
+        """
+        before = self._probabilities
+        weights, estimates = self._choose_by_tallies(self.read_tallies())
+        shares = [(b @ estimate, now @ estimate) for b, now, estimate in zip(before, self._probabilities, estimates)]
+        return weights, np.array(shares)
+
+    def restore(self, tallies: np.ndarray, learned: np.ndarray | None) -> np.ndarray | None:
+        """Know what read_tallies and ``learned`` said; returns what learn said of the lights, or None before it.
+
+        Raises ValueError when these are not the cells that were tallied.
+        """
+        shape = (self._cell_count, 2)
+        if tallies.shape != shape or (learned is not None and learned.shape != shape):
+            raise ValueError(f"the lights have {shape[0]} cells, not {len(tallies)}")
+        self._tallies.upload(tallies)
+        return None if learned is None else self._choose_by_tallies(learned)[0]
+
+    def _choose_by_tallies(self, tallies: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Each light's mean root of the usefulness, and the usefulness of its cells."""
+        self.learned = tallies
+        estimates, first = [], 0
+        for cells in self._cells:
+            count = int(np.prod(cells))
+            part = tallies[first : first + count].astype(np.float64).reshape(*cells[::-1], 2)
+            estimates.append(usefulness(part[..., 0], part[..., 1]).ravel())
+            first += count
+        self._choose_by([probabilities(estimate) for estimate in estimates])
+        return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in (self._starts, self._tallies, self._photon_cells):
+            buffer.release()

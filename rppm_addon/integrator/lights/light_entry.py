@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A light object as a row of the lights' table, and its power."""
+
+import math
+
+import numpy as np
+
+from ...scene.lights import Light, LightKind
+from ..common.records import LIGHT, LIGHT_SOFT, LightShape
+
+
+def spot_share(cosine_cone: float, blend: float) -> float:
+    """Power of a spot over its axial intensity: integral of its falloff over solid angle, sr."""
+    cosine = np.linspace(cosine_cone, 1.0, 4097)
+    x = np.clip((cosine - cosine_cone) / max((1 - cosine_cone) * blend, 1e-9), 0, 1)
+    return float(2 * math.pi * np.mean(x * x * (3 - 2 * x)) * (1 - cosine_cone))
+
+
+def spread_constants(spread: float) -> tuple[float, float]:
+    """Tangent of half the spread and the factor of Cycles' falloff; (0, 1) for a diffuse light."""
+    half = 0.5 * spread
+    if half >= 0.5 * math.pi - 1e-4:
+        return 0.0, 1.0
+    half = max(half, 1e-3)
+    return math.tan(half), 1.0 / (math.tan(half) - half)
+
+
+def spread_share(tangent: float, scale: float) -> float:
+    """Flux of a spread light over radiance times area, sr."""
+    if tangent <= 0.0:
+        return math.pi
+    theta = np.linspace(0.0, math.atan(tangent), 4097)
+    values = np.maximum(0.0, (tangent - np.tan(theta)) * scale) * np.cos(theta) * np.sin(theta)
+    return float(2 * math.pi * np.mean(values) * math.atan(tangent))
+
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    size = np.linalg.norm(vector)
+    return vector / size if size > 0 else np.array([0.0, 0.0, 1.0])
+
+
+def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """A light's record and its power, (3,) W, within the scene."""
+    entry = LIGHT.zeros(1)[0]
+    axes = np.asarray(light.matrix, np.float64)[:3, :3]
+    entry["position"] = light.matrix[:3, 3]
+    normal = -_unit(axes[:, 2])
+    entry["normal"] = normal
+    entry["strength"] = strength = np.maximum(light.strength, 0.0)
+    entry["radius"] = max(light.radius, 0.0)
+    soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
+    entry["flags"] = int(light.visibility) | (LIGHT_SOFT if soft else 0)
+    if light.kind is LightKind.POINT:
+        entry["kind"] = LightShape.POINT
+        return entry, 4 * math.pi * strength
+    if light.kind is LightKind.SPOT:
+        cosine = math.cos(0.5 * min(light.spot_angle, math.pi))
+        lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-9)
+        # A scaled spot has an elliptic cone: axes divided by their scale relative to the beam's.
+        entry["kind"] = LightShape.SPOT
+        entry["axis_u"] = axes[:, 0] / lengths[0] * (lengths[2] / lengths[0])
+        entry["axis_v"] = axes[:, 1] / lengths[1] * (lengths[2] / lengths[1])
+        entry["cosine_cone"], entry["blend"] = cosine, np.clip(light.spot_blend, 0.0, 1.0)
+        # Photons go out in the round cone that holds the elliptic one.
+        widest = math.atan(math.tan(min(math.acos(cosine), 1.57)) * max(1.0, max(lengths[:2]) / lengths[2]))
+        entry["spread_scale"] = 1.0 - math.cos(widest) if cosine > 1e-3 else 1.0
+        return entry, strength * spot_share(cosine, light.spot_blend)
+    if light.kind is LightKind.SUN:
+        entry["kind"] = LightShape.SUN
+        cosine = math.cos(0.5 * min(max(light.sun_angle, 0.0), math.pi))
+        entry["axis_u"], entry["axis_v"] = _unit(axes[:, 0]), _unit(axes[:, 1])
+        # The irradiance counts cosines over the disk; GLSL takes radiance times its solid angle.
+        entry["cosine_cone"], entry["strength"] = cosine, strength * 2.0 / (1.0 + cosine)
+        return entry, entry["strength"] * math.pi * scene_radius**2
+    width, height = light.size if light.shape in ("RECTANGLE", "ELLIPSE") else (light.size[0], light.size[0])
+    entry["axis_u"], entry["axis_v"] = 0.5 * width * axes[:, 0], 0.5 * height * axes[:, 1]
+    round_shape = light.shape in ("DISK", "ELLIPSE")
+    entry["kind"] = LightShape.ELLIPSE if round_shape else LightShape.RECTANGLE
+    spanned = np.linalg.norm(np.cross(entry["axis_u"], entry["axis_v"]))
+    area = (math.pi if round_shape else 4.0) * spanned
+    if spanned <= 0:
+        return entry, np.zeros(3)
+    normal = _unit(np.cross(entry["axis_u"], entry["axis_v"]).astype(np.float64))
+    entry["normal"] = -normal if np.dot(normal, axes[:, 2]) > 0 else normal
+    entry["area"] = area
+    tangent, scale = spread_constants(light.spread)
+    entry["spread_tangent"], entry["spread_scale"] = tangent, scale
+    entry["cosine_cone"] = math.cos(math.atan(tangent))
+    return entry, strength * area * spread_share(tangent, scale)

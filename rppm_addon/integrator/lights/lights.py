@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lights of a scene on the device: their table, what chooses one of them, and how many photons each gets."""
+
+import logging
+import math
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...materials.tables import MaterialTables
+from ...scene.errors import SceneError
+from ...scene.meshes import RayVisibility
+from ...scene.scene import Scene
+from ..common.iteration import Iteration
+from ..common.records import LIGHT, LIGHT_SOFT, LightShape
+from ..surfaces.geometry import Geometry
+from ..surfaces.resolve import Resolve
+from .caustic_casters import caustic_targets
+from .emitters import Emitters
+from .environment import Environment
+from .guide import Guide
+from .lamp_maps import LampMaps
+from .light_entry import light_entry
+from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
+from .sources import SURFACES, SURROUNDINGS, source_name
+
+log = logging.getLogger(__name__)
+
+_LEARNED = ("photon_count", "first_photon", "cells", "first_cell")
+"""Of a light's record, what follows from what photons were good for."""
+
+LIGHT_PARAMETERS = {
+    "scene_centre": "vec3",
+    "scene_radius": "float",
+    "world_radiance": "vec3",
+    "light_count": "uint",
+    "environment_width": "uint",
+    "environment_height": "uint",
+    "emissive_triangle_count": "uint",
+    "mesh_selection": "float",
+    "world_selection": "float",
+    "environment_irradiance": "float",
+    "mesh_light": "uint",
+    "world_light": "uint",
+    **LIGHT_TREE_PARAMETERS,
+    "seed": "uint",
+    "iteration": "uint",
+}
+"""Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_selection`` and
+``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
+weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
+give, W/m^2."""
+
+
+def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
+    """Split photons by weights, (n,) int64 summing to ``photons``; a positive weight gets at least one
+    while there are enough (largest remainders)."""
+    if len(weights) == 0 or weights.sum() <= 0:
+        return np.zeros(len(weights), np.int64)
+    exact = photons * (weights / weights.sum())
+    counts = np.floor(exact).astype(np.int64)
+    by_remainder = np.argsort(counts - exact, kind="stable")
+    counts[by_remainder[: photons - counts.sum()]] += 1
+    for index in np.nonzero((counts == 0) & (weights > 0))[0]:
+        richest = np.argmax(counts)
+        if counts[richest] > 1:
+            counts[richest] -= 1
+            counts[index] = 1
+    return counts
+
+
+class Lights:
+    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._lights = GrowingBuffer(context, "lights")
+        self.emitters = Emitters(context, library)
+        self.targets = GrowingBuffer(context, "photon targets")
+        """(n, 4) float32 spheres that photons are aimed at (caustic_casters.py)."""
+        self.target_count = 0
+        self.environment = Environment(context)
+        self.lamp_maps = LampMaps(context)
+        self.guide = Guide(context, library)
+        self._light_tree = LightTree(context)
+        self.table = LIGHT.zeros(0)
+        """LIGHT records, all lights'."""
+        self._weights = np.zeros(0)
+        self._names: list[str] = []
+        self._powers: list[float] = []
+        self._parameters: dict[str, object] = {}
+        self._triangles: moderngl.Buffer | None = None
+        self.has_falloff = False
+        self._power, self._photons, self._most_photons = 0.0, 1, 1
+        self.scene_radius = 0.0
+        """Metres, a little more than the geometry's."""
+        self.times_built = 0
+
+    @property
+    def buffers(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of emission/lights.glsl."""
+        return {
+            "Lights": self._lights.buffer,
+            "EmissiveTriangles": self.emitters.triangles.buffer,
+            "Triangles": self._triangles,
+            "EnvironmentDistribution": self.environment.distribution.buffer,
+        }
+
+    @property
+    def tree_buffers(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of emission/light_tree.glsl."""
+        return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {
+            "lights": self._lights.size,
+            **self.emitters.memory_bytes,
+            "photon targets": self.targets.size,
+            "light tree": self._light_tree.nodes.size,
+            "environment": self.environment.memory_bytes,
+            "lamp maps": self.lamp_maps.memory_bytes,
+            **self.guide.memory_bytes,
+        }
+
+    @property
+    def source_watts(self) -> dict[str, float]:
+        """Power within the scene, the channels' mean, by source: lights (source_name), SURFACES and SURROUNDINGS."""
+        return self._by_source(self._powers)
+
+    @property
+    def source_photons(self) -> dict[str, int]:
+        """Photons of the current iteration by source."""
+        return self._by_source(self.table["photon_count"].tolist())
+
+    def _by_source(self, values: list) -> dict:
+        sums: dict[str, float] = {}
+        for name, value in zip(self._names, values):
+            sums[name] = sums.get(name, 0) + value
+        return sums
+
+    def use_maps(self) -> None:
+        """Bind the textures of programs that include emission/lights.glsl."""
+        self.environment.use()
+        self.lamp_maps.use()
+
+    def parameters(self, iteration: Iteration) -> dict[str, object]:
+        """Values of LIGHT_PARAMETERS."""
+        return {**self._parameters, "seed": iteration.seed, "iteration": iteration.number}
+
+    def build(
+        self,
+        scene: Scene,
+        geometry: Geometry,
+        materials: MaterialTables,
+        resolve: Resolve,
+        photons: int,
+        keep_world: bool = False,
+        keep_lamps: bool = False,
+        keep_learned: bool = False,
+    ) -> None:
+        """Lay out all lights and share the photons of an iteration among them.
+
+        photons: of that iteration, no more than the scene's. keep_world, keep_lamps: the world, or all light objects,
+        are those of the last call. keep_learned: the lights are those of the last call at another time, and what was
+        learned of them holds.
+        Raises SceneError when all lights have a photon share of 0.
+        """
+        self.times_built += 1
+        self.scene_radius = radius = max(geometry.radius * 1.001, 1e-6)
+        names: list[str] = []
+        entries: list[np.ndarray] = []
+        powers: list[float] = []
+        weights: list[float] = []
+
+        def add(name: str, entry: np.ndarray, power: np.ndarray, share: float = 1.0) -> None:
+            if np.isfinite(power).all() and np.max(power) > 0:
+                names.append(name)
+                entries.append(entry)
+                powers.append(float(np.mean(power)))
+                weights.append(float(np.mean(power)) * max(share, 0.0))
+
+        if not keep_lamps:
+            self.lamp_maps.build(scene.lights, scene.images, materials)
+        for index, light in enumerate(scene.lights):
+            entry, power = light_entry(light, radius)
+            nodes = self.lamp_maps.nodes.get(index)
+            if nodes is not None:
+                entry["strength"] *= nodes.scale
+                entry["falloff"], entry["smoothing"] = nodes.falloff, nodes.smoothing
+                if nodes.shape is not None:
+                    entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
+                power = power * nodes.mean / (1.0 + nodes.smoothing)
+            add(source_name(light.name), entry, power, light.photon_weight)
+        self.emitters.build(scene, geometry, materials, resolve)
+        entry = LIGHT.zeros(1)[0]
+        entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
+        add(SURFACES, entry, self.emitters.power)
+        if not keep_world:
+            self.environment.build(scene.world, scene.images, materials)
+        entry = LIGHT.zeros(1)[0]
+        entry["kind"], entry["flags"] = LightShape.WORLD, int(RayVisibility.ALL)
+        add(SURROUNDINGS, entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
+        if not entries:
+            # As in an animation whose lights go out: the picture is black, as Cycles' is.
+            log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
+            entries, powers, weights = [entry], [1.0], [1.0]
+        if sum(weights) <= 0:
+            raise SceneError("all lights have photon share 0; raise the share of one")
+
+        kept = self.table if keep_learned and names == self._names else None
+        self._names, self._powers, self._power = names, powers, sum(powers)
+        # By power, half of it evenly: what does not choose by the point, and MIS weights.
+        selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
+        table = np.array(entries, LIGHT.dtype)
+        table["selection_probability"] = selection
+        table["selection_end"] = np.cumsum(selection)
+        table["selection_end"][-1] = 1.0
+        self.has_falloff = bool(
+            (table["flags"] & LIGHT_SOFT).any() or table["falloff"].any() or table["smoothing"].any()
+        )
+        self.table, self._photons, self._most_photons = table, photons, scene.photon_count
+        if kept is not None and np.array_equal(kept["kind"], table["kind"]):
+            for column in _LEARNED:
+                table[column] = kept[column]
+            self._lights.upload(table)
+        else:
+            self._weights = np.array(weights)
+            self.begin(photons)
+        targets = caustic_targets(scene, geometry)
+        self.target_count = len(targets)
+        self.targets.upload(targets if len(targets) else np.zeros(4, np.float32))
+        self._triangles = geometry.triangles.buffer
+        self._light_tree.build(table, self.emitters.leaves)
+        self._parameters = {
+            "scene_centre": geometry.centre,
+            "scene_radius": radius,
+            "world_radiance": self.environment.radiance,
+            "light_count": len(entries),
+            "environment_width": self.environment.width,
+            "environment_height": self.environment.height,
+            "emissive_triangle_count": self.emitters.count,
+            "mesh_selection": float(selection[table["kind"] == LightShape.MESH].sum()),
+            "world_selection": float(selection[table["kind"] == LightShape.WORLD].sum()),
+            "environment_irradiance": 2 * math.pi * float(np.mean(self.environment.mean_radiance)),
+            "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
+            "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
+            **self._light_tree.parameters,
+        }
+
+    def begin(self, photons: int) -> None:
+        """Forget what photons were good for, as before the first iteration, and share so many among the lights."""
+        self._share_photons(self._weights, self._most_photons)
+        self.guide.build(self.table, self._most_photons)
+        if photons != self._most_photons:
+            self._share_photons(self._weights, photons)
+        self._lights.upload(self.table)
+
+    def _share_photons(self, weights: np.ndarray, photons: int) -> None:
+        self._photons = photons
+        counts = share_out(weights, photons)
+        self.table["photon_count"] = counts
+        self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
+
+    def tally(self, photons: moderngl.Buffer, segments: int) -> None:
+        """Count what an iteration's photons were good for, once they have been splatted."""
+        self.guide.tally(photons, self._photons, segments)
+
+    def learn(self, photons: int) -> float:
+        """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.
+
+        Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
+        of use from now on.
+        """
+        weights, useful = self.guide.learn()
+        before = self.table["photon_count"] @ useful[:, 0]
+        self._share_photons(self._weights * weights, photons)
+        self._lights.upload(self.table)
+        return float(self.table["photon_count"] @ useful[:, 1] / before)
+
+    def restore(self, tallies: np.ndarray, learned: np.ndarray | None, photons: int) -> None:
+        """Know what the guide of this scene's lights knew (Guide.restore, which tells what is raised) when the last
+        iteration had so many photons."""
+        weights = self.guide.restore(tallies, learned)
+        if weights is not None:
+            self._share_photons(self._weights * weights, photons)
+            self._lights.upload(self.table)
+
+    @property
+    def photon_flux(self) -> float:
+        """Mean flux of the iteration's photons as they leave their lights, W, the channels' mean."""
+        return self._power / self._photons
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self._lights.release()
+        self.emitters.release()
+        self.targets.release()
+        self._light_tree.nodes.release()
+        self.guide.release()
+        self.lamp_maps.release()
+        self.environment.release()

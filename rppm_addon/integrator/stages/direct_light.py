@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light straight from the sources, by shadow rays from the camera paths' vertices."""
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...scene.settings import DirectLight as DirectLightMode
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.living_paths import LivingPaths
+from ..common.records import RAY
+from ..density_estimation.radii import Radii
+from ..device_scene.stage_context import StageContext
+from ..lights.lights import LIGHT_PARAMETERS
+from .final_gather import FinalGather
+from .importons import Importons
+
+Record(
+    "DirectLightParameters",
+    **LIGHT_PARAMETERS,
+    segment="uint",
+    first_pixel="uint",
+    last_segment="uint",
+    specular_alpha="float",
+    final_gather="uint",
+    gathers_again_below="float",
+)
+
+
+class DirectLight:
+    """One sampled light and one shadow ray for every camera path and segment."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+        self._sample = library.compute("direct_light/sample.comp")
+        self._add = library.compute("direct_light/add.comp")
+        self._rays = GrowingBuffer(context, "shadow rays")
+        self._contributions = GrowingBuffer(context, "direct light")
+        self._visibility = GrowingBuffer(context, "visibility")
+        self._triangles = GrowingBuffer(context, "triangles of sampled lights")
+        self._living_rays = LivingPaths(context, library, "living shadow rays", "lower the resolution")
+        self._living_rays.require(pixels)
+        self._rays.require(RAY.size * pixels)
+        self._contributions.require(16 * pixels)
+        self._visibility.require(4 * pixels)
+        self._triangles.require(4 * pixels)
+
+    @property
+    def _buffers(self) -> tuple[GrowingBuffer, ...]:
+        return self._rays, self._contributions, self._visibility, self._triangles
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {buffer.name: buffer.size for buffer in self._buffers} | self._living_rays.memory_bytes
+
+    def add(
+        self,
+        context: StageContext,
+        importons: Importons,
+        final_gather: FinalGather,
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+        radii: Radii,
+    ) -> None:
+        """Add the direct light of the resolved vertices of the living camera paths to the band's radiance, or to what
+        their gathering rays found.
+
+        To be called before the paths scatter on. Nothing is added where photons bring direct light, or where none of
+        it would come to the film.
+        """
+        if context.settings.direct_light is not DirectLightMode.RAYS or not iteration.enters_film:
+            return
+        with context.timers.stage("direct light"):
+            self._sample_lights(context, importons, band, iteration, segment, radii)
+            living = self._living_rays
+            living.take(importons.living, self._rays.buffer)
+            context.lights.emitters.tint_contributions(
+                context.resolve,
+                self._rays.buffer,
+                self._triangles.buffer,
+                self._contributions.buffer,
+                living,
+                iteration.number,
+            )
+            context.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, living)
+            living.run(
+                self._add,
+                {
+                    "Visibility": self._visibility.buffer,
+                    "Contributions": self._contributions.buffer,
+                    "FoundRadiances": final_gather.radiances.buffer,
+                    "Radiances": importons.radiances.buffer,
+                },
+            )
+
+    def _sample_lights(
+        self,
+        context: StageContext,
+        importons: Importons,
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+        radii: Radii,
+    ) -> None:
+        """A light for each vertex, the shadow ray to it, and what it adds where nothing is in between."""
+        context.lights.use_maps()
+        importons.living.run(
+            self._sample,
+            {
+                **context.lights.tree_buffers,
+                "Closures": importons.closures.buffer,
+                "Rays": importons.rays.buffer,
+                "CameraPaths": importons.paths.buffer,
+                "ShadowRays": self._rays.buffer,
+                "Contributions": self._contributions.buffer,
+                "LightTriangles": self._triangles.buffer,
+                "Materials": context.materials.buffers["Materials"],
+            },
+            {
+                **context.lights.parameters(iteration),
+                "segment": segment,
+                "last_segment": segment == context.settings.camera_path_length - 1,
+                "first_pixel": band.first_pixel,
+                "specular_alpha": context.settings.specular_roughness**2,
+                "final_gather": context.settings.use_final_gather,
+                "gathers_again_below": radii.corner,
+            },
+        )
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in (*self._buffers, self._living_rays):
+            buffer.release()

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""UpdatePPMParams: running means of radiance and of the passes, per pixel."""
+
+from collections.abc import Mapping
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...scene.passes import FILM_PASSES, Accumulation, RenderPass
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..density_estimation.splat_sums import SplatSums
+from ..device_scene.stage_context import StageContext
+from .importons import Importons
+
+Record("PassParameters", first_pixel="uint", iteration="uint", segment="uint", pixels="uint", passes="uint")
+Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
+Constants(
+    "Passes",
+    ACCUMULATION=Accumulation,
+    PASS={entry.identifier.upper(): number for number, entry in enumerate(FILM_PASSES)},
+    PASS_COUNT=len(FILM_PASSES),
+    PASS_CHANNELS=[len(entry.channels) for entry in FILM_PASSES],
+    PASS_ACCUMULATION=[entry.accumulation.value for entry in FILM_PASSES],
+    PASS_NOTHING=[entry.nothing for entry in FILM_PASSES],
+)
+
+
+def passes_memory(pixels: int, passes: tuple[RenderPass, ...]) -> dict[str, int]:
+    """Bytes by buffer of what a film holds beside radiance."""
+    channels = sum(len(entry.channels) for entry in passes if entry in FILM_PASSES)
+    return {"pass values": 4 * channels * pixels, "pass counts": 8 * pixels} if channels else {}
+
+
+class Film:
+    """Means over the iterations: 16 bytes of radiance and alpha a pixel, 4 for each channel of a pass, and 8 of their
+    counts where there are passes."""
+
+    def __init__(
+        self, context: Context, library: ProgramLibrary, width: int, height: int, passes: tuple[RenderPass, ...]
+    ) -> None:
+        """passes: those wanted; the film keeps the ones that iterations find."""
+        self._pass_program = library.compute("film/passes.comp")
+        self._accumulate = library.compute("film/accumulate.comp")
+        self.width, self.height = width, height
+        self.passes = tuple(entry for entry in passes if entry in FILM_PASSES)
+        remedy = "lower the resolution"
+        self._radiance = GrowingBuffer(context, "film", remedy)
+        self._radiance.require(16 * width * height)
+        sizes = passes_memory(width * height, self.passes)
+        self._values, self._counts = (GrowingBuffer(context, name, remedy) for name in ("pass values", "pass counts"))
+        for buffer in (self._values, self._counts):
+            buffer.require(sizes.get(buffer.name, 0))
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        buffers = (self._radiance, self._values, self._counts) if self.passes else (self._radiance,)
+        return {buffer.name: buffer.size for buffer in buffers}
+
+    def add_passes(
+        self,
+        context: StageContext,
+        camera: moderngl.Buffer,
+        importons: Importons,
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
+        """Add the first surfaces that the camera paths of a band have found in a segment; ``camera``: CAMERA_VIEW."""
+        if not self.passes or not iteration.enters_film:
+            return
+        importons.living.run(
+            self._pass_program,
+            {
+                "Camera": camera,
+                "Closures": importons.closures.buffer,
+                "Rays": importons.rays.buffer,
+                "CameraPaths": importons.paths.buffer,
+                "PassValues": self._values.buffer,
+                "PassCounts": self._counts.buffer,
+                "Hits": importons.hits.buffer,
+                "Attributes": context.geometry.attributes.buffer,
+            },
+            {
+                "first_pixel": band.first_pixel,
+                "iteration": iteration.number_in_film,
+                "segment": segment,
+                "pixels": self.width * self.height,
+                "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
+            },
+        )
+
+    def accumulate(
+        self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band, iteration: Iteration
+    ) -> None:
+        """Add the band's estimate of an iteration."""
+        with context.timers.stage("film"):
+            self._accumulate.run(
+                band.pixel_count,
+                {"Radiances": radiances.buffer, "SplatSums": sums.buffer, "Film": self._radiance.buffer},
+                {
+                    "count": band.pixel_count,
+                    "quantum": sums.quantum,
+                    "first_pixel": band.first_pixel,
+                    "iteration": iteration.number_in_film,
+                },
+            )
+
+    def read_radiance(self) -> np.ndarray:
+        """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""
+        return self._radiance.read(np.float32, 4 * self.width * self.height).reshape(self.height, self.width, 4).copy()
+
+    def read_passes(self) -> dict[str, np.ndarray]:
+        """By name, (height, width) or (height, width, channels) float32 of the passes that the film keeps."""
+        found, place, pixels = {}, 0, self.width * self.height
+        for entry in self.passes:
+            channels = len(entry.channels)
+            values = self._values.read(np.float32, channels * pixels, place)
+            shape = (self.height, self.width, channels) if channels > 1 else (self.height, self.width)
+            found[entry.name] = values.reshape(shape).copy()
+            place += 4 * channels * pixels
+        return found
+
+    def read_pass_counts(self) -> np.ndarray:
+        """(height, width, 2) uint32: iterations that the means are of, those whose path did not end before; and those
+        of them that found a surface. (0, 0, 2) where there are no passes."""
+        if not self.passes:
+            return np.zeros((0, 0, 2), np.uint32)
+        counts = self._counts.read(np.uint32, 2 * self.width * self.height)
+        return counts.reshape(self.height, self.width, 2).copy()
+
+    def restore(self, radiance: np.ndarray, passes: Mapping[str, np.ndarray], pass_counts: np.ndarray) -> None:
+        """Take the means that read_radiance, read_passes and read_pass_counts gave; KeyError where a pass misses."""
+        self._radiance.upload(radiance)
+        if self.passes:
+            values = [np.asarray(passes[entry.name], np.float32).reshape(-1) for entry in self.passes]
+            self._values.upload(np.concatenate(values))
+            self._counts.upload(pass_counts)
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in (self._radiance, self._values, self._counts):
+            buffer.release()

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Final gather: what camera paths find along one ray from the first surface that stores photons.
+
+Neighbouring pixels share what their rays found: the mean over a disk of a few Eq. 3 radii, which shrinks by Eq. 2 and
+so keeps the estimate consistent. After Jensen, Realistic Image Synthesis Using Photon Mapping (2001), section 9.2.
+"""
+
+import math
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.records import GATHERING_VERTEX
+from ..density_estimation.radii import Radii
+from ..density_estimation.splat_sums import SplatSums
+from ..device_scene.stage_context import StageContext
+
+Record("FoundParameters", count="uint", quantum="float")
+Record(
+    "ShareParameters",
+    count="uint",
+    width="uint",
+    first_pixel="uint",
+    taps="uint",
+    radius_in_pixels="float",
+    shared_radius="float",
+    seed="uint",
+    iteration="uint",
+)
+
+_MOST_TAPS = 32
+"""Neighbours that a pixel looks at."""
+SHARED_RADIUS = 6.0
+"""Times the Eq. 3 radius: indirect light varies more slowly than caustics."""
+
+
+class FinalGather:
+    """Where the paths of a band set out to gather, and what they found."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+        self._found_program = library.compute("final_gather/found.comp")
+        self._share_program = library.compute("final_gather/share.comp")
+        remedy = "lower the resolution"
+        self.vertices = GrowingBuffer(context, "gathering vertices", remedy)
+        self.radiances = GrowingBuffer(context, "found radiance", remedy)
+        self.vertices.require(GATHERING_VERTEX.size * pixels)
+        self.radiances.require(16 * pixels)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {buffer.name: buffer.size for buffer in (self.vertices, self.radiances)}
+
+    def clear(self) -> None:
+        """Forget what the band before found."""
+        self.radiances.clear()
+
+    def share(
+        self,
+        context: StageContext,
+        sums: SplatSums,
+        radiances: GrowingBuffer,
+        band: Band,
+        iteration: Iteration,
+        radii: Radii,
+    ) -> None:
+        """Add what the gathering rays found to the ``radiances`` of the pixels that they left from and of those around.
+
+        Nothing is done where the settings have no final gather.
+        """
+        if not context.gathers:
+            return
+        found = {"FoundRadiances": self.radiances.buffer, "GatheringVertices": self.vertices.buffer}
+        radius = SHARED_RADIUS * radii.in_pixels
+        with context.timers.stage("final gather"):
+            self._found_program.run(
+                band.pixel_count,
+                {"SplatSums": sums.buffer, **found},
+                {"count": band.pixel_count, "quantum": sums.quantum},
+            )
+            self._share_program.run(
+                band.pixel_count,
+                {**found, "Radiances": radiances.buffer},
+                {
+                    "count": band.pixel_count,
+                    "width": band.columns,
+                    "first_pixel": band.first_pixel,
+                    "taps": min(_MOST_TAPS, math.ceil(math.pi * radius**2)) if radius >= 0.5 else 0,
+                    "radius_in_pixels": radius,
+                    "shared_radius": SHARED_RADIUS,
+                    "seed": iteration.seed,
+                    "iteration": iteration.number,
+                },
+            )
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self.vertices.release()
+        self.radiances.release()

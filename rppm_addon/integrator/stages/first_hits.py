@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DirectPhotonHits: photons find their first hits by one of two routes, which give the same hits bit for bit.
+
+They are looked up in light G-buffers (light_gbuffer.py), as in the paper, or traced through the deep cubemap.
+"""
+
+import logging
+import time
+
+import moderngl
+
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...scene.errors import DeviceError
+from ...scene.settings import FirstPhotonHits
+from ..common.living_paths import LivingPaths
+from ..device_scene.stage_context import StageContext
+from .light_gbuffer import LightGBuffer
+
+log = logging.getLogger(__name__)
+
+_TRACED_BEFORE_TRIAL = 8
+"""Iterations of a scene that are traced: it takes a few until light G-buffers have paid for themselves."""
+_FEWEST_TO_TRY = 1000
+"""Photons to try both routes with."""
+
+
+class FirstHits:
+    """Finds photons' first hits by the route that the settings ask for.
+
+    AUTOMATIC traces for some iterations, lest scenes in motion cost more, then tries both and takes the faster one
+    until lights or geometry change.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._context, self._library = context, library
+        self._left = LivingPaths(context, library, "photons to trace", "lower the photons per iteration")
+        self._gbuffer: LightGBuffer | None = None
+        self._stands = self._has_views = False
+        self._lights_built = 0
+        """Lights.times_built when this began with the scene's lights."""
+        self._traced = 0
+        self._faster: FirstPhotonHits | None = None
+        self.route = FirstPhotonHits.TRACED
+        """The one that was taken last, which nothing but speed depends on."""
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {} if self._gbuffer is None else self._gbuffer.memory_bytes | self._left.memory_bytes
+
+    def forget(self) -> None:
+        """Begin anew, as when lights or geometry have changed."""
+        self._stands, self._traced, self._faster = False, 0, None
+
+    def find(self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths) -> None:
+        """Write the hits (HIT) of all photons' rays (RAY), those of ``living``.
+
+        Raises DeviceError where light G-buffers are asked for that the device has no room for.
+        """
+        if self._lights_built != context.lights.times_built:
+            self._lights_built = context.lights.times_built
+            self.forget()
+        wanted = context.settings.first_photon_hits
+        if wanted is FirstPhotonHits.AUTOMATIC:
+            wanted = self._automatic(context, rays, hits, living)
+        if wanted is FirstPhotonHits.TRACED and self._gbuffer is not None:
+            self._release_gbuffer()
+        rasterized = wanted is FirstPhotonHits.RASTERIZED and self._build(context)
+        self.route = FirstPhotonHits.RASTERIZED if rasterized else FirstPhotonHits.TRACED
+        self._run(self.route, context, rays, hits, living)
+
+    def _automatic(
+        self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths
+    ) -> FirstPhotonHits:
+        if self._faster is None:
+            self._traced += 1
+            if self._traced <= _TRACED_BEFORE_TRIAL or living.most < _FEWEST_TO_TRY:
+                return FirstPhotonHits.TRACED
+            self._faster = self._try_both(context, rays, hits, living)
+        return self._faster
+
+    def _try_both(
+        self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths
+    ) -> FirstPhotonHits:
+        try:
+            if not self._build(context):
+                return FirstPhotonHits.TRACED
+        except DeviceError as error:
+            log.debug("first photon hits are traced: %s", error)
+            return FirstPhotonHits.TRACED
+        seconds = {}
+        # The first time compiles.
+        for route in 2 * (FirstPhotonHits.RASTERIZED, FirstPhotonHits.TRACED):
+            seconds[route] = self._seconds(route, context, rays, hits, living)
+        log.debug("first photon hits: %.1f ms rasterized, %.1f ms traced", *(1e3 * s for s in seconds.values()))
+        return min(seconds, key=seconds.get)
+
+    def _seconds(
+        self,
+        route: FirstPhotonHits,
+        context: StageContext,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        living: LivingPaths,
+    ) -> float:
+        self._context.finish()
+        start = time.perf_counter()
+        self._run(route, context, rays, hits, living)
+        self._context.finish()
+        return time.perf_counter() - start
+
+    def _build(self, context: StageContext) -> bool:
+        """Whether there are light G-buffers, made now if they are not those of the scene."""
+        if not self._stands:
+            if self._gbuffer is None:
+                self._gbuffer = LightGBuffer(self._context, self._library)
+            lights, geometry = context.lights, context.geometry
+            self._has_views = self._gbuffer.build(lights.table, geometry.centre, lights.scene_radius, geometry) > 0
+            self._stands = True
+        return self._has_views
+
+    def _run(
+        self,
+        route: FirstPhotonHits,
+        context: StageContext,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        living: LivingPaths,
+    ) -> None:
+        if route is FirstPhotonHits.TRACED:
+            context.deep_cubemap.trace(rays, hits, living)
+            return
+        lights = context.lights.buffers["Lights"]
+        self._gbuffer.find(lights, context.geometry, rays, hits, living.most, self._left)
+        if not self._left.known_empty:
+            context.deep_cubemap.trace(rays, hits, self._left)
+
+    def _release_gbuffer(self) -> None:
+        self._gbuffer.release()
+        self._gbuffer, self._stands = None, False
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self._left.release()
+        if self._gbuffer is not None:
+            self._release_gbuffer()

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""TraceImportons: camera paths through specular surfaces, and the importons they leave."""
+
+from collections.abc import Mapping
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...scene.settings import DirectLight
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.living_paths import LivingPaths
+from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
+from ..density_estimation.radii import Radii
+from ..density_estimation.stored_photons import CameraRaster, TakingImportons
+from ..device_scene.stage_context import StageContext
+from ..lights.lights import LIGHT_PARAMETERS
+
+Record(
+    "ScatterImportonsParameters",
+    **LIGHT_PARAMETERS,
+    segment="uint",
+    last_segment="uint",
+    first_pixel="uint",
+    film_transparent="uint",
+    next_event="uint",
+    final_gather="uint",
+    specular_alpha="float",
+    radius_scale="float",
+    shrinkage="float",
+    radius_minimum="float",
+    radius_maximum="float",
+    radius_by_ray="float",
+    most_radius_factor="float",
+    gathers_again_below="float",
+    photon_flux="float",
+)
+
+
+class Importons:
+    """Camera paths of one band and the importon that each leaves in the current segment."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+        self._scatter = library.compute("importons/scatter.comp")
+        remedy = "lower the resolution"
+        self.rays = GrowingBuffer(context, "camera rays", remedy)
+        self.hits = GrowingBuffer(context, "camera hits", remedy)
+        self.paths = GrowingBuffer(context, "camera paths", remedy)
+        self.closures = GrowingBuffer(context, "camera closures", remedy)
+        self.importons = GrowingBuffer(context, "importons", remedy)
+        self.radiances = GrowingBuffer(context, "band radiance", remedy)
+        self.living = LivingPaths(context, library, "living camera paths", remedy)
+        self.living.require(pixels, to_keep=True)
+        for buffer, size in (
+            (self.rays, RAY.size),
+            (self.hits, HIT.size),
+            (self.paths, CAMERA_PATH.size),
+            (self.closures, CLOSURE.size),
+            (self.importons, IMPORTON.size),
+            (self.radiances, 16),
+        ):
+            buffer.require(size * pixels)
+        self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (pixels, 1)).tobytes()
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        buffers = (self.rays, self.hits, self.paths, self.closures, self.importons, self.radiances)
+        return {buffer.name: buffer.size for buffer in buffers} | self.living.memory_bytes
+
+    def clear(self) -> None:
+        """Forget the radiance of the band before."""
+        self.radiances.buffer.write(self._opaque)
+
+    def trace(self, context: StageContext) -> bool:
+        """Find what the paths that go on hit; whether any may do so."""
+        with context.timers.stage("camera tracing"):
+            self.living.keep(self.rays.buffer)
+            if self.living.known_empty:
+                return False
+            self.find_hits(context)
+            return True
+
+    def find_hits(self, context: StageContext) -> None:
+        """What the rays of the living paths hit."""
+        context.deep_cubemap.trace(self.rays.buffer, self.hits.buffer, self.living)
+
+    def resolve(self, context: StageContext, iteration: Iteration, segment: int) -> None:
+        """Hits to closures."""
+        with context.timers.stage("camera resolve"):
+            context.resolve.run(
+                self.rays.buffer,
+                self.hits.buffer,
+                self.closures.buffer,
+                self.living,
+                iteration.number,
+                segment,
+                camera_paths=self.paths.buffer,
+            )
+
+    def scatter(
+        self,
+        context: StageContext,
+        blocks: Mapping[str, moderngl.Buffer],
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+        radii: Radii,
+    ) -> None:
+        """Collect emission, leave importons, and set off the specular rays of the next segment.
+
+        blocks: the storage blocks of other stages (StageSet.scatter_blocks).
+        """
+        settings, lights = context.settings, context.lights
+        with context.timers.stage("camera scattering"):
+            lights.use_maps()
+            self.living.run(
+                self._scatter,
+                {
+                    **lights.tree_buffers,
+                    "Closures": self.closures.buffer,
+                    "Rays": self.rays.buffer,
+                    "CameraPaths": self.paths.buffer,
+                    "Importons": self.importons.buffer,
+                    "Radiances": self.radiances.buffer,
+                    "Materials": context.materials.buffers["Materials"],
+                    **blocks,
+                },
+                {
+                    **lights.parameters(iteration),
+                    "segment": segment,
+                    "last_segment": segment == settings.camera_path_length - 1,
+                    "first_pixel": band.first_pixel,
+                    "film_transparent": settings.film_transparent,
+                    "next_event": settings.direct_light is DirectLight.RAYS,
+                    "final_gather": settings.use_final_gather,
+                    "specular_alpha": settings.specular_roughness**2,
+                    "radius_scale": radii.scale,
+                    "shrinkage": radii.shrinkage,
+                    "radius_minimum": radii.minimum,
+                    "radius_maximum": radii.maximum,
+                    "radius_by_ray": radii.by_ray,
+                    "most_radius_factor": radii.most_factor,
+                    "gathers_again_below": radii.corner,
+                    "photon_flux": lights.photon_flux,
+                },
+            )
+
+    def taking(self, context: StageContext, segment: int, raster: CameraRaster | None) -> TakingImportons:
+        """Those of the segment, to take photons; ``raster``: where its hits lie on the camera's."""
+        return TakingImportons(
+            self.importons.buffer,
+            self.living,
+            gathers=segment == 0 and context.gathers,
+            by_ray=segment > 0 and context.gathers,
+            most_scattered=max(context.settings.camera_path_length - segment - 2, 0),
+            raster=raster,
+            center=context.center,
+        )
+
+    def footprints(self, count: int) -> np.ndarray:
+        """(count,) radii of the importons just left, metres; 0 where there is none."""
+        return self.importons.read(IMPORTON.dtype, count)["radius"]
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in (self.rays, self.hits, self.paths, self.closures, self.importons, self.radiances, self.living):
+            buffer.release()

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The first part of DirectPhotonHits: photons leave the lights."""
+
+import moderngl
+
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ..common.iteration import Iteration
+from ..lights.lights import LIGHT_PARAMETERS, Lights
+
+Record("EmitParameters", **LIGHT_PARAMETERS, count="uint", target_count="uint")
+Record("FalloffParameters", **LIGHT_PARAMETERS, count="uint")
+
+
+class PhotonEmission:
+    """Programs that place and direct photons, and end those that a soft light does not send to where they hit."""
+
+    def __init__(self, library: ProgramLibrary) -> None:
+        self._emit = library.compute("emission/emit.comp")
+        self._falloff = library.compute("emission/falloff.comp")
+
+    def emit(
+        self,
+        lights: Lights,
+        rays: moderngl.Buffer,
+        photon_paths: moderngl.Buffer,
+        world_radiances: moderngl.Buffer,
+        count: int,
+        iteration: Iteration,
+    ) -> None:
+        """Emit ``count`` photons: their first rays, the flux they carry, and how bright the world is there."""
+        lights.use_maps()
+        self._emit.run(
+            count,
+            {
+                **lights.buffers,
+                **lights.guide.buffers,
+                "Rays": rays,
+                "PhotonPaths": photon_paths,
+                "WorldRadiances": world_radiances,
+                "Targets": lights.targets.buffer,
+            },
+            {**lights.parameters(iteration), "count": count, "target_count": lights.target_count},
+        )
+
+    def apply_falloff(
+        self,
+        lights: Lights,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        photon_paths: moderngl.Buffer,
+        count: int,
+        iteration: Iteration,
+    ) -> None:
+        """Where photons hit first: end those that a soft light does not send there, and let the distance count."""
+        self._falloff.run(
+            count,
+            {**lights.buffers, "Rays": rays, "Hits": hits, "PhotonPaths": photon_paths},
+            {**lights.parameters(iteration), "count": count},
+        )

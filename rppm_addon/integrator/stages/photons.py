@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DirectPhotonHits and TracePhotons: photons from the lights through the scene."""
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ..common.iteration import Iteration
+from ..common.living_paths import LivingPaths
+from ..common.records import (
+    CLOSURE,
+    DEPARTURE,
+    FLUX_GROUP,
+    FLUX_NAMES,
+    FLUX_SUMS,
+    HIT,
+    PHOTON,
+    PHOTON_PATH,
+    RAY,
+)
+from ..density_estimation.radii import Radii
+from ..density_estimation.stored_photons import PhotonList, StoredPhotons
+from ..device_scene.stage_context import StageContext
+from .first_hits import FirstHits
+from .photon_emission import PhotonEmission
+
+Record(
+    "ScatterPhotonsParameters",
+    photon_count="uint",
+    segment="uint",
+    segments="uint",
+    seed="uint",
+    iteration="uint",
+    specular_alpha="float",
+    looks_back="uint",
+)
+Record("DepartParameters", photon_count="uint", segment="uint")
+Record("BalanceParameters", photon_count="uint", segments="uint")
+
+
+class Photons:
+    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``world_radiances`` tells
+    of each path the world's radiance where it began, the largest channel, 0 from other lights."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, photon_count: int, segments: int) -> None:
+        """photon_count: the most that an iteration has."""
+        self._context = context
+        self._scatter = library.compute("photons/scatter.comp")
+        self._depart = library.compute("photons/depart.comp")
+        self._balance = library.compute("photons/balance.comp")
+        self.photon_count, self.segments = photon_count, segments
+        remedy = "lower the photons per iteration or the photon path length"
+        self.photons = GrowingBuffer(context, "photons", remedy)
+        self._paths = GrowingBuffer(context, "photon paths", remedy)
+        self._rays = GrowingBuffer(context, "photon rays", remedy)
+        self._hits = GrowingBuffer(context, "photon hits", remedy)
+        self._closures = GrowingBuffer(context, "photon closures", remedy)
+        self._departures = GrowingBuffer(context, "photon departures", remedy)
+        self.world_radiances = GrowingBuffer(context, "world radiances", remedy)
+        self.world_radiances.require(4 * photon_count)
+        self._emitted = GrowingBuffer(context, "emitted photons", remedy)
+        self._sums = GrowingBuffer(context, "flux sums", remedy)
+        self._living = LivingPaths(context, library, "living photon paths", remedy)
+        self._emission = PhotonEmission(library)
+        self.first_hits = FirstHits(context, library)
+        self.photons.require(PHOTON.size * photon_count * segments)
+        for buffer, record in (
+            (self._paths, PHOTON_PATH),
+            (self._rays, RAY),
+            (self._hits, HIT),
+            (self._closures, CLOSURE),
+            (self._departures, DEPARTURE),
+            (self._emitted, PHOTON_PATH),
+        ):
+            buffer.require(record.size * photon_count)
+        self._living.require(photon_count, to_keep=True)
+        self._sums.require(FLUX_SUMS.size * -(-photon_count // FLUX_GROUP))
+
+    @property
+    def _buffers(self) -> tuple[GrowingBuffer, ...]:
+        paths = self._paths, self._rays, self._hits, self._closures, self._departures
+        return self.photons, *paths, self._emitted, self._sums, self.world_radiances
+
+    @property
+    def _blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of the programs that send photons on."""
+        return {
+            "Closures": self._closures.buffer,
+            "Rays": self._rays.buffer,
+            "PhotonPaths": self._paths.buffer,
+            "Photons": self.photons.buffer,
+            "Departures": self._departures.buffer,
+        }
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        buffers = {buffer.name: buffer.size for buffer in self._buffers}
+        return buffers | self._living.memory_bytes | self.first_hits.memory_bytes
+
+    @property
+    def slots(self) -> int:
+        """Places in the buffer of the last iteration's photons."""
+        return self.photon_count * self.segments
+
+    def emit(self, context: StageContext, iteration: Iteration) -> None:
+        """DirectPhotonHits: the iteration's photons leave the lights and find their first hits."""
+        self.photon_count = iteration.photon_count
+        rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
+        with context.timers.stage("emission"):
+            self._living.fill(self.photon_count)
+            radiances = self.world_radiances.buffer
+            self._emission.emit(context.lights, rays, paths, radiances, self.photon_count, iteration)
+            context.lights.emitters.tint_photons(
+                context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
+            )
+        with context.timers.stage("first photon hits"):
+            self.first_hits.find(context, rays, hits, self._living)
+            if context.lights.has_falloff:
+                self._emission.apply_falloff(context.lights, rays, hits, paths, self.photon_count, iteration)
+        self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
+
+    def trace(self, context: StageContext) -> bool:
+        """Find what the photons that go on hit; whether any may do so."""
+        with context.timers.stage("photon tracing"):
+            self._living.keep(self._rays.buffer)
+            if self._living.known_empty:
+                return False
+            context.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self._living)
+            return True
+
+    def resolve(self, context: StageContext, iteration: Iteration, segment: int, looks_back: bool = False) -> None:
+        """Hits to closures; ``looks_back``: as seen from where the photons go."""
+        with context.timers.stage("photon resolve"):
+            context.resolve.run(
+                self._rays.buffer,
+                self._hits.buffer,
+                self._closures.buffer,
+                self._living,
+                iteration.number,
+                segment,
+                photon_paths=self._paths.buffer,
+                looks_back=looks_back,
+            )
+
+    def scatter(self, context: StageContext, iteration: Iteration, segment: int) -> None:
+        """Store photons, and send them on with the flux that a viewer would see from where they go."""
+        # Nothing goes on from the last segment's hits.
+        looks_back = context.materials.any_depends_on_view and segment < self.segments - 1
+        with context.timers.stage("photon scattering"):
+            self._living.run(
+                self._scatter,
+                {**self._blocks, "Materials": context.materials.buffers["Materials"]},
+                {
+                    "photon_count": self.photon_count,
+                    "segment": segment,
+                    "segments": self.segments,
+                    "seed": iteration.seed,
+                    "iteration": iteration.number,
+                    "specular_alpha": context.settings.specular_roughness**2,
+                    "looks_back": looks_back,
+                },
+            )
+        if looks_back:
+            self.resolve(context, iteration, segment, looks_back=True)
+            with context.timers.stage("photon scattering"):
+                parameters = {"photon_count": self.photon_count, "segment": segment}
+                self._living.run(self._depart, self._blocks, parameters)
+
+    def stored(self, context: StageContext, listed: PhotonList, radii: Radii) -> StoredPhotons:
+        """Those that are listed, with what their estimate depends on."""
+        bounds = context.geometry.bounds_low, context.geometry.bounds_high
+        return StoredPhotons(
+            self.photons.buffer,
+            listed.buffer,
+            listed.count,
+            listed.count - listed.diffused_count,
+            listed.diffused_count,
+            self.world_radiances.buffer,
+            self.photon_count,
+            context.lights.photon_flux,
+            radii.splats,
+            float(np.max(np.abs(bounds))),
+        )
+
+    def flux_balance(self) -> dict[str, float]:
+        """Where the flux of the last iteration went, W summed over the channels.
+
+        ``deposited`` is what the paths still carried to their last vertex, where they are cut off; ``absorbed`` is what
+        the vertices before kept. ``lost`` is flux on a ray of which no segment tells: it must be zero.
+        Russian roulette makes single events absorb more or less than their share, the sum being right.
+        """
+        groups = -(-self.photon_count // FLUX_GROUP)
+        self._balance.run(
+            self.photon_count,
+            {"Emitted": self._emitted.buffer, "Photons": self.photons.buffer, "Sums": self._sums.buffer},
+            {"photon_count": self.photon_count, "segments": self.segments},
+        )
+        sums = self._sums.read(FLUX_SUMS.dtype, groups)
+        return {name: float(sums[name].sum(dtype=np.float64)) for name in FLUX_NAMES}
+
+    def read(self) -> np.ndarray:
+        """(segments, photon_count) PHOTON records of the last iteration."""
+        records = self.photons.read(PHOTON.dtype, self.segments * self.photon_count)
+        return records.reshape(self.segments, self.photon_count)
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in (*self._buffers, self._living, self.first_hits):
+            buffer.release()

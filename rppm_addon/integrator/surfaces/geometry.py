@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Indexed arrays to world-space triangles, gathered on the GPU."""
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...scene.meshes import Instance, Mesh, RayVisibility
+from ...scene.scene import Scene
+from ..common.records import TRIANGLE_ATTRIBUTES
+
+log = logging.getLogger(__name__)
+
+_NO_UV = 0xFFFFFFFF
+"""In place of where a mesh's UV begin."""
+Constants("MeshArrays", NO_UV=_NO_UV)
+
+INSTANCE_ENTRY = Record(
+    "InstanceEntry",
+    row0="vec4",
+    row1="vec4",
+    row2="vec4",
+    first_triangle="uint",
+    mesh_triangle="uint",
+    mesh_corner="uint",
+    mesh_vertex="uint",
+    mesh_uv="uint",
+    first_slot="uint",
+    slot_count="uint",
+    shadowless="uint",
+)
+Record("GatherParameters", fallback_point="vec3", triangle_count="uint", instance_count="uint")
+
+
+_MESH_ARRAYS = {
+    "Positions": ("positions", np.dtype(np.float32)),
+    "CornerVertices": ("corner_vertices", np.dtype(np.uint32)),
+    "CornerNormals": ("corner_normals", np.dtype(np.float32)),
+    "CornerUvs": ("corner_uv", np.dtype(np.float32)),
+    "TriangleCorners": ("triangle_corners", np.dtype(np.uint32)),
+    "TriangleSlots": ("triangle_slots", np.dtype(np.uint32)),
+}
+"""Buffers that hold arrays of all meshes: the member of Mesh, and the type in the buffer."""
+_STARTS = {
+    "mesh_triangle": "triangle_corners",
+    "mesh_corner": "corner_vertices",
+    "mesh_vertex": "positions",
+    "mesh_uv": "corner_uv",
+}
+"""Members of InstanceEntry that tell where a mesh's part of such an array begins."""
+_BLOCK = 256
+"""Vertices that are compared side by side: NumPy is slow at reducing many short rows."""
+
+
+def finite_bounds(positions: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Lowest and highest finite coordinates of points (..., 3), each (3,); None without any."""
+    positions = positions.reshape(-1, 3)
+    lowest, highest = (_by_column(reduce, positions) for reduce in (np.minimum.reduce, np.maximum.reduce))
+    if not np.isfinite([lowest, highest]).all():
+        finite = positions[np.isfinite(positions).all(axis=1)]
+        if not len(finite):
+            return None
+        lowest, highest = finite.min(axis=0), finite.max(axis=0)
+    return lowest.astype(np.float64), highest.astype(np.float64)
+
+
+def _by_column(reduce: Callable[..., np.ndarray], positions: np.ndarray) -> np.ndarray:
+    """(3,) least or greatest of the columns of (n, 3); not finite without rows."""
+    whole = len(positions) // _BLOCK * _BLOCK
+    parts = [positions[whole:], np.full((1, 3), np.nan)] if len(positions) == 0 else [positions[whole:]]
+    if whole:
+        blocks = np.ascontiguousarray(positions[:whole]).reshape(-1, 3 * _BLOCK)
+        parts.append(reduce(blocks, axis=0).reshape(-1, 3))
+    return reduce(np.concatenate(parts), axis=0)
+
+
+def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Boxes around placed boxes.
+
+    matrices: (n, 4, 4); boxes: (n, 2, 3), low and high. Returns low and high, each (n, 3), and whether these are finite
+    and not too far away for triangles to be rendered, (n,).
+    """
+    middle, reach = matrices[:, :3, 3], np.zeros((len(matrices), 3))
+    centres, halves = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0])
+    with np.errstate(invalid="ignore", over="ignore"):
+        for axis in range(3):  # written out: thousands of products of small matrices take NumPy long
+            column = matrices[:, :3, axis]
+            middle = middle + column * centres[:, axis, None]
+            reach += np.abs(column) * halves[:, axis, None]
+        low, high = middle - reach, middle + reach
+    return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
+
+
+@dataclass(slots=True)
+class Placement:
+    """An instance and its first world triangle."""
+
+    instance: Instance
+    first_triangle: int
+
+
+class Geometry:
+    """World-space triangles of a scene in GPU buffers.
+
+    ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/geometry/gather.comp),
+    ``attributes`` a TriangleAttributes each;
+    ``placements`` lists the instances that have triangles; ``matrices`` (n, 4, 4) are theirs, and ``boxes`` (n, 2, 3)
+    what they lie in, low and high in metres, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
+    """
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        remedy = "lower the subdivision, decimate meshes or remove instances"
+        self._context = context
+        self._gather = library.compute("geometry/gather.comp")
+        self._inputs = {
+            name: GrowingBuffer(context, f"geometry {name}", remedy)
+            for name in (
+                "Instances",
+                "SlotMaterials",
+                *_MESH_ARRAYS,
+            )
+        }
+        self.triangles = GrowingBuffer(context, "world triangles", remedy)
+        self.attributes = GrowingBuffer(context, "triangle attributes", remedy)
+        self._arrays: dict[str, list[np.ndarray]] = {}
+        """What lies one behind the other in the buffers of that name."""
+        self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
+        """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
+        self.triangle_count = 0
+        self.placements: list[Placement] = []
+        self.matrices, self.boxes = np.zeros((0, 4, 4)), np.zeros((0, 2, 3))
+        self.bounds_low = self.bounds_high = np.zeros(3)
+
+    @property
+    def centre(self) -> np.ndarray:
+        """Centre of the bounding sphere, (3,) metres."""
+        return 0.5 * (self.bounds_low + self.bounds_high)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the bounding sphere of the bounds, metres; never zero."""
+        return max(0.5 * float(np.linalg.norm(self.bounds_high - self.bounds_low)), 1e-9)
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        buffers = [*self._inputs.values(), self.triangles, self.attributes]
+        return {buffer.name: buffer.size for buffer in buffers}
+
+    def build(self, scene: Scene, default_material: int, swept: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+        """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
+        bounds enclose in any case, each (3,), low and high.
+
+        Arrays that are the very objects of the last build are not uploaded again: moving instances uploads the
+        instances only, bending a mesh its positions and normals. Whoever changes an array gives a new one.
+        Raises DeviceError when the device cannot hold them.
+        """
+        used = sorted({instance.mesh for instance in scene.instances})
+        meshes = [scene.meshes[index] for index in used]
+        bounds = self._bounds_of(meshes)
+        places = {
+            index: place
+            for place, index in enumerate(used)
+            if bounds[place] is not None and meshes[place].triangle_count
+        }
+        instances = [instance for instance in scene.instances if instance.mesh in places]
+        which = np.array([places[instance.mesh] for instance in instances], np.int64)
+        lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which]
+        ends = np.cumsum(lengths)
+        self.triangle_count = int(ends[-1]) if len(ends) else 0
+        self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
+        entries = INSTANCE_ENTRY.zeros(len(instances))
+        entries["first_triangle"] = ends - lengths
+        slots: list[int] = []
+        if instances:
+            for field, member in _STARTS.items():
+                entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
+            entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
+            for row in range(3):
+                entries[f"row{row}"] = self.matrices[:, row]
+            slots = _fill(entries, instances, len(scene.materials), default_material)
+        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
+        self.placements = list(map(Placement, instances, entries["first_triangle"].tolist()))
+        self._enclose(boxes[which], swept)
+        self._upload_meshes(meshes)
+        self._inputs["Instances"].upload(entries)
+        self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
+        self.triangles.require(48 * max(1, self.triangle_count))
+        self.attributes.require(TRIANGLE_ATTRIBUTES.size * max(1, self.triangle_count))
+        buffers = {name: buffer.buffer for name, buffer in self._inputs.items()}
+        buffers |= {"Triangles": self.triangles.buffer, "Attributes": self.attributes.buffer}
+        self._gather.run(
+            self.triangle_count,
+            buffers,
+            {"fallback_point": self.centre, "triangle_count": self.triangle_count, "instance_count": len(instances)},
+        )
+
+    def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
+        """Finite bounds of each mesh, found once for each array of positions."""
+        known, self._bounds = self._bounds, {}
+        for positions in (mesh.positions for mesh in meshes):
+            if id(positions) not in self._bounds:
+                self._bounds[id(positions)] = known.get(id(positions)) or (positions, finite_bounds(positions))
+        return [self._bounds[id(mesh.positions)][1] for mesh in meshes]
+
+    def _enclose(self, boxes: np.ndarray, swept: tuple[np.ndarray, np.ndarray] | None) -> None:
+        """Find the boxes of the placements, whose meshes lie in boxes (n, 2, 3), and the bounds."""
+        low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
+        lows, highs, good = placed_boxes(self.matrices, boxes)
+        self.boxes = np.stack([lows, highs], axis=1)
+        low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
+        high = np.maximum(high, highs[good].max(axis=0, initial=-np.inf))
+        for index in np.flatnonzero(~good):
+            name = self.placements[index].instance.object_name
+            log.warning("object %s has a matrix that is not finite; its triangles are left out", name)
+        if not np.isfinite(low).all():
+            low = high = np.zeros(3)
+        self.bounds_low, self.bounds_high = low, high
+
+    def _upload_meshes(self, meshes: list[Mesh]) -> None:
+        """Write the arrays that were not written to their places before, together where they lie together."""
+        for name, (member, dtype) in _MESH_ARRAYS.items():
+            arrays = [array for mesh in meshes if (array := getattr(mesh, member)) is not None]
+            before = self._arrays.pop(name, [])  # should an upload fail
+            buffer = self._inputs[name]
+            offsets = _starts([array.size * dtype.itemsize for array in arrays])
+            if buffer.require(int(offsets[-1])) or [a.shape for a in before] != [a.shape for a in arrays]:
+                before = [None] * len(arrays)
+            changed = [index for index, array in enumerate(arrays) if array is not before[index]]
+            for run in _runs(changed):
+                data = [_flat(arrays[index], dtype) for index in run]
+                buffer.write(data[0] if len(data) == 1 else np.concatenate(data), int(offsets[run[0]]))
+            self._arrays[name] = arrays
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in [*self._inputs.values(), self.triangles, self.attributes]:
+            buffer.release()
+
+
+def _fill(entries: np.ndarray, instances: list[Instance], materials: int, default_material: int) -> list[int]:
+    """Shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
+    visibility = np.array([int(instance.visibility) for instance in instances])
+    entries["shadowless"] = visibility & int(RayVisibility.SHADOW) == 0
+    slots: list[int] = []
+    ranges: dict[tuple[int, ...], tuple[int, int]] = {}
+    for key in map(tuple, [instance.materials for instance in instances]):
+        if key not in ranges:
+            ranges[key] = len(slots), max(1, len(key))
+            slots += [m if 0 <= m < materials else default_material for m in key] or [default_material]
+    chosen = [ranges[tuple(instance.materials)] for instance in instances]
+    entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
+    return slots
+
+
+def _starts(lengths: list[int]) -> np.ndarray:
+    """(n + 1,) where parts of these lengths begin, and their end."""
+    return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
+
+
+def _length(array: np.ndarray | None) -> int:
+    return 0 if array is None else len(array)
+
+
+def _flat(array: np.ndarray, dtype: np.dtype) -> np.ndarray:
+    """(n,) of the type in the buffer, without a copy where the bits are the same."""
+    flat = np.ascontiguousarray(array).reshape(-1)
+    if flat.dtype.kind in "iu" and flat.dtype.itemsize == dtype.itemsize and dtype.kind == "u":
+        return flat.view(dtype)
+    return flat.astype(dtype, copy=False)
+
+
+def _runs(indices: list[int]) -> list[list[int]]:
+    """Ascending numbers, those together that follow each other."""
+    runs: list[list[int]] = []
+    for index in indices:
+        if runs and runs[-1][-1] + 1 == index:
+            runs[-1].append(index)
+        else:
+            runs.append([index])
+    return runs

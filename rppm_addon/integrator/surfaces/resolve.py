@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hits become closures in one batched pass (DIRT's deferred fetch)."""
+
+import enum
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.records import Record
+from ...gl.sources import CompileError
+from ...materials.compiler import NEUTRAL_TEXT
+from ...materials.tables import MaterialTables, first_line
+from ...scene.camera import Camera
+from ...scene.scene import Scene
+from ..common.living_paths import LivingPaths
+from ..common.records import CAMERA_PATH, PHOTON_PATH
+from .geometry import Geometry
+from .surface_attributes import SurfaceAttributes
+
+Record(
+    "ResolveParameters",
+    world_to_camera="mat4",
+    window="vec4",
+    seed="uint",
+    iteration="uint",
+    segment="uint",
+    program="uint",
+    path_kind="uint",
+    camera_stride="uint",
+    camera_flags="uint",
+    photon_stride="uint",
+    photon_flags="uint",
+    attribute_count="uint",
+    orthographic="uint",
+    pixel_size="float",
+    looks_back="uint",
+)
+
+
+class _PathKind(enum.IntEnum):
+    """Whose paths the hits are of."""
+
+    NONE = 0
+    CAMERA = 1
+    PHOTON = 2
+
+
+_RANGE_SIZE = 8
+"""Words of a program's range of the hits."""
+Constants("Ranges", RANGE_SIZE=_RANGE_SIZE)
+Constants("PathKinds", PATH_OF=_PathKind)
+_STAGE = "resolve/resolve.comp"
+
+
+class Resolve:
+    """Rays and their hits to closures: the hits are ordered by program, and each program resolves its own."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._library = library
+        self._count = library.compute("resolve/count.comp")
+        self._allocate = library.compute("resolve/allocate.comp")
+        self._order_hits = library.compute("resolve/order.comp")
+        self._order = GrowingBuffer(context, "hits by material", "lower the resolution or the photons per iteration")
+        self._surface_attributes = SurfaceAttributes(context)
+        self._programs: list[ComputeProgram] = []
+        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._parameters: dict[str, object] = {}
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {self._order.name: self._order.size, **self._surface_attributes.memory_bytes}
+
+    def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
+        """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
+        What the camera tells nodes follows by look_from.
+
+        A program that the driver refuses is replaced by that of a grey surface, with a warning in scene.warnings.
+        Raises DeviceError when the device cannot hold the attributes.
+        """
+        self._programs = [self._program(text, scene, materials) for text in materials.programs]
+        self._surface_attributes.build(scene, geometry, materials.attribute_names)
+        self._buffers = {
+            "Triangles": geometry.triangles.buffer,
+            "Attributes": geometry.attributes.buffer,
+            **self._surface_attributes.buffers,
+            **materials.buffers,
+        }
+
+    def look_from(self, camera: Camera, seed: int) -> None:
+        """Take the camera that nodes may ask about, and the seed of random choices."""
+        self._parameters = {
+            "world_to_camera": np.linalg.inv(camera.matrix),
+            "window": camera.window,
+            "orthographic": camera.orthographic,
+            "pixel_size": camera.pixel_size,
+            "seed": seed,
+            "attribute_count": self._surface_attributes.count,
+            "camera_stride": CAMERA_PATH.size // 4,
+            "camera_flags": CAMERA_PATH.offset("flags") // 4,
+            "photon_stride": PHOTON_PATH.size // 4,
+            "photon_flags": PHOTON_PATH.offset("flags") // 4,
+        }
+
+    def _program(self, text: str, scene: Scene, materials: MaterialTables) -> ComputeProgram:
+        try:
+            return self._library.compute(_STAGE, inserts={"materials/generated.glsl": text})
+        except CompileError as error:
+            for name in materials.users[text]:
+                reason = first_line(error)
+                scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is grey')
+            return self._library.compute(_STAGE, inserts={"materials/generated.glsl": NEUTRAL_TEXT})
+
+    def run(
+        self,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        closures: moderngl.Buffer,
+        living: LivingPaths,
+        iteration: int,
+        segment: int,
+        camera_paths: moderngl.Buffer | None = None,
+        photon_paths: moderngl.Buffer | None = None,
+        looks_back: bool = False,
+    ) -> None:
+        """Fill the closures of living paths; inactive rays and misses give closures without a triangle.
+
+        The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
+        are of no kind. looks_back: the same hits are seen once more, from where photons go; what chance decides is
+        decided anew.
+        """
+        buffers = {
+            **self._buffers,
+            "Rays": rays,
+            "Hits": hits,
+            "Closures": closures,
+            "PathFlags": camera_paths or photon_paths or rays,
+        }
+        parameters = {
+            **self._parameters,
+            "iteration": iteration,
+            "segment": segment,
+            "looks_back": looks_back,
+            "path_kind": _PathKind.CAMERA if camera_paths else _PathKind.PHOTON if photon_paths else _PathKind.NONE,
+        }
+
+        # A list of paths is laid out as the order of a single program's hits.
+        order = living.buffer if len(self._programs) == 1 else self._order_by_program(buffers, living)
+        for number, program in enumerate(self._programs):
+            arguments = 4 * (_RANGE_SIZE * number + 4)
+            program.run_indirect(
+                order, arguments, _blocks_of(program, {**buffers, "HitOrder": order}), {**parameters, "program": number}
+            )
+
+    def _order_by_program(self, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> moderngl.Buffer:
+        self._order.require(4 * (_RANGE_SIZE * len(self._programs) + living.most))
+        self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
+        buffers = {**buffers, "HitOrder": self._order.buffer, "LivingPaths": living.buffer}
+        living.run(self._count, _blocks_of(self._count, buffers))
+        self._allocate.run(1, _blocks_of(self._allocate, buffers), {"count": len(self._programs)})
+        living.run(self._order_hits, _blocks_of(self._order_hits, buffers))
+        return self._order.buffer
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self._order.release()
+        self._surface_attributes.release()
+
+
+def _blocks_of(program: ComputeProgram, buffers: dict[str, moderngl.Buffer]) -> dict[str, moderngl.Buffer]:
+    return {name: buffers[name] for name in program.blocks}

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What shading nodes ask about objects: matrices, object and particle info, mesh attributes."""
+
+import operator
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers import GrowingBuffer
+from ...gl.context import Context
+from ...gl.records import Record
+from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
+from ...scene.scene import Scene
+from ...scene.sharing import same_members
+from .geometry import Geometry
+
+SHADING_INSTANCE = Record(
+    "ShadingInstance",
+    to_object0="vec4",
+    to_object1="vec4",
+    to_object2="vec4",
+    color="vec4",
+    location="vec3",
+    random="float",
+    object_index="uint",
+    first_triangle="uint",
+    particle_index="float",
+    particle_random="float",
+    particle_age="float",
+    particle_lifetime="float",
+    particle_size="float",
+    visibility="uint",
+    texture_location="vec3",
+    holdout="uint",
+    texture_scale="vec3",
+    shadow_catcher="uint",
+    particle_location="vec3",
+    unused1="float",
+    particle_velocity="vec3",
+    unused2="float",
+    particle_angular_velocity="vec3",
+    unused3="float",
+)
+"""An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell."""
+
+_PARTICLE = ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity")
+
+
+class SurfaceAttributes:
+    """The buffers ShadingInstances and AttributeValues: the latter starts with the place and the components of each of
+    ``count`` attributes of each instance, then come the values, three corners a triangle."""
+
+    def __init__(self, context: Context) -> None:
+        self._instances = GrowingBuffer(context, "shading instances", "remove instances")
+        self._values = GrowingBuffer(context, "mesh attributes", "use fewer attributes in materials")
+        self.count = 0
+        self._sources: dict[int, tuple] = {}
+        """Of what lies at a place of the values, that from which it was made."""
+
+    @property
+    def buffers(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of the programs that resolve hits."""
+        return {"ShadingInstances": self._instances.buffer, "AttributeValues": self._values.buffer}
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        return {buffer.name: buffer.size for buffer in (self._instances, self._values)}
+
+    def build(self, scene: Scene, geometry: Geometry, names: list[str]) -> None:
+        """Upload what the nodes of the scene's materials need. ``names``: the attributes that they read.
+
+        Values that come from the very arrays of the last build and have the same place are not written again.
+        """
+        self.count = len(names)
+        instances = [placement.instance for placement in geometry.placements]
+        records = SHADING_INSTANCE.zeros(max(1, len(instances)))
+        if instances:
+            _fill(records, instances, geometry.matrices, scene.meshes)
+            records["first_triangle"] = [placement.first_triangle for placement in geometry.placements]
+        self._instances.upload(records)
+        self._upload_values(scene.meshes, instances, names)
+
+    def _upload_values(self, meshes: list[Mesh], instances: list[Instance], names: list[str]) -> None:
+        table = np.zeros((len(instances), self.count, 2), np.uint32)
+        places: dict[tuple, tuple[int, int]] = {}
+        values: dict[int, tuple[MeshAttribute, Mesh]] = {}
+        end = table.size
+        for number, name in enumerate(names if instances else ()):
+            column = []
+            for instance in instances:
+                own = instance.attributes.get(name) if instance.attributes else None
+                key = (instance.mesh, name) if own is None else (name, *own)
+                if key not in places:
+                    mesh = meshes[instance.mesh]
+                    attribute = mesh.attributes.get(name) if own is None else _constant(own, mesh)
+                    places[key] = (0, 0)
+                    if attribute is not None and mesh.triangle_count:
+                        places[key] = (end, attribute.values.shape[1])
+                        values[end] = attribute, mesh
+                        end += 3 * mesh.triangle_count * attribute.values.shape[1]
+                column.append(places[key])
+            table[:, number] = column
+        before, self._sources = self._sources, {}  # should an upload fail
+        if self._values.require(4 * end):
+            before = {}
+        self._values.write(table)
+        sources = {}
+        for place, (attribute, mesh) in values.items():
+            sources[place] = attribute.domain, attribute.values, mesh.triangle_corners, mesh.corner_vertices
+            if not same_members(sources[place], before.get(place, ())):
+                self._values.write(_per_corner(attribute, mesh), 4 * place)
+        self._sources = sources
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        self._instances.release()
+        self._values.release()
+
+
+def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, meshes: list[Mesh]) -> None:
+    """All but the first triangles; the matrices (n, 4, 4) are those of the instances."""
+    which = np.array([instance.mesh for instance in instances])
+    used = np.unique(which)
+    place = np.searchsorted(used, which)
+    size = np.array([meshes[index].texture_size for index in used], np.float64)
+    records["texture_location"] = np.array([meshes[index].texture_location for index in used])[place]
+    records["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)[place]
+    inverses = _inverses(matrices)
+    for row in range(3):
+        records[f"to_object{row}"] = inverses[:, row]
+    records["location"] = matrices[:, :3, 3]
+    for name in ("color", "random", "object_index", "holdout", "shadow_catcher"):
+        records[name] = _column(instances, name)
+    records["visibility"] = [int(instance.visibility) for instance in instances]
+    multiplied = np.flatnonzero([instance.particle is not None for instance in instances])
+    particles = [instances[index].particle for index in multiplied]
+    for name in _PARTICLE if particles else ():
+        records[f"particle_{name}"][multiplied] = _column(particles, name)
+
+
+def _column(members: list, name: str) -> np.ndarray:
+    # First an array: records take lists of tuples tuple by tuple.
+    return np.array(list(map(operator.attrgetter(name), members)))
+
+
+def object_record(matrix: np.ndarray) -> np.ndarray:
+    """() SHADING_INSTANCE of an object without a mesh, whose generated coordinates are those of the object."""
+    record = SHADING_INSTANCE.zeros(1)[0]
+    (inverse,) = _inverses(np.asarray(matrix, np.float64)[None])
+    record["to_object0"], record["to_object1"], record["to_object2"] = inverse
+    record["location"] = matrix[:3, 3]
+    record["texture_location"], record["texture_scale"] = 0.5, 1.0
+    record["color"] = 1.0
+    return record
+
+
+def _inverses(matrices: np.ndarray) -> np.ndarray:
+    """(n, 3, 4) upper rows, of affine (n, 4, 4); all 0 where there is no inverse, as for an instance without extent."""
+    # Written out: thousands of small matrices take NumPy long.
+    x, y, z, origin = (matrices[:, :3, column] for column in range(4))
+    linear = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
+    determinant = (x * linear[:, 0]).sum(axis=1)
+    linear *= np.divide(1.0, determinant, out=np.zeros_like(determinant), where=determinant != 0.0)[:, None, None]
+    return np.concatenate([linear, -np.einsum("nij,nj->ni", linear, origin)[:, :, None]], axis=2)
+
+
+def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:
+    """What has the same value on all triangles."""
+    values = np.tile(np.array(value, np.float32), (mesh.triangle_count, 1))
+    return MeshAttribute(AttributeDomain.TRIANGLE, values)
+
+
+def _per_corner(attribute: MeshAttribute, mesh: Mesh) -> np.ndarray:
+    """(3 * triangles, components) float32 values at the triangles' corners."""
+    corners = mesh.triangle_corners.reshape(-1)
+    values = np.ascontiguousarray(attribute.values, np.float32)
+    if attribute.domain is AttributeDomain.CORNER:
+        return values.take(corners, axis=0)
+    if attribute.domain is AttributeDomain.POINT:
+        return values.take(mesh.corner_vertices.take(corners), axis=0)
+    return np.repeat(values, 3, axis=0)
