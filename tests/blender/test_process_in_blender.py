@@ -69,8 +69,10 @@ def test_the_process_renders_what_the_thread_does(lit, windowed, monkeypatch):
         assert windowed.state is ProcessState.RUNNING and not windowed.sessions
         assert observer.iterations == expected.iterations == [0, 1, 2]
         for before, after in zip(expected.frames, observer.frames, strict=True):
-            for name in ("combined", "depth", "normal"):
-                np.testing.assert_array_equal(getattr(before, name), getattr(after, name))
+            np.testing.assert_array_equal(before.combined, after.combined)
+            assert before.passes and list(before.passes) == list(after.passes)
+            for name, values in before.passes.items():
+                np.testing.assert_array_equal(values, after.passes[name])
     assert rendered().frames[-1].combined[16, 16, 0] == pytest.approx(1.0, rel=1e-3)
 
 

@@ -125,8 +125,8 @@ def test_no_share_of_photons_is_an_error(renderer):
 
 
 def test_settings_are_checked_before_work(renderer):
-    with pytest.raises(SettingsError, match="photons is 0; set it to"):
-        renderer.render(small_room(photons=0))
+    with pytest.raises(SettingsError, match="photons is -1; set it to"):
+        renderer.render(small_room(photons=-1))
 
 
 def test_a_broken_camera_is_an_error(renderer):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.gl.sources import SHADER_FOLDER
+from rppm_addon.gl.sources import expand
 from rppm_addon.integrator.common.camera_view import camera_view
 from rppm_addon.integrator.common.records import CAMERA_PATH, CAMERA_VIEW, RAY
 from rppm_addon.scene import (
@@ -330,7 +330,7 @@ def test_outside_of_a_fisheye_is_black(renderer):
 
 
 def test_records_agree_with_the_shader():
-    source = (SHADER_FOLDER / "gbuffer/projections.glsl").read_text()
+    source = expand("gbuffer/projections.glsl").text
     for index, kind in enumerate(PanoramaKind):
         assert f"PROJECTION_{kind.name} = {index + 2}u" in source
     assert CAMERA_VIEW.size % 16 == 0

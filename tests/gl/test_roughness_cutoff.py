@@ -79,7 +79,7 @@ def assert_alike(first: tuple[float, float], second: tuple[float, float]) -> Non
 @pytest.mark.parametrize("roughness", [0.35, 0.6])
 def test_traced_and_stored_lobes_shine_alike(renderer, light, roughness):
     lobe = Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=roughness)
-    stored = mean(renderer, light, lobe, 0.0, DirectLight.RAYS, use_final_gather=False)  # shadow rays alone
+    stored = mean(renderer, light, lobe, 0.0, DirectLight.RAYS, final_gather=False)  # shadow rays alone
     traced = mean(renderer, light, lobe, 1.0, DirectLight.RAYS)  # those and scattering together
     print(f"{light} roughness {roughness}: stored {stored} traced {traced} ratio {traced[0] / stored[0]:.4f}")
     assert_alike(traced, stored)
