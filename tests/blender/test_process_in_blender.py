@@ -59,6 +59,7 @@ def rendered(at_first=None):
 
 
 def test_the_process_renders_what_the_thread_does(lit, windowed, monkeypatch):
+    lit.view_layers[0].use_pass_z = lit.view_layers[0].use_pass_normal = True
     with monkeypatch.context() as patched:
         patched.setattr(renderer_process, "is_used", lambda: False)
         expected = rendered()
