@@ -79,7 +79,8 @@ class RenderRecorder(RenderObserver):
         self.scene_time = time.perf_counter()
         self.scene = scene
         if "passes" not in self.request.settings:
-            scene.settings.passes = tuple(dict.fromkeys((*RenderSettings.passes, *scene.settings.passes)))
+            passes = dict.fromkeys((*RenderSettings.passes, *scene.settings.passes))
+            scene.settings = scene.settings.with_values(passes=tuple(passes))
         scene.settings = apply_settings(scene.settings, self.request.settings)
         if self._keeper is not None:
             iterations = None if self.request.seconds is not None else scene.settings.iterations

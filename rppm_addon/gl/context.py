@@ -6,6 +6,8 @@ import logging
 import os
 import re
 import sys
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -160,6 +162,14 @@ class Context:
     def finish(self) -> None:
         """Wait until the device has done all it was given."""
         self.moderngl.finish()
+
+    def seconds_of(self, work: Callable[[], object]) -> float:
+        """Seconds from an idle device until it has done what ``work`` gives it, by the wall clock."""
+        self.finish()
+        start = time.perf_counter()
+        work()
+        self.finish()
+        return time.perf_counter() - start
 
     def release(self) -> None:
         """Close the context; nothing made in it may be used any more."""

@@ -5,7 +5,6 @@
 Takes scenes that `rppm export` wrote; without any, a box with a glass and a mirror sphere. Prints a table.
 """
 
-import argparse
 import dataclasses
 import sys
 from pathlib import Path
@@ -16,14 +15,13 @@ for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks
         sys.path.insert(0, str(folder))
 
 import numpy as np  # noqa: E402
-import scenes  # noqa: E402
 from benchmark_machine import Clock  # noqa: E402
+from route_comparison import named_scenes, parse  # noqa: E402
 
-from rppm_addon.commands.saved_scene import camera_at_resolution  # noqa: E402
 from rppm_addon.gl.context import Context  # noqa: E402
 from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
-from rppm_addon.scene import DensityEstimation, Scene, load_scene  # noqa: E402
+from rppm_addon.scene import DensityEstimation, Scene  # noqa: E402
 
 ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
 STAGES = "direct splatting", "indirect splatting"
@@ -57,26 +55,17 @@ def measure(context: Context, library: ProgramLibrary, clock: Clock, scene: Scen
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", type=Path, nargs="*", metavar="SCENE.npz")
-    parser.add_argument("--size", type=int, default=256, metavar="N", help="pixels a side (256)")
-    parser.add_argument("--photons", type=int, default=65536, metavar="N", help="an iteration (65536)")
-    parser.add_argument("--iterations", type=int, default=2, metavar="N", help="iterations that are timed (2)")
-    options = parser.parse_args(arguments)
+    options = parse(__doc__, arguments, iterations=2)
     context = Context.create()
     library, clock = ProgramLibrary(context), Clock(context)
     print(f"{context.information.name}; {clock.description}\n")
     quantities = "density estimation, s", "iteration, s", "memory, MiB"
     print("| scene |", " | ".join(f"{name}: rasterized | grid | ratio" for name in quantities), "|")
     print("|---|" + 9 * "---:|")
-    for path in options.scenes or [None]:
-        scene = scenes.room(options.size) if path is None else load_scene(path)
-        camera = camera_at_resolution(dataclasses.replace(scene.camera, crop=None), options.size, options.size)
-        settings = dataclasses.replace(scene.settings, photons=options.photons)
-        scene = dataclasses.replace(scene, camera=camera, settings=settings)
+    for name, scene in named_scenes(options):
         rasterized, grid = measure(context, library, clock, scene, options.iterations)
         cells = [f"{a:.3g} | {b:.3g} | {a / b:.1f}" for a, b in zip(rasterized, grid, strict=True)]
-        print("|", "box with spheres" if path is None else path.stem, "|", " | ".join(cells), "|", flush=True)
+        print("|", name, "|", " | ".join(cells), "|", flush=True)
     context.release()
     return 0
 

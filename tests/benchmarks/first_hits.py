@@ -6,7 +6,6 @@ Takes scenes that `rppm export` wrote; without any, a box with a glass and a mir
 take the place of the strongest light, each alone. Prints a table.
 """
 
-import argparse
 import dataclasses
 import sys
 from pathlib import Path
@@ -17,14 +16,13 @@ for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks
         sys.path.insert(0, str(folder))
 
 import numpy as np  # noqa: E402
-import scenes  # noqa: E402
 from benchmark_machine import Clock  # noqa: E402
+from route_comparison import named_scenes, parse  # noqa: E402
 
-from rppm_addon.commands.saved_scene import camera_at_resolution  # noqa: E402
 from rppm_addon.gl.context import Context  # noqa: E402
 from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
-from rppm_addon.scene import FirstPhotonHits, LightKind, Scene, load_scene  # noqa: E402
+from rppm_addon.scene import FirstPhotonHits, LightKind, Scene  # noqa: E402
 
 ROUTES = FirstPhotonHits.RASTERIZED, FirstPhotonHits.TRACED
 STAGES = "emission", "first photon hits"
@@ -86,27 +84,17 @@ def measure(context: Context, library: ProgramLibrary, clock: Clock, scene: Scen
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", type=Path, nargs="*", metavar="SCENE.npz")
-    parser.add_argument("--size", type=int, default=256, metavar="N", help="pixels a side (256)")
-    parser.add_argument("--photons", type=int, default=65536, metavar="N", help="an iteration (65536)")
-    parser.add_argument("--iterations", type=int, default=4, metavar="N", help="iterations that are timed (4)")
-    options = parser.parse_args(arguments)
+    options = parse(__doc__, arguments, iterations=4)
     context = Context.create()
     library, clock = ProgramLibrary(context), Clock(context)
     print(f"{context.information.name}; {clock.description}\n")
     print("| scene | lamp | emission and first hits, ms: traced | rasterized | ratio |", end=" ")
     print("iteration, ms: traced | rasterized | ratio | making them, ms | memory, MiB |\n|---|---|" + 8 * "---:|")
-    for path in options.scenes or [None]:
-        scene = scenes.room(options.size) if path is None else load_scene(path)
-        camera = camera_at_resolution(dataclasses.replace(scene.camera, crop=None), options.size, options.size)
-        settings = dataclasses.replace(scene.settings, photons=options.photons)
-        scene = dataclasses.replace(scene, camera=camera, settings=settings)
+    for name, scene in named_scenes(options):
         for lamp in LAMPS:
             rasterized, traced = measure(context, library, clock, with_lamp(scene, lamp), options.iterations)
             cells = [f"{1e3 * b:.3g} | {1e3 * a:.3g} | {a / b:.2f}" for a, b in zip(rasterized[:2], traced[:2])]
             cells += [f"{1e3 * rasterized[2]:.3g}", f"{rasterized[3] - traced[3]:.1f}"]
-            name = "box with spheres" if path is None else path.stem
             print(f"| {name} | {lamp} |", " | ".join(cells), "|", flush=True)
     context.release()
     return 0

@@ -10,9 +10,9 @@ import numpy as np
 import PIL.Image
 import pytest
 from support.floor import floor_scene
+from support.render_states import assert_same_state
 
 from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
-from rppm_addon.integrator.state import RenderState
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene import Instance, save_scene
 from rppm_addon.session.checkpoint_file import read_checkpoint, read_summary
@@ -56,18 +56,6 @@ def render(scene, checkpoint, iterations, *more, status=0):
     return errors
 
 
-def assert_bit_for_bit(mine: RenderState, other: RenderState):
-    for field in dataclasses.fields(RenderState):
-        a, b = getattr(mine, field.name), getattr(other, field.name)
-        if field.name == "passes":
-            assert list(a) == list(b)
-            a, b = (np.dstack(list(passes.values())) for passes in (a, b))
-        if isinstance(a, np.ndarray):
-            np.testing.assert_array_equal(a.view(np.uint32), b.view(np.uint32), field.name)
-        else:
-            assert a == b, field.name
-
-
 def test_a_resumed_render_is_the_uninterrupted_one(tmp_path, two_floors, uninterrupted):
     """Stopped while photons are learnt of, right after that, and once it is over."""
     checkpoint = tmp_path / "still.exr"
@@ -82,7 +70,7 @@ def test_a_resumed_render_is_the_uninterrupted_one(tmp_path, two_floors, uninter
         assert told["statistics"]["iterations"] == stop
         assert told["statistics"]["photons"] == stop * 1024
     summary, pause = read_checkpoint(checkpoint)
-    assert_bit_for_bit(pause.state, uninterrupted[1].state)
+    assert_same_state(pause.state, uninterrupted[1].state)
     assert summary.render == uninterrupted[0].render
     assert summary.seconds > before.seconds
     picture = read_exr(tmp_path / "picture.exr")
@@ -114,7 +102,7 @@ def test_a_render_that_a_signal_ends_is_gone_on_with(tmp_path, two_floors, unint
         assert int(read_exr(picture).metadata["iterations"]) == stopped
     if stopped <= LAST:
         render(two_floors, checkpoint, LAST, "--resume")
-        assert_bit_for_bit(read_checkpoint(checkpoint)[1].state, uninterrupted[1].state)
+        assert_same_state(read_checkpoint(checkpoint)[1].state, uninterrupted[1].state)
 
 
 def test_what_cannot_be_gone_on_with_is_refused(tmp_path, rppm, two_floors, saved_scene):
@@ -201,7 +189,7 @@ def test_stills_of_a_blend_file(tmp_path, rppm, blend_files):
     part = tmp_path / "part.exr"
     status, _, errors = rppm("render", blend_files[0], *view, "-o", part, "--samples-range", "0:4")
     assert status == 0, errors
-    assert_bit_for_bit(read_checkpoint(part)[1].state, read_checkpoint(checkpoint)[1].state)
+    assert_same_state(read_checkpoint(part)[1].state, read_checkpoint(checkpoint)[1].state)
     merged_exr, merged_png = tmp_path / "merged.exr", tmp_path / "merged.png"
     status, _, errors = rppm("merge", part, "-o", merged_exr, "-o", merged_png)
     assert status == 0, errors

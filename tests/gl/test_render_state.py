@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
+from support.render_states import assert_same_state
 from test_shutter import everything_moves
 
 from rppm_addon.integrator.common import band
@@ -57,22 +58,6 @@ def run_until(mapper: ProgressivePhotonMapper, iteration: int) -> RenderState:
     return mapper.state()
 
 
-def assert_same(a: RenderState, b: RenderState, *names: str) -> None:
-    """Bit for bit, in all fields or in those of the names."""
-    for field in dataclasses.fields(RenderState):
-        if names and field.name not in names:
-            continue
-        mine, other = getattr(a, field.name), getattr(b, field.name)
-        if field.name == "passes":
-            assert list(mine) == list(other)
-            mine, other = (np.dstack(list(passes.values())) for passes in (mine, other))
-        if isinstance(mine, np.ndarray):
-            assert mine.dtype == other.dtype and mine.shape == other.shape
-            np.testing.assert_array_equal(mine.view(np.uint32), other.view(np.uint32), field.name)
-        else:
-            assert mine == other, field.name
-
-
 @pytest.mark.parametrize(("direct_light", "stops"), [(DirectLight.RAYS, STOPS), (DirectLight.PHOTONS, (2, 16))])
 def test_a_state_goes_on_bit_for_bit(mapper, other_mapper, direct_light, stops):
     scene = busy_room(direct_light)
@@ -80,14 +65,14 @@ def test_a_state_goes_on_bit_for_bit(mapper, other_mapper, direct_light, stops):
     whole = run_until(mapper, LAST)
     mapper.build(scene)
     states = [run_until(mapper, stop) for stop in stops]
-    assert_same(run_until(mapper, LAST), whole)  # asking for the state changes nothing
+    assert_same_state(run_until(mapper, LAST), whole)  # asking for the state changes nothing
     assert len({state.wide_radius for state in states}) > 1, "nothing was learnt: the test shows nothing"
     for name in ("tallies", "radius_factors"):
         assert not np.array_equal(getattr(states[0], name), getattr(states[-1], name)), name
     for state in states:
         other_mapper.build(scene)
         other_mapper.resume(state)
-        assert_same(run_until(other_mapper, LAST), whole)
+        assert_same_state(run_until(other_mapper, LAST), whole)
 
 
 @pytest.mark.parametrize("moving", [False, True])
@@ -108,12 +93,12 @@ def test_automatic_photons_are_those_of_the_whole(mapper, other_mapper, moving):
     for state in early:
         other_mapper.build(scene)
         other_mapper.resume(state)
-        assert_same(run_until(other_mapper, LAST), whole)
+        assert_same_state(run_until(other_mapper, LAST), whole)
     other_mapper.update(scene)
     for _ in other_mapper.skip(LEARNING_ITERATIONS + 1):
         pass
     part = run_until(other_mapper, LAST)
-    assert_same(part, whole, "iteration", "photon_counts", "wide_radius", "radius_factors", "tallies", "learned")
+    assert_same_state(part, whole, "iteration", "photon_counts", "wide_radius", "radius_factors", "tallies", "learned")
     assert other_mapper.photons_emitted(3) == 3 * later
 
 
@@ -140,7 +125,7 @@ def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mappe
         pass
     assert other_mapper.iterations_in_film == 0
     part = run_until(other_mapper, LAST)
-    assert_same(part, whole, "iteration", "wide_radius", "radius_factors", "tallies", "learned")
+    assert_same_state(part, whole, "iteration", "wide_radius", "radius_factors", "tallies", "learned")
     assert part.iterations_in_film == LAST - left_out
     radiance = (left_out * before.radiance.astype(np.float64) + (LAST - left_out) * part.radiance) / LAST
     np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
@@ -161,14 +146,14 @@ def test_moments_of_an_open_shutter_are_those_of_the_whole(mapper, other_mapper)
     whole = run_until(mapper, LAST)
     other_mapper.build(scene)
     other_mapper.resume(early)
-    assert_same(run_until(other_mapper, LAST), whole)
+    assert_same_state(run_until(other_mapper, LAST), whole)
     mapper.build(scene)
     before = run_until(mapper, 18)
     other_mapper.build(scene)
     for _ in other_mapper.skip(18):
         pass
     part = run_until(other_mapper, LAST)
-    assert_same(part, whole, "wide_radius", "tallies", "learned")
+    assert_same_state(part, whole, "wide_radius", "tallies", "learned")
     radiance = (18 * before.radiance.astype(np.float64) + part.radiance) / LAST
     np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
 

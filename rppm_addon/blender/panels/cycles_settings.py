@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Settings that RPPM and Cycles both have, copied from one to the other."""
 
+from collections.abc import Iterable
+
 import bpy
 
 SHARED = {
@@ -22,6 +24,12 @@ def _clamped(owner: bpy.types.bpy_struct, name: str, value: float) -> float:
     return min(max(value, item.hard_min), item.hard_max) if item.type in {"INT", "FLOAT"} else value
 
 
+def _copy(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, names: Iterable[tuple[str, str]]) -> None:
+    """Set the target's properties, named second, to the source's, named first, as far as its ranges allow."""
+    for name, other in names:
+        setattr(target, other, _clamped(target, other, getattr(source, name)))
+
+
 class _CopySettings(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
@@ -40,8 +48,7 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Copy; photons take as many bounces as the camera's paths."""
         own, cycles = context.scene.rppm, context.scene.cycles
-        for name, other in SHARED.items():
-            setattr(own, name, _clamped(own, name, getattr(cycles, other)))
+        _copy(cycles, own, ((other, name) for name, other in SHARED.items()))
         own.max_photon_bounces = own.max_camera_bounces
         if cycles.pixel_filter_type != _FILTER:
             self.report({"INFO"}, "RPPM's pixel filter is Blackman-Harris; the width was taken")
@@ -57,8 +64,7 @@ class RPPM_OT_copy_to_cycles(_CopySettings):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Copy."""
         own, cycles = context.scene.rppm, context.scene.cycles
-        for name, other in SHARED.items():
-            setattr(cycles, other, _clamped(cycles, other, getattr(own, name)))
+        _copy(own, cycles, SHARED.items())
         cycles.pixel_filter_type = _FILTER
         return {"FINISHED"}
 

@@ -30,6 +30,7 @@ class PhotonCounts:
         """Photons of an iteration, counted from 1."""
         return self.later if iteration > 1 else self.first
 
-    def emitted(self, left_out: int, iterations: int) -> int:
-        """In so many iterations after those left out."""
-        return iterations * self.later + (self.first - self.later if left_out == 0 < iterations else 0)
+    def emitted(self, skipped: int, iterations: int) -> int:
+        """In so many iterations after those skipped."""
+        has_first = skipped == 0 and iterations > 0
+        return iterations * self.later + (self.first - self.later if has_first else 0)

@@ -22,7 +22,6 @@ traverse.glsl walks the result.
 
 import enum
 import logging
-import time
 from collections.abc import Mapping
 
 import moderngl
@@ -324,11 +323,7 @@ class DeepCubemap:
         trial["triangle_count"] = min(int(trial["triangle_count"]), _TRIAL_MOST)
         seconds = {}
         for self._rasterize in (False, True, False, True):
-            self._context.finish()
-            start = time.perf_counter()
-            self._build(trial)
-            self._context.finish()
-            seconds[self._rasterize] = time.perf_counter() - start
+            seconds[self._rasterize] = self._context.seconds_of(lambda: self._build(trial))
         log.debug("deep cubemap: %.1f ms by compute shader, %.1f ms rasterized", *(1e3 * s for s in seconds.values()))
         return seconds[True] < seconds[False]
 

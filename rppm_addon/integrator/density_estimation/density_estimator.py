@@ -5,7 +5,6 @@ Splatting (splatting.py) rasterizes photons, as the paper does; importons gather
 """
 
 import logging
-import time
 from weakref import WeakKeyDictionary
 
 import moderngl
@@ -137,12 +136,12 @@ class DensityEstimator:
     def _seconds(self, name: DensityEstimation, photons: StoredPhotons, importons: TakingImportons) -> float:
         route = self._get(name)
         route.prepare(photons)  # buffers grow
-        self._context.finish()
-        start = time.perf_counter()
-        route.prepare(photons)
-        route.splat(photons, importons, self.sums)
-        self._context.finish()
-        return time.perf_counter() - start
+
+        def run() -> None:
+            route.prepare(photons)
+            route.splat(photons, importons, self.sums)
+
+        return self._context.seconds_of(run)
 
     def _get(self, route: DensityEstimation) -> Splatting | PhotonGrid:
         if route not in self._routes:

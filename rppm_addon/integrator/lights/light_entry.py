@@ -34,7 +34,6 @@ def spread_share(tangent: float, scale: float) -> float:
     return float(2 * math.pi * np.mean(values) * math.atan(tangent))
 
 
-
 def _unit(vector: np.ndarray) -> np.ndarray:
     size = np.linalg.norm(vector)
     return vector / size if size > 0 else np.array([0.0, 0.0, 1.0])

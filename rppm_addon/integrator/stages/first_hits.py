@@ -4,8 +4,8 @@
 They are looked up in light G-buffers (light_gbuffer.py), as in the paper, or traced through the deep cubemap.
 """
 
+import functools
 import logging
-import time
 
 import moderngl
 
@@ -104,11 +104,7 @@ class FirstHits:
         hits: moderngl.Buffer,
         living: LivingPaths,
     ) -> float:
-        self._context.finish()
-        start = time.perf_counter()
-        self._run(route, context, rays, hits, living)
-        self._context.finish()
-        return time.perf_counter() - start
+        return self._context.seconds_of(functools.partial(self._run, route, context, rays, hits, living))
 
     def _build(self, context: StageContext) -> bool:
         """Whether there are light G-buffers, made now if they are not those of the scene."""

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether states of renders and their arrays are the same bit for bit, NaNs included."""
+
+import dataclasses
+from collections.abc import Mapping
+
+import numpy as np
+
+from rppm_addon.integrator.state import RenderState
+
+
+def assert_same_array(mine: np.ndarray, other: np.ndarray, name: str) -> None:
+    """Of elements of 32 bits."""
+    assert mine.dtype == other.dtype and mine.shape == other.shape, name
+    np.testing.assert_array_equal(mine.view(np.uint32), other.view(np.uint32), name)
+
+
+def assert_same_arrays(mine: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> None:
+    """By name, in the same order."""
+    assert list(mine) == list(other)
+    for name, values in mine.items():
+        assert_same_array(values, other[name], name)
+
+
+def assert_same_state(mine: RenderState, other: RenderState, *names: str) -> None:
+    """All fields, or those of the names."""
+    for field in dataclasses.fields(RenderState):
+        if names and field.name not in names:
+            continue
+        a, b = getattr(mine, field.name), getattr(other, field.name)
+        if isinstance(a, dict):
+            assert_same_arrays(a, b)
+        elif isinstance(a, np.ndarray):
+            assert_same_array(a, b, field.name)
+        else:
+            assert a == b, field.name
