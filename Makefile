@@ -40,7 +40,7 @@ test-long: setup ## Run the tests that take long
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
 	timeout --kill-after=10 2400 .venv/bin/python -m pytest tests/gui
 
-lint: setup ## Check Python, types, imports, licence lines and shaders
+lint: setup ## Check Python, types, imports, license lines and shaders
 	.venv/bin/ruff check .
 	.venv/bin/mypy
 	.venv/bin/lint-imports --no-cache

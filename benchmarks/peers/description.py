@@ -62,7 +62,7 @@ class AreaLight:
     direction: Point
     """Unit vector along which it emits."""
     size: float
-    """Metres along each side."""
+    """Meters along each side."""
     power: float
     """Watts in all directions."""
     color: Color = (1.0, 1.0, 1.0)

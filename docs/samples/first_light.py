@@ -3,7 +3,7 @@
 
 Run with Python and the bpy module: python first_light.py OUT.blend
 The picture shows caustics on the floor, caustics seen through glass and water, and in a mirror.
-Lengths are metres. Surfaces are closed, so that every dielectric has an inside.
+Lengths are meters. Surfaces are closed, so that every dielectric has an inside.
 """
 
 import math

@@ -3,7 +3,7 @@
 
 Run with Python and the bpy module: python pool.py OUT.blend
 Geometry nodes move the water: a sum of waves, each with the speed that gravity gives to its length. The sun is as
-small as the real one, so a path tracer does not find it from the bottom. Lengths are metres.
+small as the real one, so a path tracer does not find it from the bottom. Lengths are meters.
 """
 
 import math
@@ -16,7 +16,7 @@ from mathutils import Vector  # isort: skip
 HALF_LENGTH, HALF_WIDTH, DEPTH, DECK = 2.0, 1.4, 1.1, 1.6
 LEVEL = -0.12
 GRAVITY = 9.81
-CELLS_A_METRE = 32
+CELLS_A_METER = 32
 WAVES = (
     (1.30, 20.0, 0.00, 0.0110),
     (0.90, -50.0, 0.37, 0.0080),
@@ -29,7 +29,7 @@ WAVES = (
 
 
 def tiles(name, first, second, size):
-    """Square tiles of two colours, by the object's coordinates."""
+    """Square tiles of two colors, by the object's coordinates."""
     made, shader = material(name, "ShaderNodeBsdfDiffuse")
     tree = made.node_tree
     place, checker = tree.nodes.new("ShaderNodeTexCoord"), tree.nodes.new("ShaderNodeTexChecker")
@@ -95,8 +95,8 @@ def wave_nodes():
 
     # A little wider than the basin: its rim is inside the walls.
     grid = add("GeometryNodeMeshGrid", None, 2 * HALF_LENGTH + 0.02, 2 * HALF_WIDTH + 0.02)
-    grid.inputs["Vertices X"].default_value = round(2 * HALF_LENGTH * CELLS_A_METRE) + 1
-    grid.inputs["Vertices Y"].default_value = round(2 * HALF_WIDTH * CELLS_A_METRE) + 1
+    grid.inputs["Vertices X"].default_value = round(2 * HALF_LENGTH * CELLS_A_METER) + 1
+    grid.inputs["Vertices Y"].default_value = round(2 * HALF_WIDTH * CELLS_A_METER) + 1
     place, time = add("GeometryNodeInputPosition"), add("GeometryNodeInputSceneTime")
     height = LEVEL
     for length, degrees, turns, amplitude in WAVES:

@@ -3,7 +3,7 @@
 
 Run with Python and the bpy module: python spotlight.py OUT.blend
 The hare is of metaballs, subdivided when it is rendered. The spot goes round it, its caustics and its shadow go
-round on the floor, and the camera passes by. Lengths are metres.
+round on the floor, and the camera passes by. Lengths are meters.
 """
 
 import math
@@ -14,7 +14,7 @@ from sample_scene import add_faces, color_world, material, save, set_up_frames
 from mathutils import Vector  # isort: skip
 
 BALLS = (
-    # centre, radius, half-axes
+    # center, radius, half-axes
     ((0.00, 0.00, 0.34), 0.36, (1.00, 1.15, 0.95)),  # body
     ((0.00, -0.26, 0.62), 0.25, (0.95, 1.00, 0.95)),  # head
     ((0.00, -0.42, 0.57), 0.15, (0.90, 1.00, 0.75)),  # muzzle
@@ -35,13 +35,13 @@ def hare_mesh():
     data.resolution = data.render_resolution = 0.055
     data.threshold = 0.35
 
-    def add(centre, radius, axes=(1.0, 1.0, 1.0)):
+    def add(center, radius, axes=(1.0, 1.0, 1.0)):
         ball = data.elements.new(type="ELLIPSOID")
-        ball.co, ball.radius = centre, 1.6 * radius
+        ball.co, ball.radius = center, 1.6 * radius
         ball.size_x, ball.size_y, ball.size_z = axes
 
-    for centre, radius, axes in BALLS:
-        add(centre, radius, axes)
+    for center, radius, axes in BALLS:
+        add(center, radius, axes)
     for across, lean in EARS:
         for k in range(7):
             t = k / 6

@@ -118,7 +118,7 @@ def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
         statistics.iterations,
         statistics.photons,
         statistics.seconds,
-        statistics.radius_metres,
+        statistics.radius_meters,
         sum(statistics.memory_bytes.values()),
         statistics.build_seconds,
         statistics.device,

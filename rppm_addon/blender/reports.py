@@ -37,7 +37,7 @@ class RenderReport:
     """Emitted in all iterations."""
     seconds: float
     """Since the render began, building included."""
-    radius_metres: float
+    radius_meters: float
     """r_max of the last iteration."""
     memory_bytes: int
     """On the device."""
@@ -87,7 +87,7 @@ def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
         status.iteration,
         status.photons,
         status.elapsed_seconds,
-        status.radius_metres,
+        status.radius_meters,
         status.memory_bytes,
         build_seconds=max(0.0, status.elapsed_seconds - rendering),
         triangles=scene.triangle_count,

@@ -177,7 +177,7 @@ def _region_of(camera: Camera) -> tuple[float, float, float, float]:
 
 def status_text(status: SessionStatus, paused: bool) -> str:
     """One line over the viewport."""
-    text = f"Sample {status.iteration}/{status.iterations} | Radius {_metres(status.radius_metres)}"
+    text = f"Sample {status.iteration}/{status.iterations} | Radius {_meters(status.radius_meters)}"
     if paused:
         return f"{text} | Paused"
     if status.settled:
@@ -185,7 +185,7 @@ def status_text(status: SessionStatus, paused: bool) -> str:
     return f"{text} | {status.photons_per_second / 1e6:.2f} million photons a second"
 
 
-def _metres(length: float) -> str:
+def _meters(length: float) -> str:
     return f"{length * 1e3:.3g} mm" if length < 1.0 else f"{length:.3g} m"
 
 

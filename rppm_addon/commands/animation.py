@@ -48,7 +48,7 @@ class _FrameBar:
 class Animation:
     """Renders the frames of a request and keeps what is worth reporting.
 
-    A frame that cannot be rendered is told and left out; files that cannot be written end it all. On an interruption
+    A frame that cannot be rendered is reported and skipped; files that cannot be written end it all. On an interruption
     the frame under way is dropped, so that every file holds a whole frame.
     """
 

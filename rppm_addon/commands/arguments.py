@@ -186,12 +186,12 @@ def _add_inspect(commands: _Commands, scene: argparse.ArgumentParser, common: ar
         "inspect",
         parents=[scene, common],
         help="picture what the camera's rays cost in the deep cubemap",
-        description="Build the deep cubemap of a scene, trace a ray through each pixel's centre, and picture its cost.",
+        description="Build the deep cubemap of a scene, trace a ray through each pixel's center, and picture its cost.",
     )
     inspect.add_argument("file", type=Path, metavar="FILE", help="a .blend file or a .npz of rppm export")
     _add_output(
         inspect,
-        ".png of one quantity in false colours, or .exr of all as they are; may be repeated",
+        ".png of one quantity in false colors, or .exr of all as they are; may be repeated",
     )
     inspect.add_argument(
         "--quantity",

@@ -41,7 +41,7 @@ class CheckpointRequest:
     """What to know of the file that the scene comes from, as JSON has it."""
 
     def check(self) -> None:
-        """Raise SettingsError or CheckpointError for what can be told before anything is rendered."""
+        """Raise SettingsError or CheckpointError for what can be known before anything is rendered."""
         if self.checkpoint is None:
             if self.resume:
                 raise SettingsError("--resume needs a checkpoint to go on from; name it with --checkpoint FILE.exr")
@@ -108,7 +108,7 @@ class StillKeeper:
         return Continuation(left_out, begin, self._keep, 60.0 * self.request.minutes)
 
     def _keep(self, pause: "Pause") -> None:
-        """Write the checkpoint; what fails is told and tried again the next time: the render is worth more."""
+        """Write the checkpoint; what fails is reported and tried again the next time: the render is worth more."""
         self._last = pause if self.request.part is not None else None
         self._failure = None
         if self.request.checkpoint is None:
@@ -161,10 +161,10 @@ def refuse_differences(path: Path, mine: "StillRender", other: "StillRender", ot
         raise CheckpointError(f"{path} is of another scene than {others_name} (other {names}); {remedy}")
     settings = _differing(mine.settings, other.settings)
     if settings:
-        told = [f"{name} {mine.settings.get(name)} instead of {other.settings.get(name)}" for name in settings]
-        more = f" and {len(told) - _MOST_DIFFERENCES} more" if len(told) > _MOST_DIFFERENCES else ""
+        differences = [f"{name} {mine.settings.get(name)} instead of {other.settings.get(name)}" for name in settings]
+        more = f" and {len(differences) - _MOST_DIFFERENCES} more" if len(differences) > _MOST_DIFFERENCES else ""
         raise CheckpointError(
-            f"{path} has other settings than {others_name} ({', '.join(told[:_MOST_DIFFERENCES])}{more}); "
+            f"{path} has other settings than {others_name} ({', '.join(differences[:_MOST_DIFFERENCES])}{more}); "
             f"ask for the same, or {remedy}"
         )
 

@@ -11,12 +11,12 @@ from ..scene.scene import Scene
 from ..scene.settings import CUBEMAP_COSTS
 from .picture_files import write_png
 
-# From dark blue over green to yellow: brightness grows all the way, so that grey printers show it too.
+# From dark blue over green to yellow: brightness grows all the way, so that gray printers show it too.
 _COLORS = np.array([[0.05, 0.03, 0.25], [0.20, 0.25, 0.55], [0.12, 0.50, 0.56], [0.30, 0.72, 0.40], [0.99, 0.91, 0.15]])
 
 
 def write_inspection(path: Path, costs: np.ndarray, quantity: str, scene: Scene) -> float:
-    """Write one quantity in false colours (.png) or all as they are (.exr); returns what the last colour stands for.
+    """Write one quantity in false colors (.png) or all as they are (.exr); returns what the last color stands for.
 
     ``costs``: (height, width, 4) of CUBEMAP_COSTS. Raises PictureError.
     """
@@ -34,7 +34,7 @@ def write_inspection(path: Path, costs: np.ndarray, quantity: str, scene: Scene)
 
 
 def false_colors(values: np.ndarray) -> np.ndarray:
-    """(..., 3) uint8 sRGB of values from 0 to 1; greater ones get the last colour."""
+    """(..., 3) uint8 sRGB of values from 0 to 1; greater ones get the last color."""
     places = np.linspace(0.0, 1.0, len(_COLORS))
     channels = [np.interp(values, places, _COLORS[:, channel]) for channel in range(3)]
     return np.rint(255.0 * np.stack(channels, axis=-1)).astype(np.uint8)

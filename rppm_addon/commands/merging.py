@@ -23,7 +23,7 @@ from .recorder import picture_metadata, write_frame
 
 @dataclass
 class MergedStill:
-    """The picture of all parts, and what is told of it."""
+    """The picture of all parts, and its report."""
 
     frame: Frame
     render: StillRender
@@ -32,7 +32,7 @@ class MergedStill:
     seconds: float
     """Spent on all parts."""
     devices: list[str]
-    radius_metres: float
+    radius_meters: float
     parts: list[tuple[int, int, str]]
     """First iteration, the one after the last, and file of each part, in their order."""
 
@@ -50,7 +50,7 @@ class MergedStill:
     def write(self, paths: Sequence[Path]) -> None:
         """Write pictures as rppm render does. Raises PictureError or BlenderError."""
         devices = ", ".join(self.devices)
-        metadata = picture_metadata(self.iterations, self.photons, self.seconds, devices, self.radius_metres)
+        metadata = picture_metadata(self.iterations, self.photons, self.seconds, devices, self.radius_meters)
         for path in paths:
             if path.suffix == ".exr":
                 write_frame(path, self.frame, self.render.placement, metadata)
@@ -97,7 +97,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
         sum(summary.photons for summary in summaries),
         sum(summary.seconds for summary in summaries),
         sorted({summary.device for summary in summaries}),
-        summaries[-1].radius_metres,
+        summaries[-1].radius_meters,
         [(summary.left_out, summary.iteration, str(path)) for summary, path in found],
     )
 

@@ -143,7 +143,7 @@ class RenderRecorder(RenderObserver):
         result, scene = self.result, self.scene
         statistics = result.statistics
         metadata = picture_metadata(
-            statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_metres
+            statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_meters
         )
         for path in self.request.outputs:
             if path.suffix == ".exr":
@@ -197,15 +197,15 @@ def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> Re
 
 
 def picture_metadata(
-    iterations: int, photons: int, seconds: float, device: str, radius_metres: float
+    iterations: int, photons: int, seconds: float, device: str, radius_meters: float
 ) -> dict[str, object]:
-    """What the EXR of a whole picture tells of its render."""
+    """Metadata of the EXR of a whole picture."""
     return {
         "iterations": iterations,
         "photons": photons,
         "seconds": f"{seconds:.3f}",
         "device": device,
-        "radius_metres": f"{radius_metres:.6g}",
+        "radius_meters": f"{radius_meters:.6g}",
     }
 
 

@@ -38,7 +38,7 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
 
         data_values += values_of_frames(settings)
         blend_request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
-    apply_settings(RenderSettings(), settings)  # a wrong value is better told now than after Blender's start
+    apply_settings(RenderSettings(), settings)  # a wrong value is better reported now than after Blender's start
     if options.frames is not None:
         return _render_frames(options, bar, blend_request, settings)
     options.output = outputs_of_still(options)

@@ -42,10 +42,10 @@ def has_gpu(devices: Path = Path("/dev")) -> bool:
 def system_release() -> str:
     """The system's name and version, such as "debian 12"; empty where it does not tell."""
     try:
-        told = platform.freedesktop_os_release()
+        release = platform.freedesktop_os_release()
     except OSError:
         return ""
-    return f"{told['ID']} {told.get('VERSION_ID', '')}".strip()
+    return f"{release['ID']} {release.get('VERSION_ID', '')}".strip()
 
 
 def libraries(folder: Path) -> list[Path]:

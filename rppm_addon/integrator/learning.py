@@ -30,7 +30,7 @@ class Learning:
     """The radii of a picture's iterations. They begin with what the pilot view shows."""
 
     def __init__(self, context: StageContext, footprints: np.ndarray) -> None:
-        """footprints: the pilot view's, (rows, columns) metres."""
+        """footprints: the pilot view's, (rows, columns) meters."""
         settings, camera, geometry = context.settings, context.scene.camera, context.geometry
         self._geometry = geometry
         self._alpha = settings.alpha
@@ -42,12 +42,12 @@ class Learning:
         self.leaves_importon = footprints > 0
         """(rows, columns) of the pilot view."""
         self.limits = radius_limits(settings, footprints, geometry.radius)
-        """r_min and r_max of the first iteration, metres."""
+        """r_min and r_max of the first iteration, meters."""
         self.widest_radius = widest_radius(footprints, geometry.bounds_low, geometry.bounds_high)
         self._automatic = settings.photons == 0
         self.photon_counts = PhotonCounts(context.scene.photon_count, context.scene.photon_count)
         self.wide_radius = 0.0
-        """Of the first iteration, metres: what diffused photons are spread over. Known once its photons are."""
+        """Of the first iteration, meters: what diffused photons are spread over. Known once its photons are."""
         self.diffused_photons_found: float | None = None
         """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
 

@@ -9,9 +9,9 @@ from ..scene.settings import RenderSettings
 from .common.band import bands_of
 from .common.living_paths import LivingPaths
 from .common.records import (
+    ADJOINT_QUERY,
     CAMERA_PATH,
     CLOSURE,
-    DEPARTURE,
     FLUX_GROUP,
     FLUX_SUMS,
     GATHERING_VERTEX,
@@ -110,7 +110,7 @@ def expected_memory(
             "photon rays": RAY.size * photons,
             "photon hits": HIT.size * photons,
             "photon closures": CLOSURE.size * photons,
-            "photon departures": DEPARTURE.size * photons,
+            "adjoint queries": ADJOINT_QUERY.size * photons,
             "world radiances": 4 * photons,
             "emitted photons": PHOTON_PATH.size * photons,
             "flux sums": FLUX_SUMS.size * -(-photons // FLUX_GROUP),

@@ -53,7 +53,7 @@ def at_pixels(pilot: np.ndarray, width: int, height: int) -> np.ndarray:
 
 
 def first_footprints(context: StageContext, stages: StageSet) -> np.ndarray:
-    """(rows, columns) Eq. 3 radii of the camera's first hits, metres; 0 where there is no importon."""
+    """(rows, columns) Eq. 3 radii of the camera's first hits, meters; 0 where there is no importon."""
     camera, settings = context.scene.camera, context.settings
     importons, iteration = stages.importons, Iteration(0, settings.seed)
     unlimited = Radii(0.0, 1e30, 0.0, radius_in_pixels(settings, camera), 1.0, 1.0)

@@ -23,7 +23,7 @@ class RenderState:
     photon_counts: PhotonCounts
     """Where automatic, known once the first iteration has been."""
     wide_radius: float
-    """Of the first iteration, metres: what diffused photons are spread over."""
+    """Of the first iteration, meters: what diffused photons are spread over."""
     diffused_photons_found: float | None
     """What photons_found, or photons_found_by_ray, says of the last iteration, if the next one learns from it."""
     radiance: np.ndarray

@@ -51,8 +51,8 @@ def emits(graph: NodeGraph) -> Emits:
 
 
 @dataclass(frozen=True)
-class LampVariation:
-    """What of a lamp its emission depends on."""
+class LightVariation:
+    """What of a light its emission depends on."""
 
     place: bool
     """Its normal or the place on it."""
@@ -70,14 +70,14 @@ class LampVariation:
 _SAME_EVERYWHERE = {
     "light_path", "object_info", "particle_info", "attribute", "uvmap", "random_per_island", "vector_transform",
 }  # fmt: skip
-"""Nodes that tell the same of all places of a lamp, but for what feeds them."""
+"""Nodes that tell the same of all places of a light, but for what feeds them."""
 _BY_DIRECTION = {("new_geometry", "incoming"), ("tex_coord", "reflection")}
 _BY_UV = {("tex_coord", "uv"), ("new_geometry", "parametric")}
 _BY_BOTH = {"fresnel", "layer_weight"}
 
 
-def lamp_variation(graph: NodeGraph) -> LampVariation:
-    """What the emission of a lamp's graph depends on."""
+def light_variation(graph: NodeGraph) -> LightVariation:
+    """What the emission of a light's graph depends on."""
     nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
     asked = {
         (graph.nodes[value.node].kind, value.output)
@@ -88,7 +88,7 @@ def lamp_variation(graph: NodeGraph) -> LampVariation:
     asked = {(kind, output) for kind, output in asked if kind not in _SAME_EVERYWHERE and kind != "tex_image"}
     both = any(kind in _BY_BOTH for kind, _ in asked)
     box = any(node.kind == "tex_image" and node.options.get("projection") == "BOX" for node in nodes)
-    return LampVariation(
+    return LightVariation(
         place=both or box or bool(asked - _BY_DIRECTION - _BY_UV),
         direction=both or bool(asked & _BY_DIRECTION),
         uv=bool(asked & _BY_UV),

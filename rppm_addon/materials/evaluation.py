@@ -28,32 +28,32 @@ Record(
     orthographic="uint",
     pixel_size="float",
     ray_length="float",
-    lamp_position="vec3",
-    lamp_radius="float",
-    lamp_u="vec3",
-    lamp_shape="uint",
-    lamp_v="vec3",
-    lamp_kind="uint",
-    lamp_normal="vec3",
+    light_position="vec3",
+    light_radius="float",
+    light_u="vec3",
+    light_shape="uint",
+    light_v="vec3",
+    light_kind="uint",
+    light_normal="vec3",
 )
 
 _CHUNK = 1 << 18
 
 
 class MapShape(enum.IntEnum):
-    """What the pixels of a lamp's map stand for."""
+    """What the pixels of a light's map stand for."""
 
     NORMALS = 1
     """Normals of a sphere, equirectangular."""
     DIRECTIONS = 2
     """Directions of the light, equirectangular."""
     CONE = 3
-    """Directions of the light by where they meet a square before the lamp."""
+    """Directions of the light by where they meet a square before the light."""
     PLACES = 4
     """Places on an area light."""
 
 
-class LampKind(enum.IntEnum):
+class LightSurfaceKind(enum.IntEnum):
     """Whose nodes are asked."""
 
     SPHERE = 0
@@ -63,14 +63,14 @@ class LampKind(enum.IntEnum):
 
 
 Constants("MapShapes", MAP=MapShape)
-Constants("LampKinds", LAMP=LampKind)
+Constants("LightSurfaceKinds", LIGHT_SURFACE=LightSurfaceKind)
 
 
 @dataclass(frozen=True)
-class LampSurface:
-    """A lamp before its nodes: vectors (3,) in world space, metres."""
+class LightSurface:
+    """A light before its nodes: vectors (3,) in world space, meters."""
 
-    kind: LampKind
+    kind: LightSurfaceKind
     shape: MapShape
     position: np.ndarray
     normal: np.ndarray
@@ -91,7 +91,7 @@ class GraphEvaluator:
         self._emissions = GrowingBuffer(context, "emission by direction")
         self._nothing = context.moderngl.buffer(reserve=1024)
         """Stands for the geometry, which these graphs cannot ask about."""
-        self._instance = GrowingBuffer(context, "object of a lamp")
+        self._instance = GrowingBuffer(context, "object of a light")
 
     def run(
         self,
@@ -103,9 +103,9 @@ class GraphEvaluator:
         from_camera: bool,
         ray_length: float,
         camera: Camera,
-        lamp: LampSurface | None = None,
+        light_surface: LightSurface | None = None,
     ) -> np.ndarray:
-        """(height, width, 3) float32 emission in the directions of an equirectangular map, or of a lamp over its map,
+        """(height, width, 3) float32 emission in the directions of an equirectangular map, or of a light over its map,
         row 0 at the bottom.
 
         text: the compiled graph; first_constant: where its constants start in the buffer MaterialData.
@@ -116,9 +116,11 @@ class GraphEvaluator:
         bound = {name: buffers.get(name, self._nothing) for name in program.blocks}
         bound["Emissions"] = self._emissions.buffer
         names = ("position", "radius", "u", "v", "normal", "shape", "kind")
-        lamp_parameters = {f"lamp_{name}": 0 if lamp is None else getattr(lamp, name) for name in names}
-        if lamp is not None:
-            self._instance.upload(np.atleast_1d(lamp.instance))
+        light_parameters = {
+            f"light_{name}": 0 if light_surface is None else getattr(light_surface, name) for name in names
+        }
+        if light_surface is not None:
+            self._instance.upload(np.atleast_1d(light_surface.instance))
             bound |= {"ShadingInstances": self._instance.buffer} if "ShadingInstances" in bound else {}
         parts = []
         for first_row in range(0, height, rows):
@@ -129,7 +131,7 @@ class GraphEvaluator:
                 "from_camera": from_camera,
                 "attribute_count": 0, "orthographic": camera.orthographic, "pixel_size": 0.0,
                 "ray_length": ray_length,
-                **lamp_parameters,
+                **light_parameters,
             }  # fmt: skip
             program.run(count, bound, parameters)
             parts.append(self._emissions.read(np.dtype("<f4"), 4 * count).reshape(-1, width, 4)[..., :3])

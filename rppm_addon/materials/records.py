@@ -17,7 +17,7 @@ MATERIAL = Record(
     unused="uint",
 )
 """A material: absorption of its interior in 1/m, the program that evaluates its node graph, and where its constants
-start in MaterialData; whether lamps shine through where it is transparent (0) or not (1); whether what it scatters
+start in MaterialData; whether lights shine through where it is transparent (0) or not (1); whether what it scatters
 depends on where it is seen from (1)."""
 StorageBlock("Materials", "Material materials[];")
 

@@ -15,7 +15,7 @@ from ..scene.sharing import same_members
 from . import albedo_tables
 from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
 from .emitted import Emits, emits
-from .evaluation import GraphEvaluator, LampSurface
+from .evaluation import GraphEvaluator, LightSurface
 from .records import IMAGE_ENTRY, MATERIAL, TexelFormat
 from .view_dependence import depends_on_view
 
@@ -83,7 +83,7 @@ class MaterialTables:
     def build(self, scene: Scene) -> None:
         """Compile the graphs of a scene and upload their constants, and the images that they use.
 
-        A graph that is not well formed is replaced by a grey surface, or gives no light, with a warning in
+        A graph that is not well formed is replaced by a gray surface, or gives no light, with a warning in
         scene.warnings.
         """
         self.follow(scene)
@@ -91,7 +91,7 @@ class MaterialTables:
         materials = [*scene.materials, default_material()]
         compiled, self.emits, self.users = [], [], {}
         for material in materials:
-            graph, emission = self._compile(material.graph, f'Material "{material.name}"', "it is grey")
+            graph, emission = self._compile(material.graph, f'Material "{material.name}"', "it is gray")
             compiled.append(graph)
             self.emits.append(emission)
             self.users.setdefault(graph.text, []).append(material.name)
@@ -150,17 +150,17 @@ class MaterialTables:
         height: int = 1,
         from_camera: bool = False,
         ray_length: float = 0.0,
-        lamp: LampSurface | None = None,
+        light_surface: LightSurface | None = None,
     ) -> np.ndarray:
         """(height, width, 3) float32 emission of a graph of the scene that belongs to no surface.
 
         Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
-        ray_length: what Light Path tells, metres; lamp: whose nodes they are, with a map of another shape.
+        ray_length: what Light Path tells, meters; light_surface: whose nodes they are, with a map of another shape.
         """
         text, first, owner = self._others[id(graph)]
         try:
             return self._evaluator.run(
-                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera, lamp
+                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera, light_surface
             )
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")

@@ -15,7 +15,7 @@ _OUTPUTS = {
     ("new_geometry", "backfacing"),
     ("tex_coord", "reflection"),
 }
-"""Kinds of nodes with outputs that tell of the viewer."""
+"""Kinds of nodes with outputs that depend on the viewer."""
 
 
 def depends_on_view(graph: NodeGraph) -> bool:

@@ -53,9 +53,9 @@ class Aperture:
     """A thin lens: what lies at the distance of focus is sharp."""
 
     radius: float
-    """Metres."""
+    """Meters."""
     focus_distance: float
-    """Metres: along the view axis, or in a panorama along the ray."""
+    """Meters: along the view axis, or in a panorama along the ray."""
     blades: int = 0
     """Corners of the opening; less than 3 is a disk."""
     rotation: float = 0.0
@@ -81,7 +81,7 @@ class Camera:
     height: int
     orthographic: bool = False
     clip_start: float = 0.1
-    """Metres along the view axis, or in a panorama along the ray, as ``clip_end``."""
+    """Meters along the view axis, or in a panorama along the ray, as ``clip_end``."""
     clip_end: float = 1000.0
     crop: tuple[int, int, int, int] | None = None
     """x_min, y_min, x_max, y_max in pixels, row 0 at the bottom; None is the whole frame."""

@@ -31,10 +31,10 @@ class Light:
     """(3,) float64 linear Rec.709: POINT and SPOT radiant intensity on the axis W/sr;
     SUN irradiance on a facing surface W/m^2; AREA radiance W/(m^2 sr)."""
     radius: float = 0.0
-    """POINT and SPOT: radius of the emitting sphere, metres."""
+    """POINT and SPOT: radius of the emitting sphere, meters."""
     soft_falloff: bool = False
     """POINT and SPOT: a disk that faces each point it lights in place of the sphere, which keeps
-    surfaces near a large lamp from glaring (Blender's Soft Falloff)."""
+    surfaces near a large light from glaring (Blender's Soft Falloff)."""
     spot_angle: float = np.pi
     """SPOT: full angle of the cone, radians."""
     spot_blend: float = 0.0
@@ -59,7 +59,7 @@ class Light:
 
 @dataclass
 class World:
-    """The surroundings: constant radiance, or what a node graph gives by direction."""
+    """The environment: constant radiance, or what a node graph gives by direction."""
 
     radiance: np.ndarray = field(default_factory=lambda: np.zeros(3))
     """(3,) float64 W/(m^2 sr); multiplies what the graph gives where there is one."""

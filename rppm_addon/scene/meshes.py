@@ -69,7 +69,7 @@ class RayVisibility(enum.IntFlag):
 
 @dataclass(slots=True)
 class Particle:
-    """What the Particle Info node tells of the particle that an instance stands for."""
+    """What the Particle Info node gives for the particle that an instance stands for."""
 
     index: float = 0.0
     random: float = 0.0

@@ -31,7 +31,7 @@ class Scene:
     settings: RenderSettings = field(default_factory=RenderSettings)
     exposure: float = 1.0
     """Factor on every radiance of the film (Cycles' film exposure)."""
-    cubemap_centre: np.ndarray | None = None
+    cubemap_center: np.ndarray | None = None
     """(3,) meters where the deep cubemap's center goes; None is automatic."""
     shutter: Shutter | None = None
     """What moves while the picture is taken; None is nothing."""

@@ -48,14 +48,14 @@ class FirstPhotonHits(enum.Enum):
     AUTOMATIC = "AUTOMATIC"
     """Traced at first, then whichever is faster, found by trying both."""
     RASTERIZED = "RASTERIZED"
-    """Lamps and suns rasterize what they see, as in the paper."""
+    """Point lights, spots and suns rasterize what they see, as in the paper."""
     TRACED = "TRACED"
     """Through the deep cubemap, like all later segments."""
 
 
 @dataclass
 class RenderSettings:
-    """Settings of the photon mapper. Lengths in metres, times in seconds."""
+    """Settings of the photon mapper. Lengths in meters, times in seconds."""
 
     iterations: int = setting(
         128,
@@ -212,13 +212,16 @@ class RenderSettings:
     first_photon_hits: FirstPhotonHits = setting(
         FirstPhotonHits.AUTOMATIC,
         "First Photon Hits",
-        "How it is found where photons from lamps and suns hit first: any way gives the same picture",
+        "How it is found where photons from point lights, spots and suns hit first: any way gives the same picture",
         choices={
             FirstPhotonHits.AUTOMATIC: (
                 "Automatic",
                 "Trace the first samples, then try both and take the faster one",
             ),
-            FirstPhotonHits.RASTERIZED: ("Rasterized", "Rasterize what lamps and suns see, as the paper does"),
+            FirstPhotonHits.RASTERIZED: (
+                "Rasterized",
+                "Rasterize what point lights, spots and suns see, as the paper does",
+            ),
             FirstPhotonHits.TRACED: ("Traced", "Trace rays through the deep cubemap"),
         },
     )

@@ -24,7 +24,7 @@ class Sky:
     sun_size: float = math.radians(0.545)
     """Full angle under which the disk is seen, radians; the sun's irradiance does not depend on it."""
     sun_intensity: float = 1.0
-    """Factor of the disc's radiance; the sky's light stays as it is."""
+    """Factor of the disk's radiance; the sky's light stays as it is."""
     altitude: float = 100.0
     """Height of the viewer above the sea, meters."""
     air_density: float = 1.0

@@ -30,7 +30,7 @@ from .continuation import Pause
 if TYPE_CHECKING:
     import OpenEXR
 
-FORMAT = 4
+FORMAT = 5
 _ATTRIBUTE = "rppm.checkpoint"
 _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
@@ -64,7 +64,7 @@ class CheckpointSummary:
     wide_radius: float
     diffused_photons_found: float | None
     device: str
-    radius_metres: float
+    radius_meters: float
     seconds: float
     """Spent on it, in all processes that went on with it."""
 
@@ -87,7 +87,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         state.wide_radius,
         state.diffused_photons_found,
         pause.device,
-        pause.radius_metres,
+        pause.radius_meters,
         seconds,
     )
     height, width = state.radiance.shape[:2]
@@ -116,7 +116,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
 
 
 def read_summary(path: str | Path) -> CheckpointSummary:
-    """What a checkpoint tells of itself. Raises CheckpointError when it is none or damaged."""
+    """A checkpoint's summary. Raises CheckpointError when it is none or damaged."""
     with _opened(path, header_only=True) as (_, summary):
         return summary
 
@@ -144,11 +144,11 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             {entry.name: layer(*entry.layers) for entry in passes if entry in FILM_PASSES},
             layer(*_COUNTS) if _COUNTS[0] in film else np.zeros((0, 0, 2), np.uint32),
             layer("Radius Factor.V"),
-            pairs("left", "useful"),
-            pairs("learnt.left", "learnt.useful") if "learnt.left" in guide else None,
+            pairs("left", "contributed"),
+            pairs("learned.left", "learned.contributed") if "learned.left" in guide else None,
         )
         inspections = {entry.name: layer(*entry.layers) for entry in passes if entry not in FILM_PASSES}
-        return summary, Pause(state, summary.device, summary.radius_metres, inspections)
+        return summary, Pause(state, summary.device, summary.radius_meters, inspections)
 
 
 def _film_channels(state: RenderState, inspections: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -164,9 +164,9 @@ def _film_channels(state: RenderState, inspections: Mapping[str, np.ndarray]) ->
 
 
 def _guide_channels(state: RenderState) -> dict[str, np.ndarray]:
-    tallies = {"left": state.tallies[:, 0], "useful": state.tallies[:, 1]}
+    tallies = {"left": state.tallies[:, 0], "contributed": state.tallies[:, 1]}
     if state.learned is not None:
-        tallies |= {"learnt.left": state.learned[:, 0], "learnt.useful": state.learned[:, 1]}
+        tallies |= {"learned.left": state.learned[:, 0], "learned.contributed": state.learned[:, 1]}
     return {name: np.ascontiguousarray(array[None]) for name, array in tallies.items()}
 
 
@@ -200,7 +200,7 @@ def _check_whole(path: str | Path) -> None:
 
 @contextlib.contextmanager
 def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File", CheckpointSummary]]:
-    """The file, found whole, and what it tells of itself; what goes wrong while it is read becomes CheckpointError."""
+    """The file, found whole, and its summary; what goes wrong while it is read becomes CheckpointError."""
     import OpenEXR
 
     try:

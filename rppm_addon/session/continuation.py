@@ -17,7 +17,7 @@ class Pause:
     state: RenderState
     device: str
     """Its label: another one, or another driver, computes the same picture, but not bit for bit."""
-    radius_metres: float
+    radius_meters: float
     """r_max of the last iteration."""
     inspections: dict[str, np.ndarray] = field(default_factory=dict)
     """Passes that are computed once, as Frame.passes has them."""

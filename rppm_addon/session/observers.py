@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class RenderObserver:
-    """Is told what happens to a render. This one ignores it all; subclasses override."""
+    """Is notified of what happens to a render. This one ignores it all; subclasses override."""
 
     snapshots: tuple[float, ...] = ()
     """Ascending seconds since on_start at which on_snapshot wants a frame."""

@@ -178,7 +178,7 @@ class SlicedRender:
             build_seconds=mapper.build_seconds,
             device=self._context.information.label,
             triangles=mapper.triangle_count,
-            radius_metres=mapper.splat_radii[0],
+            radius_meters=mapper.splat_radii[0],
             density_estimation=mapper.density_estimation.name,
             stage_seconds=mapper.timers.seconds,
             memory_bytes=mapper.memory_bytes,
@@ -257,7 +257,7 @@ class Renderer:
         """Have the driver compile the programs that pictures of a scene need, and keep them on the disk.
 
         The scene is rendered, as drivers compile for the state in which programs run: make it small. ``on_program`` is
-        told before each program that runs for the first time the how many-th it is, and how many there are so far.
+        notified before each program that runs for the first time the how many-th it is, and how many there are so far.
         Returns their number. Raises the errors of scene/errors.py.
         """
         library = self._library

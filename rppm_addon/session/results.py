@@ -48,7 +48,7 @@ class RenderStatistics:
     build_seconds: float
     device: str
     triangles: int
-    radius_metres: float
+    radius_meters: float
     density_estimation: str = ""
     """The route that was taken, a name of DensityEstimation."""
     stage_seconds: dict[str, float] = field(default_factory=dict)

@@ -2,9 +2,9 @@
 #include "common/geometry.glsl"
 
 // Power heuristic (Veach 1997, section 9.2.4): share of the first of two ways to sample a direction.
-float first_way_share(float first_density, float second_density) {
-    float ratio = second_density / first_density;
-    return first_density > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 0.0;
+float power_heuristic(float pdf, float other_pdf) {
+    float ratio = other_pdf / pdf;
+    return pdf > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 0.0;
 }
 
 // Concentric map of the unit square to the unit disk (Shirley and Chiu 1997).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// int() of floats whose magnitude is below 2^22 and not NaN, by the bits of a sum: around 1.5 * 2^23 neighbouring
+// int() of floats whose magnitude is below 2^22 and not NaN, by the bits of a sum: around 1.5 * 2^23 neighboring
 // floats are 1 apart. Drivers on the processor convert one thread after the other, and units of a GPU convert at a
 // fraction of the rate at which they add.
 const float WHOLE_NUMBERS = 12582912.0;

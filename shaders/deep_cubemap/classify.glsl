@@ -13,9 +13,9 @@ void classify_cell(uvec4 job, ivec2 within) {
     uint triangle = job.x, place = cubemap_tiles[job_tile(job)];
     int face = place_face(place);
     ivec2 cell = 4 * place_cell(place) + within;
-    vec3 a = to_face(triangle_vertices[3u * triangle].xyz - deep_cubemap.centre, face);
-    vec3 b = to_face(triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.centre, face);
-    vec3 c = to_face(triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.centre, face);
+    vec3 a = to_face(triangle_vertices[3u * triangle].xyz - deep_cubemap.center, face);
+    vec3 b = to_face(triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.center, face);
+    vec3 c = to_face(triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.center, face);
     vec2 depths;
     int side_exponent = int(parameters.side_exponent);
     vec4 bounds = cell_bounds(cell, cell_size(side_exponent));

@@ -3,7 +3,7 @@
 // The common part of a triangle and a cone is a polygon. Its corners lie on the triangle's edges, or
 // where one of the cone's four corner lines pierces the triangle, or at the cone's tip. Edges are
 // clipped one by one and need no orientation, so triangles seen edge-on, slivers and triangles around
-// the centre are treated like all others. Everything is in face coordinates about the centre.
+// the center are treated like all others. Everything is in face coordinates about the center.
 
 // Distances (scaled) from the cone's four planes, positive inside, planes moved out by the margin.
 vec4 inside_cone(vec3 point, vec4 bounds, float margin) {
@@ -33,7 +33,7 @@ struct ConeCorners {
 };
 
 // What the corner lines of any cone need of a triangle. An edge's moment tells on which side of the
-// edge a line through the centre passes.
+// edge a line through the center passes.
 ConeCorners prepare_corners(vec3 a, vec3 b, vec3 c) {
     return ConeCorners(
         cross(b - a, c - a), a, cross(b, c - b), cross(c, a - c), cross(a, b - a), b - c, c - a, a - b);
@@ -54,10 +54,10 @@ bool corner_depth(ConeCorners triangle, int corner, vec4 bounds, float margin, o
     return between && approach != 0.0 && depth >= -margin;
 }
 
-// Whether the triangle may come within `reach` of the centre along every axis.
-// Planes that are moved out meet behind the centre, margin / tan(half the cone's angle) deep: so far
-// around the centre the polygon has corners that are neither on edges nor on corner lines. Without
-// this, triangles that contain the centre or almost do would seem to begin at their edges.
+// Whether the triangle may come within `reach` of the center along every axis.
+// Planes that are moved out meet behind the center, margin / tan(half the cone's angle) deep: so far
+// around the center the polygon has corners that are neither on edges nor on corner lines. Without
+// this, triangles that contain the center or almost do would seem to begin at their edges.
 bool touches_tip(ConeCorners triangle, vec3 b, vec3 c, float reach) {
     vec3 low = min(min(triangle.a, b), c), high = max(max(triangle.a, b), c);
     return all(lessThanEqual(low, vec3(reach))) && all(greaterThanEqual(high, vec3(-reach)))
@@ -96,7 +96,7 @@ bool cone_depths(vec3 a, vec3 b, vec3 c, vec4 bounds, float margin, out vec2 int
                 widen(clamp(depth, range.x, range.y), interval);
             }
         }
-        // the planes meet 2 * margin / (bounds.y - bounds.x) behind the centre
+        // the planes meet 2 * margin / (bounds.y - bounds.x) behind the center
         if (touches_tip(triangle, b, c, margin * (2.0 + 2.0 / (bounds.y - bounds.x))))
             interval.x = min(interval.x, 0.0);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles near the centre. There cells are thinner than the rounding of a ray's points, so rays
+// Triangles near the center. There cells are thinner than the rounding of a ray's points, so rays
 // test this list instead of cells while they are within deep_cubemap.core_radius.
 
 #ifdef DEEP_CUBEMAP_BUILD

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Faces and cells. Face 2a + s looks along axis a, backwards if s = 1. In face coordinates z is the
-// depth along that axis and x, y are lateral; a cell is the cone from the centre through a square
+// depth along that axis and x, y are lateral; a cell is the cone from the center through a square
 // of the plane z = 1, where the face spans [-1, 1]^2.
 
 vec3 to_face(vec3 v, int face) {

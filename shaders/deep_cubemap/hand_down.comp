@@ -38,8 +38,8 @@ void main() {
     OverlapFragment fragment = old_fragments[index];
     CubemapCell cell = cubemap_cells[fragment.cell];
     uvec2 depths = uvec2(fragment.near, fragment.far);
-    uvec2 fractions = quantise_interval(depths, cell);
-    uint quantised_depths = fractions.x | fractions.y << 16;
+    uvec2 fractions = quantize_interval(depths, cell);
+    uint quantized_depths = fractions.x | fractions.y << 16;
     uint slices = depth_slices(depths, cell);
     atomicOr(cubemap_cells[fragment.cell].slices, slices);
     if (content_kind(cell.content) == CELL_TILE) {
@@ -48,14 +48,14 @@ void main() {
         uint content = atomicAdd(cubemap_cells[fragment.cell].content, 1u);
         uint place = content_start(content) + content_count(content);
         if (place < deep_cubemap.entry_capacity) {
-            cell_entries[place] = uvec2(fragment.triangle, quantised_depths);
+            cell_entries[place] = uvec2(fragment.triangle, quantized_depths);
         }
     } else {
         uint number = binned_cell_number(cell.content);
         if (number < deep_cubemap.binned_cell_capacity) atomicAdd(binned_cells[number].slices, uint(bitCount(slices)));
         uint place = atomicAdd(deep_cubemap.handed_binned_count, 1u);
         if (place < deep_cubemap.binned_fragment_capacity) {
-            binned_fragments[place] = BinnedFragment(fragment.cell, fragment.triangle, quantised_depths);
+            binned_fragments[place] = BinnedFragment(fragment.cell, fragment.triangle, quantized_depths);
         }
     }
 }

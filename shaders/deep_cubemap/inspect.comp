@@ -34,11 +34,11 @@ uint listed_at(vec3 point) {
 void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
-    vec2 at = window_point(index), centre = vec2(0.0);
-    Ray ray = world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, centre)
-                        : panorama_ray(at, centre));
+    vec2 at = window_point(index), center = vec2(0.0);
+    Ray ray = world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, center)
+                        : panorama_ray(at, center));
     Hit hit = deep_cubemap_hit(ray);
     uint listed = hit.triangle == NO_TRIANGLE
-        ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.centre);
+        ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.center);
     inspections[index] = vec4(walk_counts.xy, listed, walk_counts.z);
 }

@@ -1,8 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A thread a triangle: culls it against the six faces, and lists it for those tiles of the base level
-// that it may be seen through. A triangle that comes near the centre is listed among the core triangles;
-// if all of it is there, only there, for cells near the centre are never walked.
+// that it may be seen through. A triangle that comes near the center is listed among the core triangles;
+// if all of it is there, only there, for cells near the center are never walked.
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
@@ -50,9 +50,9 @@ void list_jobs(uint triangle, int face, uvec2 extent) {
 void main() {
     uint triangle = invocation_index();
     if (triangle >= deep_cubemap.triangle_count) return;
-    vec3 a = triangle_vertices[3u * triangle].xyz - deep_cubemap.centre;
-    vec3 b = triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.centre;
-    vec3 c = triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.centre;
+    vec3 a = triangle_vertices[3u * triangle].xyz - deep_cubemap.center;
+    vec3 b = triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.center;
+    vec3 c = triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.center;
     if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return;
     widen_box(a, b, c);
     list_core_triangle(triangle, a, b, c);

@@ -2,13 +2,13 @@
 // Tracing rays through the deep cubemap; for any kernel: deep_cubemap_hit(ray) and
 // deep_cubemap_occluded(ray). Takes the storage block bindings 8 to 13.
 //
-// Seen from the centre a ray runs through up to six faces, and on each through a row of cells. The
-// borders of cells are planes through the centre, so where the ray leaves a cell is a plain ray and
+// Seen from the center a ray runs through up to six faces, and on each through a row of cells. The
+// borders of cells are planes through the center, so where the ray leaves a cell is a plain ray and
 // plane distance. Cells are stepped by whole numbers in a direction that is fixed for a face: rounding
 // can neither make the walk loop nor skip a cell.
 //
 // Mesa's llvmpipe ends all loops of a thread after 65535 rounds in all. Steps and tests of a ray stay
-// far below that, unless tens of thousands of triangles crowd into a few cells or around the centre.
+// far below that, unless tens of thousands of triangles crowd into a few cells or around the center.
 #include "common/constants.glsl"
 #include "common/finite.glsl"
 #include "common/whole_numbers.glsl"
@@ -25,7 +25,7 @@
 struct CubemapWalk {
     DeepCubemapState cubemap;
     WatertightRay test;
-    vec3 origin;          // from the centre
+    vec3 origin;          // from the center
     vec3 direction;
     uint source_triangle; // never hit
     bool any_hit;         // the first hit found will do
@@ -56,7 +56,7 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
 // `depth`: at the ray's origin, and its slope.
 void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, inout Hit best) {
     uint start = content_start(cell.content), first = start, end = start + content_count(cell.content);
-    uvec2 wanted = quantise_interval(depths, cell);
+    uvec2 wanted = quantize_interval(depths, cell);
     bool outwards = depth.y >= 0.0;
     ivec2 bins = ivec2(0);
     int bin = 0;
@@ -110,7 +110,7 @@ ivec2 cell_at(vec3 origin, vec3 direction, vec2 distances, ivec2 steps, float re
 }
 
 // Which way the ray moves across the face along x and y: -1, 0 or 1; 0 where it runs along a plane
-// through the centre to within rounding, and so stays in one row of cells.
+// through the center to within rounding, and so stays in one row of cells.
 ivec2 step_directions(vec3 origin, vec3 direction) {
     vec2 one = direction.xy * origin.z, other = origin.xy * direction.z;
     bvec2 moves = greaterThan(abs(one - other), 3e-7 * (abs(one) + abs(other)));
@@ -161,7 +161,7 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
     int finest = root_exponent + 2 * int(walk.cubemap.last_level);
     float resolution = float(1 << finest);
     ivec2 steps = step_directions(origin, direction);
-    // A ray that stays in one row is nowhere more exact than where it is farthest from the centre.
+    // A ray that stays in one row is nowhere more exact than where it is farthest from the center.
     vec2 starts = mix(vec2(enter), vec2(direction.z > 0.0 ? leave : enter), equal(steps, ivec2(0)));
     ivec2 cell = cell_at(origin, direction, starts, steps, resolution);
     float here = enter;
@@ -179,7 +179,7 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
         vec2 border = cell_border(block + ivec2(greaterThan(steps, ivec2(0))), size);
         vec2 approach = direction.xy - border * direction.z;
         vec2 crossing = max((border * origin.z - origin.xy) / approach, vec2(here));
-        // A border counts only if the ray moves towards it; else the ray tends to a vanishing point
+        // A border counts only if the ray moves toward it; else the ray tends to a vanishing point
         // before the border, and the distance belongs to the ray's other half.
         crossing = mix(vec2(INFINITY_DISTANCE), crossing, greaterThan(vec2(steps) * approach, vec2(0.0)));
         float exit = min(min(crossing.x, crossing.y), leave);
@@ -232,7 +232,7 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
 }
 
 // The parts of a ray seen through the faces: enter and leave of those along +x, +y, +z and along -x, -y, -z.
-// The faces meet in six planes through the centre, and neighbours take their common border from the same
+// The faces meet in six planes through the center, and neighbors take their common border from the same
 // number, so that the parts leave no gap.
 struct FaceParts { vec3 enter_positive, leave_positive, enter_negative, leave_negative; };
 
@@ -299,7 +299,7 @@ void walk_faces(CubemapWalk walk, float from, float to, inout Hit best) {
     }
 }
 
-// Distances at which the ray is within a radius of the centre; false if it passes outside.
+// Distances at which the ray is within a radius of the center; false if it passes outside.
 bool clip_to_ball(float closest, float squared_miss, float squared_length, float radius, out vec2 between) {
     float room = radius * radius - squared_miss;
     float half_chord = sqrt(max(room, 0.0) / squared_length);
@@ -321,7 +321,7 @@ void clip_to_box(CubemapWalk walk, inout float from, inout float to) {
 Hit trace_deep_cubemap(Ray ray, bool any_hit) {
     Hit best = Hit(NO_TRIANGLE, 0.0, 0.0, min(ray.maximum_distance, INFINITY_DISTANCE));
     DeepCubemapState cubemap = deep_cubemap;
-    vec3 origin = ray.origin - cubemap.centre;
+    vec3 origin = ray.origin - cubemap.center;
     float squared_length = dot(ray.direction, ray.direction);
     if (!(ray.maximum_distance > 0.0) || !is_finite(origin) || !is_finite(ray.direction) || squared_length == 0.0) {
         return best;
@@ -339,7 +339,7 @@ Hit trace_deep_cubemap(Ray ray, bool any_hit) {
     clip_to_box(walk, from, to);
     if (!(from < to)) return best;
 
-    // Near the centre the ray tests the core list, and walks cells only before and after that.
+    // Near the center the ray tests the core list, and walks cells only before and after that.
     bool meets_core = clip_to_ball(closest, squared_miss, squared_length, cubemap.core_radius, core)
         && core.y > from && core.x < to;
     for (int part = 0; part < 2; ++part) {

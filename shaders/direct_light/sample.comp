@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Next-event rays from the camera paths' vertices to a sampled light.
+// Shadow rays from the camera paths' vertices to a sampled light.
 
 layout(local_size_x = 64) in;
 
@@ -19,7 +19,7 @@ layout(std430, binding = 3) writeonly buffer ShadowRays;
 layout(std430, binding = 9) writeonly buffer LightTriangles;
 layout(std430, binding = 8) writeonly buffer Contributions;
 
-// The alpha above which lobes are evaluated towards lights.
+// The alpha above which lobes are evaluated toward lights.
 float smoothest_lit(bool gathered) {
     return gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha);
 }
@@ -47,7 +47,7 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, bool gath
     if (gathers && environment) {
         float cosine = abs(dot(unpack_unit_vector(closure.diffuse_normal), wi));
         float part = largest(throughput * (front ? closure.diffuse : closure.translucent));
-        value *= first_way_share(light_pdf, part * path_survival(total) / max(total, 1e-20) * cosine / PI);
+        value *= power_heuristic(light_pdf, part * path_survival(total) / max(total, 1e-20) * cosine / PI);
     }
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
@@ -56,8 +56,8 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, bool gath
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = 1.0;
         if (light_pdf > 0.0 && parameters.last_segment == 0u && (specular || (gathers && environment)))
-            weight = first_way_share(light_pdf, lobe_probability(specular ? shares : gathering_shares, total, k)
-                                                    * lobe_density(lobe, lobe_normal(lobe), wo, wi));
+            weight = power_heuristic(light_pdf, lobe_probability(specular ? shares : gathering_shares, total, k)
+                                                    * lobe_pdf(lobe, lobe_normal(lobe), wo, wi));
         value += weight * lobe_scattered(closure, lobe, wo, wi, front);
     }
     return value;
@@ -99,7 +99,7 @@ void main() {
     if (side == 0.0) return;
     vec3 throughput = camera_paths[index].throughput * segment_transmittance(camera_paths[index].flags, closure);
     // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
-    float light_pdf = sampled.density * light.selection_probability;
+    float light_pdf = sampled.pdf * light.selection_probability;
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
     vec3 scattered = evaluate_closure(closure, throughput, gathered, gathers, -ray.direction, sampled.direction,
                                       side > 0.0, light.flags, light.kind == LIGHT_WORLD, light_pdf);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A part of a light's photons is aimed at the objects that make caustics, so that a small glass in a
-// large room gets its share. The density of both ways together divides the flux (balance heuristic,
+// large room gets its share. The pdf of both ways together divides the flux (balance heuristic,
 // Veach 1997, section 9.2), so aiming moves noise and no energy. Needs the member target_count.
 
 layout(std430, binding = 2) readonly buffer Targets { vec4 targets[]; };  // bounding spheres
@@ -11,8 +11,8 @@ uint aiming_period(Light light) { return light.kind == LIGHT_WORLD ? 4u : 2u; }
 
 // One minus the cosine of the cone under which a sphere is seen; 0 from inside, where it is no target.
 float target_cone(vec4 target, vec3 from) {
-    vec3 to_centre = target.xyz - from;
-    float sine2 = target.w * target.w / dot(to_centre, to_centre);
+    vec3 to_center = target.xyz - from;
+    float sine2 = target.w * target.w / dot(to_center, to_center);
     return sine2 < 1.0 ? sine2 / (1.0 + sqrt(1.0 - sine2)) : 0.0;
 }
 
@@ -37,8 +37,8 @@ vec3 sample_target_direction(vec3 from, float cones, float u_target, vec2 u) {
     return direction;
 }
 
-// Its density in 1/sr.
-float target_direction_density(vec3 from, float cones, vec3 direction) {
+// Its pdf in 1/sr.
+float target_direction_pdf(vec3 from, float cones, vec3 direction) {
     float count = 0.0;
     for (uint k = 0u; k < parameters.target_count; ++k) {
         float cone = target_cone(targets[k], from);
@@ -54,13 +54,13 @@ float target_shadows() {
     return sum;
 }
 
-// A point, relative to the scene's centre, on the plane through it across a direction (axes t and b),
+// A point, relative to the scene's center, on the plane through it across a direction (axes t and b),
 // even among the targets' shadows.
 vec2 sample_target_shadow(vec3 t, vec3 b, float shadows, float u_target, vec2 u) {
     float rest = u_target * shadows;
     vec2 place = vec2(0.0);
     for (uint k = 0u; k < parameters.target_count; ++k) {
-        vec3 offset = targets[k].xyz - parameters.scene_centre;
+        vec3 offset = targets[k].xyz - parameters.scene_center;
         place = vec2(dot(offset, t), dot(offset, b)) + targets[k].w * sample_disk(u);
         float shadow = targets[k].w * targets[k].w;
         if (rest < shadow) break;
@@ -69,11 +69,11 @@ vec2 sample_target_shadow(vec3 t, vec3 b, float shadows, float u_target, vec2 u)
     return place;
 }
 
-// Its density in 1/m^2.
-float target_shadow_density(vec3 t, vec3 b, float shadows, vec2 place) {
+// Its pdf in 1/m^2.
+float target_shadow_pdf(vec3 t, vec3 b, float shadows, vec2 place) {
     float count = 0.0;
     for (uint k = 0u; k < parameters.target_count; ++k) {
-        vec3 offset = targets[k].xyz - parameters.scene_centre;
+        vec3 offset = targets[k].xyz - parameters.scene_center;
         vec2 aside = place - vec2(dot(offset, t), dot(offset, b));
         if (dot(aside, aside) <= targets[k].w * targets[k].w) count += 1.0;
     }

@@ -21,7 +21,7 @@ layout(std430, binding = 9) writeonly buffer WorldRadiances;
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
 // they pass it by.
 bool enter_scene(inout vec3 origin, vec3 direction) {
-    vec3 offset = origin - parameters.scene_centre;
+    vec3 offset = origin - parameters.scene_center;
     float along = dot(offset, direction);
     float outside = dot(offset, offset) - parameters.scene_radius * parameters.scene_radius;
     if (outside <= 0.0) return true;

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where photons left emitters, or next-event rays found them, as hits of rays that look at the place. Others become
+// Where photons left emitters, or shadow rays found them, as hits of rays that look at the place. Others become
 // inactive: emitters that shine evenly need not be asked.
 
 layout(local_size_x = 64) in;

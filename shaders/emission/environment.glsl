@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiance of the surroundings and directions chosen by it. Needs the members world_radiance, environment_width and
+// Radiance of the environment and directions chosen by it. Needs the members world_radiance, environment_width and
 // environment_height of the parameters; width 0 is a constant world.
 
 #include "common/sampling.glsl"
@@ -46,8 +46,8 @@ float environment_share(uint first, uint index) {
     return environment_distribution[first + index] - (index == 0u ? 0.0 : environment_distribution[first + index - 1u]);
 }
 
-// Density in 1/sr with which sample_world gives a direction.
-float world_density(vec3 direction) {
+// Pdf in 1/sr with which sample_world gives a direction.
+float world_pdf(vec3 direction) {
     if (parameters.environment_width == 0u) return 1.0 / (4.0 * PI);
     vec2 uv = direction_to_equirectangular(direction);
     uint width = parameters.environment_width, height = parameters.environment_height;
@@ -56,10 +56,10 @@ float world_density(vec3 direction) {
     return share * float(width) * float(height) / (2.0 * PI * PI * max(sin(PI * (1.0 - uv.y)), 1e-6));
 }
 
-// A direction towards the world and its density in 1/sr.
-vec3 sample_world(vec2 u, out float density) {
+// A direction toward the world and its pdf in 1/sr.
+vec3 sample_world(vec2 u, out float pdf) {
     if (parameters.environment_width == 0u) {
-        density = 1.0 / (4.0 * PI);
+        pdf = 1.0 / (4.0 * PI);
         return sample_sphere(u);
     }
     uint width = parameters.environment_width, height = parameters.environment_height;
@@ -73,6 +73,6 @@ vec3 sample_world(vec2 u, out float density) {
     vec2 uv = vec2((float(column) + clamp((u.x - below_column) / max(column_share, 1e-20), 0.0, 1.0)) / float(width),
                    (float(row) + clamp((u.y - below_row) / max(row_share, 1e-20), 0.0, 1.0)) / float(height));
     float sine = max(sin(PI * (1.0 - uv.y)), 1e-6);
-    density = row_share * column_share * float(width) * float(height) / (2.0 * PI * PI * sine);
+    pdf = row_share * column_share * float(width) * float(height) / (2.0 * PI * PI * sine);
     return equirectangular_to_direction(uv);
 }

@@ -7,8 +7,8 @@ layout(std430, binding = 3) readonly buffer Guide { uint guide_starts[]; };  // 
 
 uint guide_cells(Light light) { return light.cells.x * light.cells.y * light.cells.z * light.cells.w; }
 
-// Density of choosing a point of a cell, which is 1 without a guide.
-float guide_density(Light light, uint cell) {
+// Pdf of choosing a point of a cell, which is 1 without a guide.
+float guide_pdf(Light light, uint cell) {
     uint count = guide_cells(light);
     if (count == 1u) return 1.0;
     uint end = cell + 1u == count ? 0u : guide_starts[light.first_cell + cell + 1u];  // 2^32 wraps to 0

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { LearnParameters parameters; };
 layout(std430, binding = 0) readonly buffer Photons;
 layout(std430, binding = 1) readonly buffer PhotonCells;
-layout(std430, binding = 2) buffer Tallies { uvec2 tallies[]; };  // left, useful
+layout(std430, binding = 2) buffer Tallies { uvec2 tallies[]; };  // left, contributed
 
 #include <GuideCells>
 
@@ -19,12 +19,12 @@ void main() {
     if (index >= parameters.count) return;
     uint cell = photon_cells[index];
     if (cell == NO_CELL) return;
-    bool useful = false;
-    for (uint segment = 0u; segment < parameters.segments && !useful; ++segment) {
+    bool contributed = false;
+    for (uint segment = 0u; segment < parameters.segments && !contributed; ++segment) {
         uint slot = segment * parameters.count + index;
         if ((photons[slot].flags & PHOTON_ACTIVE) == 0u) break;
-        useful = photons[slot].contributed != 0u;
+        contributed = photons[slot].contributed != 0u;
     }
     atomicAdd(tallies[cell].x, 1u);
-    if (useful) atomicAdd(tallies[cell].y, 1u);
+    if (contributed) atomicAdd(tallies[cell].y, 1u);
 }

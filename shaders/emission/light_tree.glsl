@@ -30,10 +30,10 @@ float facing(LitPoint point, vec3 direction) {
 // Irradiance, W/m^2, that the lights below a node may give: 0 only where they give none.
 float node_importance(LightNode node, LitPoint point) {
     if (!(node.intensity > 0.0)) return 0.0;
-    vec3 to_centre = 0.5 * (node.low + node.high) - point.position, half_size = 0.5 * (node.high - node.low);
-    float distance2 = dot(to_centre, to_centre), radius2 = dot(half_size, half_size);
+    vec3 to_center = 0.5 * (node.low + node.high) - point.position, half_size = 0.5 * (node.high - node.low);
+    float distance2 = dot(to_center, to_center), radius2 = dot(half_size, half_size);
     if (distance2 <= radius2 * 1.0001) return node.intensity / max(radius2, 1e-20);
-    vec3 direction = to_centre * inversesqrt(distance2);
+    vec3 direction = to_center * inversesqrt(distance2);
     float cosine_bounds = sqrt(1.0 - radius2 / distance2);
     float received = cosine_of_difference(facing(point, direction), cosine_bounds);
     float leaving = -dot(node.axis, direction);
@@ -130,21 +130,21 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
 }
 
 vec3 passed_if_visible(uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray,
-                       float scatter_density) {
+                       float scatter_pdf) {
     Light light = lights[number];
     if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return vec3(0.0);
-    float density;
-    vec3 passed = passed_light(light, origin, direction, maximum_distance, density);
-    return passed * scattered_share(scatter_density, density * light.selection_probability);
+    float pdf;
+    vec3 passed = passed_light(light, origin, direction, maximum_distance, pdf);
+    return passed * scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
 }
 
 // Radiance of the light objects that a ray passes; they hide nothing.
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_density) {
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf) {
     vec3 radiance = vec3(0.0);
     if (maximum_distance >= INFINITY_DISTANCE)
         for (uint sun = 0u; sun < parameters.sun_count; ++sun)
             radiance += passed_if_visible(light_nodes[parameters.first_sun + sun].member, origin, direction,
-                                          maximum_distance, ray, scatter_density);
+                                          maximum_distance, ray, scatter_pdf);
     if (parameters.light_tree_leaves == 0u) return radiance;
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint node = 1u;
@@ -152,7 +152,7 @@ vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray
         LightNode at = light_nodes[node];
         bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, maximum_distance);
         if (met && node < parameters.light_tree_leaves) { node *= 2u; continue; }
-        if (met) radiance += passed_if_visible(at.member, origin, direction, maximum_distance, ray, scatter_density);
+        if (met) radiance += passed_if_visible(at.member, origin, direction, maximum_distance, ray, scatter_pdf);
         // The node beside it, or beside the nearest one above that has one.
         node += 1u;
         node >>= uint(findLSB(node));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light sources: samples of them from a point, and what a ray sees of them.
-// Needs the members scene_centre, scene_radius and mesh_selection of the parameters.
+// Needs the members scene_center, scene_radius and mesh_selection of the parameters.
 
 #include "emission/light_table.glsl"
 #include "emission/environment.glsl"
-#include "emission/lamp_maps.glsl"
+#include "emission/light_maps.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
 layout(std430, binding = 5) readonly buffer EmissiveTriangles;
@@ -72,9 +72,9 @@ void triangle_corners(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
 // What varies is asked for later, where a place has been sampled (emission/emitters.comp).
 vec3 sampled_radiance(EmissiveTriangle emissive) { return emissive.uneven > 0.0 ? vec3(1.0) : emissive.radiance; }
 
-struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float density; };
+struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float pdf; };
 
-// A point on the emissive meshes with its density per area.
+// A point on the emissive meshes with its pdf by area.
 TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
     uint index = search_emissive_triangle(u_triangle);
     EmissiveTriangle emissive = emissive_triangles[index];
@@ -88,31 +88,31 @@ TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
 
 // Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
 float soft_light_distance(Light light, vec3 origin, vec3 direction) {
-    vec3 to_centre = light.position - origin;
-    float distance = dot(to_centre, to_centre) / dot(direction, to_centre);
-    vec3 place = distance * direction - to_centre;
+    vec3 to_center = light.position - origin;
+    float distance = dot(to_center, to_center) / dot(direction, to_center);
+    vec3 place = distance * direction - to_center;
     return distance > 0.0 && dot(place, place) <= light.radius * light.radius ? distance : 0.0;
 }
 
 // --- direct light ---------------------------------------------------------------------------
 
-// Light towards a point: radiance divided by the density in 1/sr, and that density (0 for lights without
+// Light toward a point: radiance divided by the pdf in 1/sr, and that pdf (0 for lights without
 // extent). weight 0: nothing arrives.
-struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; float density; };
+struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; float pdf; };
 
 // Surfaces are sampled by the solid angle that they have from the point: by area, what a surface gets from a
 // light that it meets has no bound.
 
 // The cone of a soft light's disk, which faces the point: one minus its cosine.
-float soft_light_cone(Light light, vec3 to_centre) {
-    float distance = length(to_centre), radius2 = light.radius * light.radius;
+float soft_light_cone(Light light, vec3 to_center) {
+    float distance = length(to_center), radius2 = light.radius * light.radius;
     float slant = sqrt(distance * distance + radius2);
     return radius2 / (slant * (slant + distance));
 }
 
-LightSample sample_soft_light(Light light, vec3 to_centre, vec2 u) {
-    float one_minus_cosine = soft_light_cone(light, to_centre), distance = length(to_centre);
-    vec3 axis = to_centre / max(distance, 1e-20), direction = sample_cone(axis, one_minus_cosine, u);
+LightSample sample_soft_light(Light light, vec3 to_center, vec2 u) {
+    float one_minus_cosine = soft_light_cone(light, to_center), distance = length(to_center);
+    vec3 axis = to_center / max(distance, 1e-20), direction = sample_cone(axis, one_minus_cosine, u);
     return LightSample(direction, distance / max(dot(direction, axis), 1e-6),
                        radiant_strength(light, -direction) * (2.0 * one_minus_cosine / (light.radius * light.radius)),
                        NO_TRIANGLE, 1.0 / (2.0 * PI * one_minus_cosine));
@@ -142,8 +142,8 @@ vec2 area_light_coordinates(Light light, vec3 offset) {
     return vec2(pu * vv - pv * uv, pv * uu - pu * uv) / (uu * vv - uv * uv);
 }
 
-// Density in 1/sr with which sample_area_light gives the direction to a place on the light.
-float area_light_density(Light light, vec3 point, vec3 to_light) {
+// Pdf in 1/sr with which sample_area_light gives the direction to a place on the light.
+float area_light_pdf(Light light, vec3 point, vec3 to_light) {
     if (sampled_by_solid_angle(light, point)) {
         vec2 angles = area_light_solid_angles(light, point);
         return angles.x + angles.y > 0.0 ? 1.0 / (angles.x + angles.y) : 0.0;
@@ -152,13 +152,13 @@ float area_light_density(Light light, vec3 point, vec3 to_light) {
     return distance2 * sqrt(distance2) / (abs(dot(to_light, light.normal)) * light.area);
 }
 
-// To a place on an area light, with its density in 1/sr; 0 where there is none.
-vec3 sample_area_light(Light light, vec3 point, vec2 u, out float density) {
+// To a place on an area light, with its pdf in 1/sr; 0 where there is none.
+vec3 sample_area_light(Light light, vec3 point, vec2 u, out float pdf) {
     vec3 offset = light.position - point;
     if (sampled_by_solid_angle(light, point)) {
         vec2 angles = area_light_solid_angles(light, point);
         float total = angles.x + angles.y, chosen = u.x * total;
-        density = total > 0.0 ? 1.0 / total : 0.0;
+        pdf = total > 0.0 ? 1.0 / total : 0.0;
         if (total <= 0.0) return offset;
         bool first = chosen < angles.x;
         vec2 within = vec2(first ? chosen / angles.x : (chosen - angles.x) / angles.y, u.y);
@@ -168,36 +168,36 @@ vec3 sample_area_light(Light light, vec3 point, vec2 u, out float density) {
                                                   area_light_corner(light, side, side), first ? angles.x : angles.y,
                                                   within);
         vec2 at = area_light_coordinates(light, to_light - offset);
-        if (light.kind == LIGHT_ELLIPSE && dot(at, at) > 1.0) density = 0.0;
+        if (light.kind == LIGHT_ELLIPSE && dot(at, at) > 1.0) pdf = 0.0;
         return to_light;
     }
     vec2 place = sample_disk(u);
     vec3 to_light = offset + place.x * light.axis_u + place.y * light.axis_v;
-    density = area_light_density(light, point, to_light);
+    pdf = area_light_pdf(light, point, to_light);
     return to_light;
 }
 
-LightSample sample_light_at_one_metre(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 point, vec2 u) {
     LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
     if (light.kind == LIGHT_WORLD) {
-        result.direction = sample_world(u, result.density);
+        result.direction = sample_world(u, result.pdf);
         result.distance = INFINITY_DISTANCE;
-        result.weight = world_radiance(result.direction) / result.density;
+        result.weight = world_radiance(result.direction) / result.pdf;
         return result;
     }
     if (light.kind == LIGHT_SUN) {
         result.direction = -sample_cone(light.normal, 1.0 - light.cosine_cone, u);
         result.distance = INFINITY_DISTANCE;
         result.weight = light.strength;
-        if (light.cosine_cone < 1.0) result.density = 1.0 / (2.0 * PI * (1.0 - light.cosine_cone));
+        if (light.cosine_cone < 1.0) result.pdf = 1.0 / (2.0 * PI * (1.0 - light.cosine_cone));
         return result;
     }
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
-        vec3 to_centre = light.position - point;
-        float distance2 = dot(to_centre, to_centre);
-        if ((light.flags & LIGHT_SOFT) != 0u) return sample_soft_light(light, to_centre, u);
+        vec3 to_center = light.position - point;
+        float distance2 = dot(to_center, to_center);
+        if ((light.flags & LIGHT_SOFT) != 0u) return sample_soft_light(light, to_center, u);
         if (distance2 <= light.radius * light.radius) return result;
-        vec3 axis = to_centre * inversesqrt(distance2);
+        vec3 axis = to_center * inversesqrt(distance2);
         float sine2 = light.radius * light.radius / distance2;
         if (sine2 < 1e-7) {
             result.direction = axis;
@@ -207,10 +207,10 @@ LightSample sample_light_at_one_metre(Light light, uint emissive_triangle, vec3 
         }
         float one_minus_cosine = sine2 / (1.0 + sqrt(1.0 - sine2));
         result.direction = sample_cone(axis, one_minus_cosine, u);
-        float along = dot(to_centre, result.direction);
+        float along = dot(to_center, result.direction);
         result.distance = along - sqrt(max(0.0, light.radius * light.radius - (distance2 - along * along)));
         float area = PI * light.radius * light.radius;
-        result.density = 1.0 / (2.0 * PI * one_minus_cosine);
+        result.pdf = 1.0 / (2.0 * PI * one_minus_cosine);
         result.weight = radiant_strength(light, -result.direction) * (2.0 * PI * one_minus_cosine / area);
         return result;
     }
@@ -223,35 +223,35 @@ LightSample sample_light_at_one_metre(Light light, uint emissive_triangle, vec3 
         if (solid_angle <= 0.0) return result;
         to_light = sample_spherical_triangle(point, v0, v1, v2, solid_angle, u);
         radiance = sampled_radiance(emissive);
-        result.density = 1.0 / solid_angle;
+        result.pdf = 1.0 / solid_angle;
         result.triangle = emissive.triangle;
     } else {
         if (dot(point - light.position, light.normal) <= 0.0) return result;
-        to_light = sample_area_light(light, point, u, result.density);
+        to_light = sample_area_light(light, point, u, result.pdf);
         radiance = light.strength * spread_attenuation(light, -dot(normalize(to_light), light.normal));
     }
     result.distance = length(to_light);
-    if (!(result.density > 0.0 && result.distance > 0.0)) return result;
+    if (!(result.pdf > 0.0 && result.distance > 0.0)) return result;
     result.direction = to_light / result.distance;
-    result.weight = radiance / result.density;
+    result.weight = radiance / result.pdf;
     return result;
 }
 
 bool is_area_light(Light light) { return light.kind == LIGHT_RECTANGLE || light.kind == LIGHT_ELLIPSE; }
 
-// Whether the normals of a lamp are those of a sphere, and not the light's direction.
+// Whether the normals of a light are those of a sphere, and not the light's direction.
 bool is_sphere(Light light) {
     return light.kind <= LIGHT_SPOT && light.radius > 0.0 && (light.flags & LIGHT_SOFT) == 0u;
 }
 
-// What the nodes of a lamp give where light leaves it. from_centre: from the lamp's position to there.
-vec3 emitted_factor(Light light, vec3 from_centre, vec3 direction) {
+// What the nodes of a light give where light leaves it. from_center: from the light's position to there.
+vec3 emitted_factor(Light light, vec3 from_center, vec3 direction) {
     if (light.map_shape == 0u) return vec3(1.0);
-    return lamp_factor(light, direction, is_sphere(light) ? normalize(from_centre) : direction,
-                       is_area_light(light) ? area_light_coordinates(light, from_centre) : vec2(0.0));
+    return light_factor(light, direction, is_sphere(light) ? normalize(from_center) : direction,
+                       is_area_light(light) ? area_light_coordinates(light, from_center) : vec2(0.0));
 }
 
-// Where the half of a sphere that faces a direction is met along it, evenly seen: from the sphere's centre.
+// Where the half of a sphere that faces a direction is met along it, evenly seen: from the sphere's center.
 vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
     vec3 t, b;
     tangent_frame(direction, t, b);
@@ -262,10 +262,10 @@ vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
 
 // Of the emissive meshes: of one triangle, by its number among emissive_triangles[].
 LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
-    LightSample result = sample_light_at_one_metre(light, emissive_triangle, point, u);
-    vec3 from_centre = point + result.distance * result.direction - light.position;
-    if (result.density == 0.0 && is_sphere(light)) from_centre = sample_facing_half(light.radius, -result.direction, u);
-    result.weight *= distance_factor(light, result.distance) * emitted_factor(light, from_centre, -result.direction);
+    LightSample result = sample_light_at_one_meter(light, emissive_triangle, point, u);
+    vec3 from_center = point + result.distance * result.direction - light.position;
+    if (result.pdf == 0.0 && is_sphere(light)) from_center = sample_facing_half(light.radius, -result.direction, u);
+    result.weight *= distance_factor(light, result.distance) * emitted_factor(light, from_center, -result.direction);
     return result;
 }
 
@@ -275,57 +275,57 @@ LightSample sample_whole_light(Light light, vec3 point, float u_choice, vec2 u) 
     uint index = search_emissive_triangle(u_choice);
     LightSample result = sample_light(light, index, point, u);
     float share = emissive_triangles[index].share;
-    result.density *= share;
+    result.pdf *= share;
     result.weight /= share;
     return result;
 }
 
 // --- lights that a specular path meets ----------------------------------------------------------
 
-// Share of a light met by scattering, with a density, when next-event rays find it with another.
-// Without a density only scattering finds it.
-float scattered_share(float scatter_density, float light_density) {
-    return scatter_density > 0.0 ? 1.0 - first_way_share(light_density, scatter_density) : 1.0;
+// Share of a light met by scattering, with a pdf, when shadow rays find it with another.
+// Without a pdf only scattering finds it.
+float scatter_mis_weight(float scatter_pdf, float light_pdf) {
+    return scatter_pdf > 0.0 ? 1.0 - power_heuristic(light_pdf, scatter_pdf) : 1.0;
 }
 
-// Density in 1/sr with which sample_light gives a direction from the point to a triangle of the emissive meshes, the
+// Pdf in 1/sr with which sample_light gives a direction from the point to a triangle of the emissive meshes, the
 // choice of the meshes included.
-float emissive_triangle_density(vec3 point, uint triangle) {
+float emissive_triangle_pdf(vec3 point, uint triangle) {
     vec3 v0, v1, v2;
     triangle_corners(triangle, v0, v1, v2);
     float solid_angle = triangle_solid_angle(point, v0, v1, v2);
     return solid_angle > 0.0 ? parameters.mesh_selection * triangle_vertices[3u * triangle + 1u].w / solid_angle : 0.0;
 }
 
-// Radiance of a light object without nodes that a ray passes within its length, where it does, and the density in
+// Radiance of a light object without nodes that a ray passes within its length, where it does, and the pdf in
 // 1/sr with which sample_light gives the ray's direction.
 vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance,
-                        out float density) {
-    density = distance = 0.0;
+                        out float pdf) {
+    pdf = distance = 0.0;
     if (light.kind == LIGHT_SUN) {
         float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
         if (maximum_distance < INFINITY_DISTANCE || solid_angle <= 0.0
             || -dot(direction, light.normal) < light.cosine_cone)
             return vec3(0.0);
-        density = 1.0 / solid_angle;
+        pdf = 1.0 / solid_angle;
         return light.strength / solid_angle;
     }
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
         if (light.radius <= 0.0) return vec3(0.0);
-        vec3 to_centre = light.position - origin;
-        float distance2 = dot(to_centre, to_centre), radius2 = light.radius * light.radius;
+        vec3 to_center = light.position - origin;
+        float distance2 = dot(to_center, to_center), radius2 = light.radius * light.radius;
         if ((light.flags & LIGHT_SOFT) != 0u) {
             distance = soft_light_distance(light, origin, direction);
-            density = 1.0 / (2.0 * PI * soft_light_cone(light, to_centre));
+            pdf = 1.0 / (2.0 * PI * soft_light_cone(light, to_center));
         } else {
-            float along = dot(to_centre, direction);
-            vec3 off_axis = to_centre - along * direction;
+            float along = dot(to_center, direction);
+            vec3 off_axis = to_center - along * direction;
             float under = radius2 - dot(off_axis, off_axis);
             if (under < 0.0 || along <= 0.0) return vec3(0.0);
             distance = along - sqrt(under);
             float sine2 = min(radius2 / distance2, 1.0);
-            // sample_light takes smaller lamps for points, which no ray meets
-            density = sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
+            // sample_light takes smaller lights for points, which no ray meets
+            pdf = sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
         }
         if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
         return radiant_strength(light, -direction) / (PI * radius2);
@@ -337,14 +337,14 @@ vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_
     if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
     vec2 at = area_light_coordinates(light, origin + distance * direction - light.position);
     if (light.kind == LIGHT_ELLIPSE ? dot(at, at) > 1.0 : max(abs(at.x), abs(at.y)) > 1.0) return vec3(0.0);
-    density = area_light_density(light, origin, distance * direction);
+    pdf = area_light_pdf(light, origin, distance * direction);
     return light.strength * spread_attenuation(light, cosine);
 }
 
 // The same of a light that may have nodes.
-vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float density) {
+vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float pdf) {
     float distance;
-    vec3 radiance = passed_plain_light(light, origin, direction, maximum_distance, distance, density);
-    vec3 from_centre = origin + distance * direction - light.position;
-    return radiance * distance_factor(light, distance) * emitted_factor(light, from_centre, -direction);
+    vec3 radiance = passed_plain_light(light, origin, direction, maximum_distance, distance, pdf);
+    vec3 from_center = origin + distance * direction - light.position;
+    return radiance * distance_factor(light, distance) * emitted_factor(light, from_center, -direction);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photons that leave the lights. Flux is that of the whole light over the density of the choice;
+// Photons that leave the lights. Flux is that of the whole light over the pdf of the choice;
 // the caller shares it out.
 
 #include "emission/lights.glsl"
@@ -11,11 +11,11 @@ struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
 // Random numbers of one photon, whether it is aimed, and the share of those that are.
 struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; float aimed_share; };
 
-// Density of both ways together over the plain one's measure: guided photons have the plain density times the
+// Pdf of both ways together over the plain one's measure: guided photons have the plain pdf times the
 // guide's; aimed ones that see no target have the plain one.
-float mixed_density(Light light, float plain, vec2 place, vec2 direction, float aimed, bool targets_seen,
+float mixed_pdf(Light light, float plain, vec2 place, vec2 direction, float aimed, bool targets_seen,
                     EmissionChoice choice) {
-    float guided = plain * guide_density(light, guide_cell(light, place, direction));
+    float guided = plain * guide_pdf(light, guide_cell(light, place, direction));
     return mix(guided, targets_seen ? aimed : plain, choice.aimed_share);
 }
 
@@ -27,15 +27,15 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
     vec2 place = choice.aimed && seen ? sample_target_shadow(t, b, shadows, choice.target, choice.place)
                                       : radius * sample_disk(choice.place);
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
-    float density = mixed_density(light, plain, disk_to_square(place / radius), choice.direction,
-                                  seen ? target_shadow_density(t, b, shadows, place) : 0.0, seen, choice);
-    vec3 origin = parameters.scene_centre + place.x * t + place.y * b - radius * direction;
-    return Emission(origin, NO_TRIANGLE, direction, flux_density / density);
+    float pdf = mixed_pdf(light, plain, disk_to_square(place / radius), choice.direction,
+                                  seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
+    vec3 origin = parameters.scene_center + place.x * t + place.y * b - radius * direction;
+    return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf);
 }
 
-// Radiant intensity from the lamp's centre; a sphere of uniform radiance shows the same disk to every
+// Radiant intensity from the light's center; a sphere of uniform radiance shows the same disk to every
 // direction.
-Emission emit_from_lamp(Light light, EmissionChoice choice) {
+Emission emit_from_point(Light light, EmissionChoice choice) {
     float cones = target_cones(light.position);
     bool seen = cones > 0.0, spot = light.kind == LIGHT_SPOT;
     vec3 direction = choice.aimed && seen
@@ -45,15 +45,15 @@ Emission emit_from_lamp(Light light, EmissionChoice choice) {
     float plain = 1.0 / (4.0 * PI);
     if (spot)
         plain = dot(direction, light.normal) >= 1.0 - light.spread_scale ? 1.0 / (2.0 * PI * light.spread_scale) : 0.0;
-    float aimed = seen ? target_direction_density(light.position, cones, direction) : 0.0;
+    float aimed = seen ? target_direction_pdf(light.position, cones, direction) : 0.0;
     vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
-    float density = mixed_density(light, plain, choice.place, square, aimed, seen, choice);
+    float pdf = mixed_pdf(light, plain, choice.place, square, aimed, seen, choice);
     vec3 origin = light.position + sample_facing_half(light.radius, direction, choice.place);
-    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / density);
+    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / pdf);
 }
 
-// From a point of a surface, with the density per area that the point was chosen by.
-Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle, vec3 radiance, float area_density,
+// From a point of a surface, with the pdf by area that the point was chosen by.
+Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle, vec3 radiance, float area_pdf,
                            EmissionChoice choice) {
     float cones = target_cones(origin);
     bool seen = cones > 0.0, both_sides = light.kind == LIGHT_MESH, narrow = light.spread_tangent > 0.0;
@@ -77,26 +77,26 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
                          : hemisphere_to_square(front ? normal : -normal, direction);
     if (both_sides) square.x = 0.5 * (square.x + (front ? 1.0 : 0.0));
     vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
-    float density = mixed_density(light, plain, place, square,
-                                  seen ? target_direction_density(origin, cones, direction) : 0.0, seen, choice);
+    float pdf = mixed_pdf(light, plain, place, square,
+                                  seen ? target_direction_pdf(origin, cones, direction) : 0.0, seen, choice);
     if (!both_sides) radiance *= spread_attenuation(light, cosine);
     return Emission(both_sides ? offset_from_surface(origin, front ? normal : -normal) : origin, triangle, direction,
-                    radiance * (cosine / (area_density * density)));
+                    radiance * (cosine / (area_pdf * pdf)));
 }
 
 Emission emit_plain_photon(Light light, EmissionChoice choice) {
-    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_lamp(light, choice);
+    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_point(light, choice);
     if (light.kind == LIGHT_SUN)
         return emit_from_infinity(light, sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction),
                                   light.strength, choice);
     if (light.kind == LIGHT_WORLD) {
-        float density;
-        vec3 towards = sample_world(choice.direction, density);
-        return emit_from_infinity(light, -towards, world_radiance(towards) / density, choice);
+        float pdf;
+        vec3 toward = sample_world(choice.direction, pdf);
+        return emit_from_infinity(light, -toward, world_radiance(toward) / pdf, choice);
     }
     if (light.kind == LIGHT_MESH) {
         TrianglePoint point = sample_emissive_triangle(choice.part, choice.place);
-        return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.density,
+        return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.pdf,
                                  choice);
     }
     vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitters whose emission varies were sampled as if of radiance 1. Next-event rays to such emitters find the radiance
+// Emitters whose emission varies were sampled as if of radiance 1. Shadow rays to such emitters find the radiance
 // of the place that they sampled.
 
 layout(local_size_x = 64) in;

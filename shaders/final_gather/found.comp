@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each gathering ray found: by next-event rays, of photons, and of the world.
+// What each gathering ray found: by shadow rays, of photons, and of the world.
 
 layout(local_size_x = 64) in;
 

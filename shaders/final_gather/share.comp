@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pixel takes the mean of what the gathering rays of its neighbours found, within a radius that shrinks as all do.
+// A pixel takes the mean of what the gathering rays of its neighbors found, within a radius that shrinks as all do.
 
 layout(local_size_x = 64) in;
 
@@ -14,7 +14,7 @@ layout(std430, binding = 0) readonly buffer GatheringVertices;
 layout(std430, binding = 1) readonly buffer FoundRadiances;
 layout(std430, binding = 2) buffer Radiances;
 
-// How far the normals of neighbours may part, as a cosine, and how far one may lie off the other's tangent plane in
+// How far the normals of neighbors may part, as a cosine, and how far one may lie off the other's tangent plane in
 // radii. What a ray found was chosen by the cosine to its own normal and is taken over as it is, so normals must be
 // nearer to each other than those of photons and importons.
 const float SHARED_NORMAL_TOLERANCE = 0.9;

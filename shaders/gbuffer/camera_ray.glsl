@@ -17,7 +17,7 @@ vec2 window_point(uint index) {
 }
 
 // All rays through a window point meet at the distance of focus, wherever on the lens they start. As in Cycles, clip
-// distances are those of the ray through the lens's centre in perspective.
+// distances are those of the ray through the lens's center in perspective.
 CameraRay plane_ray(vec2 at, vec2 lens) {
     bool orthographic = camera.projection == PROJECTION_ORTHOGRAPHIC;
     vec3 axis = orthographic ? vec3(0.0, 0.0, 1.0) : vec3(at, 1.0);

@@ -9,10 +9,10 @@ vec3 longitude_latitude(float longitude, float latitude) {
     return vec3(sin(longitude) * cos(latitude), sin(latitude), cos(longitude) * cos(latitude));
 }
 
-// Off the axis by an angle of this sine and cosine, towards a point of the frame.
-vec3 off_axis(float sine, float cosine, vec2 towards) {
-    float size = length(towards);
-    return vec3(size > 0.0 ? sine * towards / size : vec2(0.0), cosine);
+// Off the axis by an angle of this sine and cosine, toward a point of the frame.
+vec3 off_axis(float sine, float cosine, vec2 toward) {
+    float size = length(toward);
+    return vec3(size > 0.0 ? sine * toward / size : vec2(0.0), cosine);
 }
 
 PanoramaPoint equirectangular(vec2 at) {

@@ -18,7 +18,7 @@ layout(std430, binding = 4) writeonly buffer CameraPaths;
 void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
-    // The points of a pixel cover the lens evenly as the iterations go by, and those of its neighbours are others.
+    // The points of a pixel cover the lens evenly as the iterations go by, and those of its neighbors are others.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, 0u, parameters.seed, STAGE_CAMERA << 24u));
     vec2 lens = aperture_point(scrambled_sobol(parameters.iteration - 1u, choices)), at = window_point(index);
     CameraRay ray = camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, lens) : panorama_ray(at, lens);

@@ -61,7 +61,7 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radi
 // In 1/sr, of shadow rays to the environment from a vertex that sends a ray on.
 float environment_shadow_ray_pdf(vec3 direction) {
     bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
-    return left_to_rays ? 0.0 : parameters.world_selection * world_density(direction);
+    return left_to_rays ? 0.0 : parameters.world_selection * world_pdf(direction);
 }
 
 // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left to
@@ -70,7 +70,7 @@ void end_gathering_ray(uint index, CameraPath path, vec3 direction) {
     vec3 world = world_radiance(direction);
     if ((path.flags & PATH_CAUSTIC) == 0u) {
         if (parameters.next_event == 0u) return;
-        float weight = scattered_share(path.scatter_density, environment_shadow_ray_pdf(direction));
+        float weight = scatter_mis_weight(path.scatter_pdf, environment_shadow_ray_pdf(direction));
         vec3 arrived = path.throughput * world * weight;
         if ((path.flags & PATH_GATHERED_AGAIN) != 0u) gathering_vertices[index].found = arrived;
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
@@ -85,19 +85,19 @@ vec4 seen_environment(CameraPath path, vec3 direction, bool background) {
     bool straight = (path.flags & PATH_STRAIGHT) != 0u;
     if (straight && background && parameters.film_transparent != 0u)
         return vec4(vec3(0.0), -(path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
-    float share = scattered_share(path.scatter_density, environment_shadow_ray_pdf(direction));
+    float weight = scatter_mis_weight(path.scatter_pdf, environment_shadow_ray_pdf(direction));
     vec3 world = straight ? world_radiance_seen(direction) : world_radiance(direction);
-    return vec4(path.throughput * world * share, 0.0);
+    return vec4(path.throughput * world * weight, 0.0);
 }
 
 // Radiance and alpha of a surface that shines by itself or cuts a hole.
 vec4 seen_surface(CameraPath path, Ray ray, Closure closure) {
     vec4 seen = vec4(0.0);
     if (largest(closure.emission) > 0.0 && (path.flags & PATH_GATHERED) == 0u) {
-        float share = 1.0;
-        if (path.scatter_density > 0.0)
-            share = scattered_share(path.scatter_density, emissive_triangle_density(ray.origin, closure.triangle));
-        seen.rgb = path.throughput * closure.emission * share;
+        float weight = 1.0;
+        if (path.scatter_pdf > 0.0)
+            weight = scatter_mis_weight(path.scatter_pdf, emissive_triangle_pdf(ray.origin, closure.triangle));
+        seen.rgb = path.throughput * closure.emission * weight;
     }
     if ((path.flags & PATH_STRAIGHT) != 0u)
         seen.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
@@ -127,7 +127,7 @@ struct Event {
     vec3 normal;        // of a diffuse one on the side of the direction
     float probability;  // of those that all shares stand for
     bool transmitted;
-    float density;      // in 1/sr, where shadow rays sample the same light; else 0
+    float pdf;      // in 1/sr, where shadow rays sample the same light; else 0
     uint flags;         // of the path from here on
 };
 
@@ -141,7 +141,7 @@ Event diffuse_event(CameraPath path, Closure closure, float u, vec2 u_direction,
     if (event.transmitted) event.normal = -event.normal;
     event.direction = sample_cosine_hemisphere(event.normal, u_direction);
     event.weight = event.transmitted ? closure.translucent : closure.diffuse;
-    event.density = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
+    event.pdf = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
     event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_DIFFUSE;
     return event;
 }
@@ -149,7 +149,7 @@ Event diffuse_event(CameraPath path, Closure closure, float u, vec2 u_direction,
 Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shares) {
     bool shadow_rays_pass = (closure.flags & CLOSURE_SHADOWLESS) != 0u;
     return Event(direction, closure.transparent, -direction, shares.x, true,
-                 shadow_rays_pass ? path.scatter_density : 0.0, path.flags | (shadow_rays_pass ? 0u : PATH_CAUSTIC));
+                 shadow_rays_pass ? path.scatter_pdf : 0.0, path.flags | (shadow_rays_pass ? 0u : PATH_CAUSTIC));
 }
 
 // u: behind the share of what is no lobe.
@@ -160,10 +160,10 @@ Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec3 u_
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
     event.normal = lobe_normal(lobe);
     LobeSample sampled = sample_lobe(lobe, event.normal, viewer, u_lobe.xy, u_lobe.z, true);
-    event.density = 0.0;
+    event.pdf = 0.0;
     if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
-        event.density = lobe_probability(shares, total, chosen)
-                      * lobe_density(lobe, event.normal, viewer, sampled.direction);
+        event.pdf = lobe_probability(shares, total, chosen)
+                      * lobe_pdf(lobe, event.normal, viewer, sampled.direction);
     event.direction = sampled.direction;
     event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     event.transmitted = sampled.transmitted;
@@ -203,7 +203,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, 
     else event = lobe_event(path, closure, viewer, u - shares.x, vec3(u_direction, u_event), shares, total);
     if (event.probability <= 0.0) return;
     path.flags = event.flags;
-    path.scatter_density = event.density;
+    path.scatter_pdf = event.pdf;
     path.throughput *= event.weight * (total / (event.probability * survival));
     if (sets_out) path.flags &= ~PATH_CAUSTIC;
     if (sets_out && gathered) {
@@ -242,7 +242,7 @@ void main() {
     vec3 lights_passed = vec3(0.0);
     if (!gathered)
         lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE,
-                                      camera_ray_kind(path.flags), path.scatter_density);
+                                      camera_ray_kind(path.flags), path.scatter_pdf);
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);
     if (!hit) {
         radiances[index] += seen + seen_environment(path, ray.direction, largest(lights_passed) <= 0.0);

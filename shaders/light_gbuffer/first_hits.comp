@@ -29,14 +29,14 @@ bool find_hit(Ray ray, uvec2 range, out Hit hit) {
     hit = Hit(NO_TRIANGLE, 0.0, 0.0, min(ray.maximum_distance, INFINITY_DISTANCE));
     uint number = range.x + (range.y == 6u ? face_of(ray.direction) : 0u);
     LightView view = light_views[number];
-    vec3 towards = vec3(dot(ray.direction, view.right), dot(ray.direction, view.up), dot(ray.direction, view.forward));
+    vec3 toward = vec3(dot(ray.direction, view.right), dot(ray.direction, view.up), dot(ray.direction, view.forward));
     // Parallel light goes through one texel from where it is at the middle of the scene.
     if (view.tip_distance > 0.0) {
         vec3 start = view_point(view, ray.origin);
-        towards = vec3(start.xy + towards.xy / towards.z * (view.tip_distance - start.z), view.tip_distance);
+        toward = vec3(start.xy + toward.xy / toward.z * (view.tip_distance - start.z), view.tip_distance);
     }
-    if (!(towards.z > 0.0)) return false;
-    vec2 place = (towards.xy / (towards.z * view.tangent) * 0.5 + 0.5) * float(parameters.side);
+    if (!(toward.z > 0.0)) return false;
+    vec2 place = (toward.xy / (toward.z * view.tangent) * 0.5 + 0.5) * float(parameters.side);
     if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, vec2(parameters.side)))) return false;
     LightTexel texel = light_texels[texel_number(number, ivec2(place))];
     if (texel.count == 0u) return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A fragment is a texel of a job's rectangle: whether the triangle is in its cone, exact but for an outward margin, and
-// over which depths. Not by the rasterizer's own rules: what lies between texels' centres must not be missed.
+// over which depths. Not by the rasterizer's own rules: what lies between texels' centers must not be missed.
 #include <LightGBufferParameters>
 layout(std140, binding = 0) uniform Parameters { LightGBufferParameters parameters; };
 #define TEXELS_ACCESS

@@ -10,9 +10,9 @@ layout(std430, binding = 1) TEXELS_ACCESS buffer LightTexels { LightTexel light_
 // More than this would take as long to test as tracing does.
 const uint MOST_TRIANGLES = 24u;
 
-// Lateral, lateral, depth: from the tip in metres.
+// Lateral, lateral, depth: from the tip in meters.
 vec3 view_point(LightView view, vec3 point) {
-    vec3 offset = point - view.centre;
+    vec3 offset = point - view.center;
     return vec3(dot(offset, view.right), dot(offset, view.up), dot(offset, view.forward) + view.tip_distance);
 }
 

@@ -46,7 +46,7 @@ vec3 given_normal(ClosureBuilder builder, vec3 normal) {
 }
 
 // A mapped or bumped normal may mirror the viewer's direction to below the surface, where nothing is seen. As in Cycles
-// it is then bent towards the geometric normal g until the mirrored direction rises to `least` above the surface: with
+// it is then bent toward the geometric normal g until the mirrored direction rises to `least` above the surface: with
 // q = cos^2 of the angle of both normals, and the viewer at (x, z) in their plane,
 // (x^2 + z^2) q^2 - (x^2 + z^2 + z least) q + (z + least)^2 / 4 = 0.
 vec3 reflecting_normal(ClosureBuilder builder, vec3 normal) {

@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The emission of a node graph that belongs to no surface: of a world or a volume over the directions of an
-// equirectangular map, of a lamp over a map that suits it.
+// equirectangular map, of a light over a map that suits it.
 
 layout(local_size_x = 64) in;
 
@@ -11,7 +11,7 @@ layout(std140, binding = 0) uniform Parameters { EvaluateParameters parameters; 
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
-#include "materials/lamp_surface.glsl"
+#include "materials/light_surface.glsl"
 layout(std430, binding = 0) writeonly buffer Emissions { vec4 emissions[]; };
 
 #include "materials/generated.glsl"
@@ -26,7 +26,7 @@ void main() {
     Surface surface = Surface(direction, -direction, -direction, -direction, vec2(0.0), vec3(0.0), NO_TRIANGLE,
                               NO_INSTANCE, false,
                               parameters.from_camera != 0u ? RAY_CAMERA : RAY_DIFFUSE, parameters.ray_length, 0u);
-    if (parameters.lamp_shape != 0u) surface = lamp_surface(uv, direction);
+    if (parameters.light_shape != 0u) surface = light_surface(uv, direction);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, surface.normal, false, 0.0);
     evaluate_material(surface, parameters.first_constant, builder);
     emissions[index] = vec4(builder.closure.emission, 0.0);

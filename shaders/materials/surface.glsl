@@ -12,7 +12,7 @@ layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_va
 const uint NO_INSTANCE = 0xffffffffu;
 
 struct Surface {
-    vec3 position;      // world space, metres; of a world: the direction
+    vec3 position;      // world space, meters; of a world: the direction
     vec3 normal;        // shading normal, on the viewer's side
     vec3 geometric;     // geometric normal, on the viewer's side
     vec3 viewer;        // unit vector to where the path comes from

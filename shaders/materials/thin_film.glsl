@@ -15,9 +15,9 @@ vec2 reflection_coefficients(float cosine, float from, float to, out float cosin
     return vec2(s, p);
 }
 
-// Fourier transform of the eye's sensitivities at an optical path difference in metres: the paper's sum of
+// Fourier transform of the eye's sensitivities at an optical path difference in meters: the paper's sum of
 // Gaussians for X, Y and Z, to linear Rec.709.
-vec3 interference_colour(float path_difference, float shift) {
+vec3 interference_color(float path_difference, float shift) {
     float phase = 2.0 * PI * path_difference;
     const vec3 height = vec3(5.4856e-13, 4.4201e-13, 5.2481e-13), place = vec3(1.6810e6, 1.7953e6, 2.2084e6),
                variance = vec3(4.3278e9, 9.3046e9, 6.6121e9);
@@ -29,7 +29,7 @@ vec3 interference_colour(float path_difference, float shift) {
                 dot(xyz, vec3(0.0556434, -0.2040259, 1.0572252))) / vec3(1.2048843, 0.9483008, 0.9088427);
 }
 
-// thickness in nanometres; indices before the film, of it and behind it; base: the reflectances of the base under
+// thickness in nanometers; indices before the film, of it and behind it; base: the reflectances of the base under
 // the film at normal incidence per channel, for Schlick's curve; where base.r < 0 they are Fresnel's own.
 vec3 thin_film_reflectance(float cosine, float thickness, float before, float film, float behind, vec3 base) {
     float cosine_film, cosine_behind;
@@ -50,7 +50,7 @@ vec3 thin_film_reflectance(float cosine, float thickness, float before, float fi
         sum += outer + repeated;
         for (int order = 1; order <= 3; ++order) {
             term *= sqrt(both);
-            sum += 2.0 * term * interference_colour(float(order) * difference, float(order) * shift);
+            sum += 2.0 * term * interference_color(float(order) * difference, float(order) * shift);
         }
     }
     return clamp(0.5 * sum, 0.0, 1.0);

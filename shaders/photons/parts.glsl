@@ -2,7 +2,7 @@
 // The parts of a closure by which photons go on, and what they scatter of light from one direction to a viewer in
 // another.
 
-#include <Departure>
+#include <AdjointQuery>
 #include "common/bsdf/closure.glsl"
 
 // NONE: the other side need not be asked.

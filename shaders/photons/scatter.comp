@@ -15,7 +15,7 @@ layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) writeonly buffer Photons;
-layout(std430, binding = 4) writeonly buffer Departures;
+layout(std430, binding = 4) writeonly buffer AdjointQueries;
 
 // unseen: a flag of direct photons from lights that do not take part in such events.
 struct Scattering {
@@ -35,7 +35,7 @@ const float SHARPEST_ALPHA = 0.05;
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
-    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_DIFFUSED | PHOTON_INDIRECT,
+    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT,
                                    PHOTON_NOT_DIFFUSE,
                                    PART_DIFFUSE, 1.0);
     float scale = 1.0 / largest(flux);
@@ -84,7 +84,7 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     return Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
                       lobe_normal(lobe), sampled.transmitted,
-                      (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_DIFFUSED)
+                      (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
                           | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
                       sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
                       lobe_part(lobe, sampled.transmitted), lobe.ior);
@@ -97,16 +97,16 @@ float adjoint_correction(vec3 arrival, vec3 departure, vec3 geometric, vec3 shad
     return min(above / max(below, 1e-6), 4.0);
 }
 
-// The ray is turned to look from where the photon goes, and waits where that does not matter (depart.comp). Of a
+// The ray is turned to look from where the photon goes, and waits where that does not matter (adjoint.comp). Of a
 // closure where one part stands for others, the view from there is no measure.
-void look_back(uint index, Closure closure, Scattering scattering, vec3 arrival, uint path_flags) {
+void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec3 arrival, uint path_flags) {
     bool matters = materials[closure.material].depends_on_view != 0u && (closure.flags & CLOSURE_CROWDED) == 0u;
-    Departure departure = Departure(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
+    AdjointQuery query = AdjointQuery(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
     if (matters) {
-        departure.part = scattering.part;
-        departure.share = part_share(closure, scattering.part, scattering.ior, arrival, scattering.direction);
+        query.part = scattering.part;
+        query.share = part_share(closure, scattering.part, scattering.ior, arrival, scattering.direction);
     } else photon_paths[index].flags = path_flags;
-    departures[index] = departure;
+    adjoint_queries[index] = query;
     rays[index].direction = -scattering.direction;
     rays[index].maximum_distance = matters ? INFINITY_DISTANCE : 0.0;
 }
@@ -170,7 +170,8 @@ void main() {
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
             rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
-            if (parameters.looks_back != 0u) look_back(index, closure, scattering, photon.direction, path_flags);
+            if (parameters.has_adjoint_queries != 0u)
+                store_adjoint_query(index, closure, scattering, photon.direction, path_flags);
             else photon_paths[index].flags = path_flags;
         }
     }

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photons near the cubemap's centre meet every importon of the core list.
+// Photons near the cubemap's center meet every importon of the core list.
 
 layout(local_size_x = 64) in;
 
@@ -19,7 +19,7 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count || core_count == 0u) return;
     uint photon = stored_photons[index];
-    vec3 p = photons[photon].position - parameters.centre;
+    vec3 p = photons[photon].position - parameters.center;
     float reach = 3.001 * max(parameters.radius, parameters.wide_radius);
     if (dot(p, p) > reach * reach) return;
     for (uint k = 0u; k < core_count; ++k) meet(core_importons[k], photon);

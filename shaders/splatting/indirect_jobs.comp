@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // IndirectSplatting: which cubemap pixels each stored photon may reach (Fig. 6c).
 //
-// Importons within two radii of the centre are in the core list, so a photon within one radius
+// Importons within two radii of the center are in the core list, so a photon within one radius
 // needs no quad, and the directions to the importons that a farther one can reach part from its own
 // by 30 degrees at most.
 
@@ -54,7 +54,7 @@ void main() {
     if (index >= parameters.count || !any_importon(int(parameters.resolution))) return;
     uint number = stored_photons[index];
     if (parameters.gathers != 0u && (photons[number].flags & PHOTON_INDIRECT) != 0u) return;
-    vec3 p = photons[number].position - parameters.centre;
+    vec3 p = photons[number].position - parameters.center;
     float distance = length(p), radius = photon_radius(photons[number].flags, parameters.radius,
                                                        parameters.wide_radius);
     if (distance < radius * 0.9999) return;

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Importons enter the lists of the cubemap pixels that they project to; those around the centre,
+// Importons enter the lists of the cubemap pixels that they project to; those around the center,
 // where a photon's footprint has no bound, enter the core list.
 
 layout(local_size_x = 64) in;
@@ -17,7 +17,7 @@ void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     if (!(importons[index].radius > 0.0)) return;
-    vec3 p = importons[index].position - parameters.centre;
+    vec3 p = importons[index].position - parameters.center;
     float core_radius = 2.0 * max(parameters.radius, parameters.wide_radius);
     if (dot(p, p) < core_radius * core_radius) {
         core_importons[atomicAdd(core_count, 1u)] = index;

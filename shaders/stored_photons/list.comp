@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of photons to splat: those stored, without direct ones where next-event rays stand for them.
+// The list of photons to splat: those stored, without direct ones where shadow rays stand for them.
 
 layout(local_size_x = 64) in;
 
@@ -17,5 +17,5 @@ void main() {
     uint flags = photons[index].flags;
     if ((flags & PHOTON_STORED) == 0u || (parameters.indirect_only != 0u && (flags & PHOTON_DIRECT) != 0u)) return;
     stored_photons[atomicAdd(stored_count, 1u)] = index;
-    if ((flags & PHOTON_DIFFUSED) != 0u) atomicAdd(diffused_count, 1u);
+    if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(diffused_count, 1u);
 }

@@ -19,7 +19,7 @@ STYLE = {
     "grid.linewidth": 0.6,
     "legend.frameon": False,
 }
-COLOURS = ("#1f6fb4", "#e07b00", "#2f9e44", "#c92a2a", "#7048a8", "#8a5a3b", "#d6579a", "#5f6b76")
+COLORS = ("#1f6fb4", "#e07b00", "#2f9e44", "#c92a2a", "#7048a8", "#8a5a3b", "#d6579a", "#5f6b76")
 
 
 def plain(value: float, _: int = 0) -> str:

@@ -121,7 +121,7 @@ def rays(subject: Subject, clock: Clock, quick: bool) -> dict:
             "ratio": boxes[kind] / seconds,
             "differences": cubemap["differences"][kind],
         }
-    return {"finest": cubemap["finest"], "centre": subject.automatic_centre, "kinds": kinds}
+    return {"finest": cubemap["finest"], "center": subject.automatic_center, "kinds": kinds}
 
 
 def placement(subject: Subject, clock: Clock, quick: bool) -> dict:
@@ -130,13 +130,13 @@ def placement(subject: Subject, clock: Clock, quick: bool) -> dict:
     stride = _PLACEMENT_STRIDE if clock.is_software and not quick else 1
     places = []
     try:
-        for name, centre in _centres(subject, quick):
-            build_seconds = clock.once(lambda: subject.build(cubemap, centre))  # noqa: B023 (called at once)
+        for name, center in _centers(subject, quick):
+            build_seconds = clock.once(lambda: subject.build(cubemap, center))  # noqa: B023 (called at once)
             seconds, differences = subject.trace_times(clock, subject.traced_by(cubemap), stride)
             places.append(
                 {
                     "place": name,
-                    "centre": [float(c) for c in centre],
+                    "center": [float(c) for c in center],
                     "finest": cubemap.resolution,
                     "build_seconds": build_seconds,
                     "trace_seconds": seconds,
@@ -222,7 +222,7 @@ def _build_embree(triangles: np.ndarray, clock: Clock, quick: bool) -> float:
     return float(np.median(seconds[1:]))  # the first one starts Embree's threads
 
 
-def _centres(subject: Subject, quick: bool) -> list[tuple[str, np.ndarray]]:
+def _centers(subject: Subject, quick: bool) -> list[tuple[str, np.ndarray]]:
     """Names and (3,) points, meters: the automatic place first."""
     rng = np.random.default_rng(3)
     low, high = np.asarray(subject.geometry.bounds_low), np.asarray(subject.geometry.bounds_high)
@@ -233,7 +233,7 @@ def _centres(subject: Subject, quick: bool) -> list[tuple[str, np.ndarray]]:
     directions = rng.normal(size=(1 if quick else 4, 3))
     outside = middle + 1.5 * radius * directions / np.linalg.norm(directions, axis=1, keepdims=True)
     return [
-        ("automatic", np.asarray(subject.automatic_centre)),
+        ("automatic", np.asarray(subject.automatic_center)),
         ("camera", np.asarray(subject.mapper.scene.camera.matrix[:3, 3])),
         ("middle", middle),
         *(("emitter", point) for point in emitters),

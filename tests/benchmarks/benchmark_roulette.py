@@ -14,7 +14,7 @@ def roulette(subject: Subject, clock: Clock, quick: bool) -> dict:
     """Splatting times and relative variance without and with roulette, the latter also at equal time.
 
     The variance is that of independent renders. Direct light comes by photons and rays go through pixel
-    centres, so that nothing but photons and paths brings noise.
+    centers, so that nothing but photons and paths brings noise.
     """
     scale = scale_of(clock, quick)
     count = scale.seed_iterations

@@ -79,7 +79,7 @@ class Subject:
         camera = dataclasses.replace(scene.camera, width=64, height=48, crop=None)
         mapper.build(dataclasses.replace(scene, settings=settings, camera=camera))
         self.triangle_count = mapper.triangle_count
-        self.automatic_centre = tuple(float(c) for c in mapper.device_scene.center)
+        self.automatic_center = tuple(float(c) for c in mapper.device_scene.center)
         self._buffers: dict[int, dict] = {}
         self._listed = LivingPaths(self.context, library, "rays to measure with", "take fewer")
 
@@ -123,14 +123,14 @@ class Subject:
             found[kind] = np.frombuffer(hits.read(), HIT.dtype).copy()
         return found
 
-    def build(self, cubemap: DeepCubemap, centre=None, resolution: int = 0) -> None:
+    def build(self, cubemap: DeepCubemap, center=None, resolution: int = 0) -> None:
         """Build a cubemap of the scene; at the mapper's center where none is given. Resolution 0 is automatic."""
-        centre = np.asarray(self.automatic_centre if centre is None else centre, float)
+        center = np.asarray(self.automatic_center if center is None else center, float)
         cubemap.build(
             self.geometry.triangles.buffer,
             self.triangle_count,
-            tuple(centre),
-            radius_about(centre, self.geometry),
+            tuple(center),
+            radius_about(center, self.geometry),
             resolution,
         )
 
@@ -224,7 +224,7 @@ def room_scene(triangle_count: int) -> Scene:
         camera=Camera(camera_matrix, (-0.8, 0.8, -0.6, 0.6), 640, 480, clip_start=0.01),
         meshes=[mesh],
         instances=[Instance(0, np.eye(4), [0], "room")],
-        materials=[material("grey", Lobe(LobeKind.DIFFUSE, color=(0.7, 0.7, 0.7)))],
+        materials=[material("gray", Lobe(LobeKind.DIFFUSE, color=(0.7, 0.7, 0.7)))],
         lights=[Light("square", LightKind.AREA, light_matrix, np.full(3, 10.0), size=(0.4, 0.4))],
     )
 

@@ -21,13 +21,13 @@ def _area(low, high):
 
 
 @numba.njit(cache=True)
-def _split(lows, highs, centres, order, begin, end):
+def _split(lows, highs, centers, order, begin, end):
     """Axis, place and scale of the cheapest of 16 planes an axis (Wald 2007); axis -1 where there is none."""
     best, best_axis, best_plane = np.inf, -1, 0
     least, greatest = np.full(3, np.inf), np.full(3, -np.inf)
     for i in range(begin, end):
         for k in range(3):
-            least[k], greatest[k] = min(least[k], centres[order[i], k]), max(greatest[k], centres[order[i], k])
+            least[k], greatest[k] = min(least[k], centers[order[i], k]), max(greatest[k], centers[order[i], k])
     for axis in range(3):
         width = greatest[axis] - least[axis]
         if width <= 0.0:
@@ -36,7 +36,7 @@ def _split(lows, highs, centres, order, begin, end):
         low, high = np.full((_BINS, 3), np.inf), np.full((_BINS, 3), -np.inf)
         for i in range(begin, end):
             triangle = order[i]
-            place = min(_BINS - 1, int((centres[triangle, axis] - least[axis]) / width * _BINS))
+            place = min(_BINS - 1, int((centers[triangle, axis] - least[axis]) / width * _BINS))
             counts[place] += 1
             for k in range(3):
                 low[place, k] = min(low[place, k], lows[triangle, k])
@@ -58,7 +58,7 @@ def _split(lows, highs, centres, order, begin, end):
 
 
 @numba.njit(cache=True)
-def _build(lows, highs, centres):
+def _build(lows, highs, centers):
     order = np.arange(len(lows)).astype(np.uint32)
     boxes = np.zeros((2 * len(lows) + 1, 6), np.float32)
     links = np.zeros((2 * len(lows) + 1, 2), np.uint32)
@@ -74,14 +74,14 @@ def _build(lows, highs, centres):
         links[node, 0], links[node, 1] = begin, end - begin
         if end - begin <= _LEAF:
             continue
-        axis, plane, least, greatest = _split(lows, highs, centres, order, begin, end)
+        axis, plane, least, greatest = _split(lows, highs, centers, order, begin, end)
         middle = (begin + end) // 2
         if axis >= 0:
             width = greatest[axis] - least[axis]
             i, j = begin, end - 1
             while i <= j:
                 triangle = order[i]
-                if min(_BINS - 1, int((centres[triangle, axis] - least[axis]) / width * _BINS)) <= plane:
+                if min(_BINS - 1, int((centers[triangle, axis] - least[axis]) / width * _BINS)) <= plane:
                     i += 1
                 else:
                     order[i], order[j] = order[j], triangle

@@ -20,7 +20,7 @@ for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-from benchmark_catalogue import FIGURES, MEASUREMENTS, is_possible, scenes_of  # noqa: E402
+from benchmark_catalog import FIGURES, MEASUREMENTS, is_possible, scenes_of  # noqa: E402
 from benchmark_figures import ROUTES, make_cubemap  # noqa: E402
 from benchmark_machine import Clock, describe, slug  # noqa: E402
 from benchmark_scenes import NAMES, SceneStore, Subject, subjects  # noqa: E402

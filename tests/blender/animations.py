@@ -239,7 +239,7 @@ def topology(scene: bpy.types.Scene, folder: Path) -> None:
 
 
 def materials(scene: bpy.types.Scene, folder: Path) -> None:
-    """Colours, roughness, emission, light and world change, and a light goes out."""
+    """Colors, roughness, emission, light and world change, and a light goes out."""
     painted = ball(scene, "Painted", 0.6, location=(-1.2, 0.0, 0.6))
     paint = material("Paint", "ShaderNodeBsdfPrincipled", Roughness=0.8)
     painted.data.materials.append(paint)

@@ -8,7 +8,7 @@ from rppm_addon.scene import Scene
 
 
 def stage(scene, material, size=16):
-    """A quad with the material that fills the picture, a quad that it lights, a sun, a lamp and a grey world."""
+    """A quad with the material that fills the picture, a quad that it lights, a sun, a lamp and a gray world."""
     scene.render.resolution_x = scene.render.resolution_y = size
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 2.0
     shown = add_mesh(scene, "Shown")

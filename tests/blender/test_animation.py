@@ -28,7 +28,7 @@ def keyed(owner, path, values):
         holder.keyframe_insert(name, frame=frame)
 
 
-def coloured(name, color):
+def colored(name, color):
     material = new_material(name)
     to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfDiffuse", Color=(*color, 1.0)))
     return material
@@ -46,16 +46,16 @@ def moving(lit):
     keyed(lit.camera, "location", [(0.1 * frame, 0.0, 5.0) for frame in range(LAST)])
 
     row = add_mesh(lit, "Row", location=(-1.0, 0.5, 0.5), scale=(0.3, 0.3, 1.0))
-    row.data.materials.append(coloured("Red", (0.8, 0.1, 0.1)))
+    row.data.materials.append(colored("Red", (0.8, 0.1, 0.1)))
     array = row.modifiers.new("Array", "ARRAY")
     array.relative_offset_displace = (1.3, 0.0, 0.0)
     keyed(row, "modifiers[0].count", (1, 1, 3, 3, 2, 2))
 
     gone = add_mesh(lit, "Gone", location=(0.8, -0.8, 1.0), scale=(0.5, 0.5, 1.0))
-    gone.data.materials.append(coloured("Blue", (0.1, 0.1, 0.8)))
+    gone.data.materials.append(colored("Blue", (0.1, 0.1, 0.8)))
     keyed(gone, "hide_render", (False, False, False, True, True, False))
 
-    changing = coloured("Changing", (0.1, 0.8, 0.1))
+    changing = colored("Changing", (0.1, 0.8, 0.1))
     shown = add_mesh(lit, "Shown", location=(-0.8, -0.8, 0.5), scale=(0.5, 0.5, 1.0))
     shown.data.materials.append(changing)
     colors = [(0.1 * frame, 0.8, 0.1, 1.0) for frame in (1, 1, 2, 2, 2, 3)]

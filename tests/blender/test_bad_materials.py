@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Broken materials: a finite picture with a neutral stand-in, and a warning that names material and node."""
+"""Broken materials: a finite picture with a neutral fallback, and a warning that names material and node."""
 
 import bpy
 import numpy as np
@@ -330,7 +330,7 @@ def test_worlds_that_are_broken(scene, renderer):
 MISSING = {
     "ShaderNodeUVMap": ({"uv_map": "Lost"}, 'the attribute or UV map "Lost"'),
     "ShaderNodeAttribute": ({"attribute_name": "Lost"}, 'the attribute or UV map "Lost"'),
-    "ShaderNodeVertexColor": ({}, "the colour attribute in use"),
+    "ShaderNodeVertexColor": ({}, "the color attribute in use"),
     "ShaderNodeNormalMap": ({"uv_map": "Lost"}, 'the UV map "Lost"'),
 }
 

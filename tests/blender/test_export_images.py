@@ -206,12 +206,12 @@ SPACES = ["Linear Rec.2020", "ACEScg", "ACES2065-1", "Display P3", "Rec.1886", "
 
 
 @pytest.mark.parametrize("space", SPACES)
-def test_grey_is_grey_in_all_spaces(scene, space):
-    grey = scene_linear(np.full((2, 3, 3), 0.4), space)
-    assert grey == pytest.approx(np.broadcast_to(grey[0, 0, 0], (2, 3, 3)), rel=1e-3)
+def test_gray_is_gray_in_all_spaces(scene, space):
+    gray = scene_linear(np.full((2, 3, 3), 0.4), space)
+    assert gray == pytest.approx(np.broadcast_to(gray[0, 0, 0], (2, 3, 3)), rel=1e-3)
 
 
-def test_places_of_colours_stay(scene):
+def test_places_of_colors_stay(scene):
     """From bytes as from floats: Blender decodes both alike."""
     colors = np.random.default_rng(3).random((3, 4, 3))
     assert to_srgb(scene_linear(colors, "sRGB")) == pytest.approx(colors, abs=1e-5)

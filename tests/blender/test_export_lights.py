@@ -9,7 +9,7 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
 from emission import light_strength
 
-from rppm_addon.materials.emitted import lamp_variation
+from rppm_addon.materials.emitted import light_variation
 from rppm_addon.scene import LightKind
 from rppm_addon.scene.meshes import RayVisibility
 
@@ -100,7 +100,7 @@ def test_light_nodes_multiply(scene):
         emission.inputs["Strength"],
     )
     exported = export(scene)
-    assert not exported.warnings and lamp_variation(exported.lights[0].graph).place
+    assert not exported.warnings and light_variation(exported.lights[0].graph).place
     assert 0.0 < light_strength(exported)[1] < 1.0
 
 
@@ -113,7 +113,7 @@ def test_light_nodes_of_place_and_direction_at_once(scene):
     link(tree, geometry.outputs["Incoming"], product.inputs[0])
     link(tree, product.outputs[0], tree.nodes["Emission"].inputs["Color"])
     exported = export(scene)
-    assert not exported.warnings and lamp_variation(exported.lights[0].graph).direction
+    assert not exported.warnings and light_variation(exported.lights[0].graph).direction
     link(tree, geometry.outputs["Position"], product.inputs[1])
     assert any('Light "Light": its nodes vary by place and by direction' in text for text in export(scene).warnings)
 
@@ -170,7 +170,7 @@ def test_irradiance_agrees_with_cycles(scene, kind, values, tmp_path):
 
 
 def cycles_radiance(scene, folder):
-    """Mean radiance of a millimetre around the origin from above, by Cycles, (3,)."""
+    """Mean radiance of a millimeter around the origin from above, by Cycles, (3,)."""
     import OpenEXR
 
     render = scene.render

@@ -91,7 +91,7 @@ def test_what_scripts_and_presets_set_is_exported(scene):
     scene.rppm.first_photon_hits = "TRACED"
     assert export(scene).settings.first_photon_hits is FirstPhotonHits.TRACED
     scene.rppm.cubemap_center_object = lamp
-    assert export(scene).cubemap_centre == pytest.approx([0.0, 0.0, 3.0])
+    assert export(scene).cubemap_center == pytest.approx([0.0, 0.0, 3.0])
     lamp.data.rppm.photon_weight = 3.0
     assert (before.lights[0].photon_weight, export(scene).lights[0].photon_weight) == (1.0, 3.0)
 
@@ -107,8 +107,8 @@ def test_the_ranges_of_the_properties_are_valid_settings(scene):
                 settings.validate()
 
 
-def test_the_cubemap_centre_follows_its_object(scene):
-    assert export(scene).cubemap_centre is None
+def test_the_cubemap_center_follows_its_object(scene):
+    assert export(scene).cubemap_center is None
     parent, empty = bpy.data.objects.new("parent", None), bpy.data.objects.new("empty", None)
     for thing in (parent, empty):
         scene.collection.objects.link(thing)
@@ -116,7 +116,7 @@ def test_the_cubemap_centre_follows_its_object(scene):
     parent.location, empty.location = (1, 2, 3), (0.5, 0, 0)
     scene.rppm.cubemap_center_object = empty
     bpy.context.view_layer.update()
-    assert export(scene).cubemap_centre == pytest.approx([1.5, 2, 3])
+    assert export(scene).cubemap_center == pytest.approx([1.5, 2, 3])
 
 
 def test_an_animated_seed_is_another_one_in_each_frame(scene):

@@ -109,4 +109,4 @@ def test_random_trees_give_finite_pictures(scene, renderer, drawn):
     _, warnings, exported = picture(renderer, scene)
     for warning in warnings:
         assert warning.startswith('Material "Material"') or "photons" in warning, warning
-        assert "it is grey" not in warning, warning
+        assert "it is gray" not in warning, warning

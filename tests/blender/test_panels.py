@@ -15,7 +15,7 @@ from rppm_addon.blender.panels import presets, viewport_header
 from rppm_addon.blender.panels.base import RppmPanel
 from rppm_addon.blender.reports import RenderKind, RenderReport
 from rppm_addon.integrator.density_estimation.radii import shrinkage
-from rppm_addon.integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
+from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.integrator.memory import expected_memory
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.quantities import bytes_text
@@ -34,7 +34,7 @@ def report(kind=RenderKind.FINAL, **values):
     """A report of a render of 64x32 pixels."""
     figures = {
         "settings": RenderSettings(iterations=8, photons=1000), "iterations": 8, "photons": 8000, "seconds": 5.0,
-        "radius_metres": 0.012, "memory_bytes": 200 << 20, "build_seconds": 1.0, "device": "Device", "triangles": 12,
+        "radius_meters": 0.012, "memory_bytes": 200 << 20, "build_seconds": 1.0, "device": "Device", "triangles": 12,
     }  # fmt: skip
     return RenderReport(kind, 64, 32, **figures | values)
 
@@ -208,8 +208,8 @@ def test_shares_of_lights(scene):
     lamp = add_light(scene, "POINT", "Lamp")
     add_light(scene, "SUN", "Late")
     lamp.data.rppm.photon_weight = 3.0
-    watts = {source_name("Lamp"): 10.0, source_name("Gone"): 10.0, SURFACES: 20.0, SURROUNDINGS: 60.0}
-    photons = {source_name("Lamp"): 500, source_name("Gone"): 0, SURFACES: 250, SURROUNDINGS: 250}
+    watts = {source_name("Lamp"): 10.0, source_name("Gone"): 10.0, SURFACES: 20.0, ENVIRONMENT: 60.0}
+    photons = {source_name("Lamp"): 500, source_name("Gone"): 0, SURFACES: 250, ENVIRONMENT: 250}
     panel = panels.lights.RPPM_PT_light_shares
     record = drawn(panel, context_of(scene))
     assert record.properties == ["photon_weight"] * 2 and "once the scene was rendered" in record.labels[-1]

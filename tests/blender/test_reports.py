@@ -17,7 +17,7 @@ from rppm_addon.blender.operators import RPPM_OT_select_subject
 from rppm_addon.blender.readings import memory_reading, photon_shares, radius_reading
 from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
-from rppm_addon.integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
+from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.scene import RenderSettings
 from rppm_addon.session.process.client import RendererProcess
 from rppm_addon.session.process.sessions import SessionKind, SessionStatus
@@ -53,7 +53,7 @@ def test_the_radius_that_is_shown_is_the_one_that_is_used(facing):
     facing.rppm.radius_scale = 90.0  # of a megapixel: 2.8 pixels of these
     report = rendered(facing)
     shown = radius_reading(export_settings(facing), 32, 32)
-    assert report.radius_metres == pytest.approx(shown.last * 2.0 / 32, rel=1e-4)
+    assert report.radius_meters == pytest.approx(shown.last * 2.0 / 32, rel=1e-4)
     assert shown.first == pytest.approx(90.0 * 32 / 1024 / math.sqrt(math.pi))
 
 
@@ -71,7 +71,7 @@ def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
     add_mesh(facing, "Glowing", location=(0.0, 0.0, -1.0)).data.materials.append(glow)
     set_world(facing, (0.3, 0.3, 0.3))
     report = rendered(facing)
-    names = {source_name(f"The {kind}") for kind in factors} | {SURFACES, SURROUNDINGS}
+    names = {source_name(f"The {kind}") for kind in factors} | {SURFACES, ENVIRONMENT}
     assert set(report.source_watts) == set(report.source_photons) == names
     assert sum(report.source_photons.values()) == 4000
     shares = {row.name: row for row in panels.lights.source_rows(facing)}
@@ -163,7 +163,7 @@ def test_warnings_name_what_can_be_selected(facing):
 
 
 def report(kind=RenderKind.FINAL, **values):
-    figures = {"iterations": 1, "photons": 1, "seconds": 1.0, "radius_metres": 1.0, "memory_bytes": 1}
+    figures = {"iterations": 1, "photons": 1, "seconds": 1.0, "radius_meters": 1.0, "memory_bytes": 1}
     return RenderReport(kind, 1, 1, RenderSettings(), **figures | values)
 
 
@@ -289,7 +289,7 @@ def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
     assert [(row.name, row.share, row.sent) for row in panels.lights.source_rows(facing)] == [("Sun", 1.0, 1.0)]
     final = rendered(facing)
     assert final.source_watts == told.source_watts and final.source_photons == told.source_photons
-    assert final.radius_metres == pytest.approx(told.radius_metres, rel=1e-6)
+    assert final.radius_meters == pytest.approx(told.radius_meters, rel=1e-6)
     assert {final.density_estimation, told.density_estimation} <= {"GRID", "RASTERIZED"}
     shown = drawn(panels.performance.RPPM_PT_status, context_of(facing)).labels
     assert shown.index("Viewport") < shown.index("Final")

@@ -57,7 +57,7 @@ def render(scene, checkpoint, iterations, *more, status=0):
 
 
 def test_a_resumed_render_is_the_uninterrupted_one(tmp_path, two_floors, uninterrupted):
-    """Stopped while photons are learnt of, right after that, and once it is over."""
+    """Stopped while photons are learned of, right after that, and once it is over."""
     checkpoint = tmp_path / "still.exr"
     errors = render(two_floors, checkpoint, 1, "--resume")
     assert "not there yet: the render starts from the beginning" in errors
@@ -131,7 +131,7 @@ def test_what_cannot_be_gone_on_with_is_refused(tmp_path, rppm, two_floors, save
 
 
 def test_parts_merge_into_the_picture_of_one_run(tmp_path, rppm, two_floors, uninterrupted):
-    """The first part ends while photons are learnt of, the last one begins after that; a checkpoint is a part too."""
+    """The first part ends while photons are learned of, the last one begins after that; a checkpoint is a part too."""
     ranges = [(0, 5), (5, 18), (18, LAST)]
     parts = [tmp_path / f"part_{first}.exr" for first, _ in ranges]
     for (first, end), part in zip(ranges, parts):

@@ -88,7 +88,7 @@ def test_png_reads_back_the_right_way_up(tmp_path):
             np.testing.assert_array_equal(np.asarray(image), pixels[::-1])
 
 
-def test_standard_view_is_the_srgb_curve_on_straight_colour():
+def test_standard_view_is_the_srgb_curve_on_straight_color():
     combined = np.array([[[0.0, 0.0031308, 0.2158605, 1.0], [0.1, 0.2, 0.25, 0.5], [7.0, np.nan, -3.0, 1.0]]])
     shown = standard_view(combined)
     # 0.2158605 is the linear value of 128; 0.2/0.5 = 0.4 and 0.25/0.5 = 0.5 encode to 0.66519 and 0.73536

@@ -24,15 +24,15 @@ def expected_radiance(x, y):
 
 def test_a_saved_scene_renders_to_exr_png_and_json(tmp_path, rppm, saved_scene):
     exr, png, report = tmp_path / "new" / "out.exr", tmp_path / "new" / "out.png", tmp_path / "log" / "out.json"
-    centres = ("--set", "rppm.filter_width=0")
-    status, output, errors = rppm("render", saved_scene, "-o", exr, "-o", png, "--json", report, *centres)
+    centers = ("--set", "rppm.filter_width=0")
+    status, output, errors = rppm("render", saved_scene, "-o", exr, "-o", png, "--json", report, *centers)
     assert (status, "Traceback" in errors) == (0, False), errors
     assert "3 samples" in output
     assert "3.07 k photons" in output
 
     picture = read_exr(exr)
     assert picture.combined.shape == (12, 16, 4)
-    # Pixel centres on the floor, 4 m below: x and y grow with column and row, rows from the bottom.
+    # Pixel centers on the floor, 4 m below: x and y grow with column and row, rows from the bottom.
     columns, rows = np.meshgrid(np.arange(16), np.arange(12))
     x, y = (columns + 0.5) / 16 * 4 - 2, ((rows + 0.5) / 12 - 0.5) * 3
     inside = columns < 7

@@ -13,18 +13,18 @@ import pytest
 from cli.conftest import blend_files, rppm, saved_scene, start_rppm  # noqa: F401 (fixtures)
 
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE_SECONDS = 60.0
+TIMEOUT_SECONDS = 60.0
 
 
 def wait_for(what, condition):
     """What ``condition()`` gives once it is true; fails after a minute."""
-    give_up = time.monotonic() + PATIENCE_SECONDS
+    give_up = time.monotonic() + TIMEOUT_SECONDS
     while time.monotonic() < give_up:
         found = condition()
         if found:
             return found
         time.sleep(0.05)
-    pytest.fail(f"{what}: not after {PATIENCE_SECONDS:.0f} s")
+    pytest.fail(f"{what}: not after {TIMEOUT_SECONDS:.0f} s")
 
 
 def renders_below(process, words=""):

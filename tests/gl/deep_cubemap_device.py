@@ -27,7 +27,7 @@ class Scene:
         context,
         library,
         triangles: np.ndarray,
-        centre,
+        center,
         resolution: int = 64,
         rasterize: bool | None = True,
         texel_buffers: bool | None = None,
@@ -37,15 +37,15 @@ class Scene:
         vertices = np.zeros((max(3 * len(triangles), 1), 4), np.float32)
         vertices[: 3 * len(triangles), :3] = self.host_triangles.reshape(-1, 3)
         self.triangles = context.moderngl.buffer(vertices.tobytes())
-        self.centre = np.asarray(centre, np.float32)
+        self.center = np.asarray(center, np.float32)
         self.cubemap = DeepCubemap(context, library, rasterize, texel_buffers=texel_buffers)
         self._rays = LivingPaths(context, library, "rays of a test", "take fewer")
         self.build(resolution)
 
     def build(self, resolution: int) -> None:
-        distances = np.linalg.norm(self.host_triangles.reshape(-1, 3) - self.centre, axis=1)
+        distances = np.linalg.norm(self.host_triangles.reshape(-1, 3) - self.center, axis=1)
         radius = distances[np.isfinite(distances)].max(initial=0.0)
-        self.cubemap.build(self.triangles, len(self.host_triangles), self.centre, radius, resolution)
+        self.cubemap.build(self.triangles, len(self.host_triangles), self.center, radius, resolution)
 
     def trace(self, rays: np.ndarray) -> np.ndarray:
         """Hit records."""

@@ -6,10 +6,10 @@ from deep_cubemap_device import ray_records
 
 KINDS = (
     "uniform",
-    "from the centre",
-    "to the centre",
-    "past the centre",
-    "from near the centre",
+    "from the center",
+    "to the center",
+    "past the center",
+    "from near the center",
     "along axes",
     "in face borders",
     "in face diagonals",
@@ -29,11 +29,11 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 class HardRays:
     """Makes RAY records for (n, 3, 3) float32 ``triangles`` and a center."""
 
-    def __init__(self, triangles: np.ndarray, centre, seed: int) -> None:
+    def __init__(self, triangles: np.ndarray, center, seed: int) -> None:
         self.triangles = triangles
-        self.centre = np.asarray(centre, np.float32).astype(float)
+        self.center = np.asarray(center, np.float32).astype(float)
         self.low, self.high = triangles.min((0, 1)).astype(float), triangles.max((0, 1)).astype(float)
-        self.radius = float(np.linalg.norm(np.maximum(self.high - self.centre, self.centre - self.low)))
+        self.radius = float(np.linalg.norm(np.maximum(self.high - self.center, self.center - self.low)))
         self.rng = np.random.default_rng(seed)
 
     def rays(self, kind: str, count: int) -> np.ndarray:
@@ -46,9 +46,9 @@ class HardRays:
     def _in_box(self, count: int) -> np.ndarray:
         return self.rng.uniform(self.low, self.high, (count, 3))
 
-    def _near_centre(self, count: int) -> np.ndarray:
+    def _near_center(self, count: int) -> np.ndarray:
         """At distances of all orders of magnitude from 1e-9 to 1e-2 of the radius."""
-        return self.centre + self.rng.normal(size=(count, 3)) * self.radius * 10.0 ** self.rng.uniform(
+        return self.center + self.rng.normal(size=(count, 3)) * self.radius * 10.0 ** self.rng.uniform(
             -9, -2, (count, 1)
         )
 
@@ -68,21 +68,21 @@ class HardRays:
         return corners[index, first] * along + corners[index, (first + 1) % 3] * (1 - along)
 
     def _make(self, kind: str, count: int) -> tuple[np.ndarray, np.ndarray]:
-        rng, centre, index = self.rng, self.centre, np.arange(count)
+        rng, center, index = self.rng, self.center, np.arange(count)
         if kind == "uniform":
             return self._in_box(count), rng.normal(size=(count, 3))
-        if kind == "from the centre":
+        if kind == "from the center":
             targets = np.concatenate([self._edges(count // 2), self._surface(count - count // 2)[0]])
-            return np.tile(centre, (count, 1)), targets - centre
-        if kind == "to the centre":
+            return np.tile(center, (count, 1)), targets - center
+        if kind == "to the center":
             origins = self._in_box(count).astype(np.float32).astype(float)
-            origins[::4] = centre + (origins[::4] - centre) * 4
-            return origins, centre - origins
-        if kind == "past the centre":
+            origins[::4] = center + (origins[::4] - center) * 4
+            return origins, center - origins
+        if kind == "past the center":
             origins = self._in_box(count)
-            return origins, self._near_centre(count) - origins
-        if kind == "from near the centre":
-            origins = self._near_centre(count)
+            return origins, self._near_center(count) - origins
+        if kind == "from near the center":
+            origins = self._near_center(count)
             return origins, rng.normal(size=(count, 3))
         if kind == "along axes":
             directions = np.zeros((count, 3))
@@ -91,22 +91,22 @@ class HardRays:
             origins = self._in_box(count)
             # in the planes and lines of vertices, or of the center
             vertices = self._corners(count)[index, rng.integers(0, 3, count)]
-            vertices[::3] = centre
+            vertices[::3] = center
             exact = rng.random((count, 3)) < 0.6
             return np.where(exact, vertices, origins), directions
         if kind == "in face borders":
             axis = rng.integers(0, 3, count)
             other = (axis + 1) % 3
             ratio = rng.choice([-1.0, 1.0], count) * rng.choice([1.0, 1.0, 0.0, 0.5, 0.25, 0.0078125], count)
-            offset, directions = (self._in_box(count) - centre) * 0.5, rng.normal(size=(count, 3))
+            offset, directions = (self._in_box(count) - center) * 0.5, rng.normal(size=(count, 3))
             offset[index, other] = ratio * offset[index, axis]
             directions[index, other] = ratio * directions[index, axis]
-            return centre + offset, directions
+            return center + offset, directions
         if kind == "in face diagonals":
             diagonals = rng.choice([-1.0, 1.0], (count, 3))
             diagonals[::3, 0] = 0.0
             along = rng.uniform(-1, 1, (count, 1)) * self.radius * (rng.random((count, 1)) < 0.8)
-            return centre + along * rng.choice([-1.0, 1.0], (count, 3)), diagonals
+            return center + along * rng.choice([-1.0, 1.0], (count, 3)), diagonals
         if kind == "at edges":
             origins = self._in_box(count)
             return origins, self._edges(count) - origins
@@ -130,6 +130,6 @@ class HardRays:
             points, _ = self._surface(count)
             return points, rng.normal(size=(count, 3))
         if kind == "from outside":
-            origins = centre + _unit(rng.normal(size=(count, 3))) * self.radius * rng.uniform(1.0, 4.0, (count, 1))
+            origins = center + _unit(rng.normal(size=(count, 3))) * self.radius * rng.uniform(1.0, 4.0, (count, 1))
             return origins, self._surface(count)[0] - origins
         raise ValueError(kind)

@@ -5,35 +5,35 @@ import numpy as np
 
 KINDS = (
     "uniform",
-    "towards the centre",
-    "past the centre",
-    "from the centre",
-    "from near the centre",
+    "toward the center",
+    "past the center",
+    "from the center",
+    "from near the center",
     "along axes",
     "in cell borders",
     "at edges and vertices",
 )
 
 
-def _near(centre: np.ndarray, rng: np.random.Generator, count: int) -> np.ndarray:
+def _near(center: np.ndarray, rng: np.random.Generator, count: int) -> np.ndarray:
     """Points at distances of all orders of magnitude from 1e-8 to 1e-2."""
-    return centre + rng.normal(size=(count, 3)) * 10.0 ** rng.uniform(-8, -2, (count, 1))
+    return center + rng.normal(size=(count, 3)) * 10.0 ** rng.uniform(-8, -2, (count, 1))
 
 
-def make_rays(kind: str, count: int, centre, seed: int) -> tuple[np.ndarray, np.ndarray]:
+def make_rays(kind: str, count: int, center, seed: int) -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(seed)
-    centre = np.asarray(centre, float)
+    center = np.asarray(center, float)
     index = np.arange(count)
     origins = rng.uniform(-0.98, 0.98, (count, 3))
     directions = rng.normal(size=(count, 3))
-    if kind == "towards the centre":
-        directions = centre - origins
-    elif kind == "past the centre":
-        directions = _near(centre, rng, count) - origins
-    elif kind == "from the centre":
-        origins = np.tile(centre, (count, 1))
-    elif kind == "from near the centre":
-        origins = _near(centre, rng, count)
+    if kind == "toward the center":
+        directions = center - origins
+    elif kind == "past the center":
+        directions = _near(center, rng, count) - origins
+    elif kind == "from the center":
+        origins = np.tile(center, (count, 1))
+    elif kind == "from near the center":
+        origins = _near(center, rng, count)
     elif kind == "along axes":
         directions = np.zeros((count, 3))
         directions[index, rng.integers(0, 3, count)] = rng.choice([-1.0, 1.0], count)
@@ -44,7 +44,7 @@ def make_rays(kind: str, count: int, centre, seed: int) -> tuple[np.ndarray, np.
         ratio = rng.choice([-1.0, 1.0], count) * rng.choice([1.0, 0.0, 0.5, -0.25], count)
         offset = rng.uniform(-0.5, 0.5, (count, 3))
         offset[index, other] = ratio * offset[index, axis]
-        origins = centre + offset
+        origins = center + offset
         directions[index, other] = ratio * directions[index, axis]
     elif kind == "at edges and vertices":
         # the coordinates of the room's, the pillar's and the table's corners

@@ -10,7 +10,7 @@ _LEAF = 4
 
 
 @numba.njit(cache=True)
-def _build(low, high, centres):
+def _build(low, high, centers):
     """Nodes of a median split: boxes, and (first child or place, count or 0); and the triangles' order."""
     order = np.arange(low.shape[0])
     boxes = np.zeros((2 * low.shape[0] + 1, 6), np.float32)
@@ -26,7 +26,7 @@ def _build(low, high, centres):
             for i in range(begin, end):
                 triangle = order[i]
                 least, greatest = min(least, low[triangle, k]), max(greatest, high[triangle, k])
-                first, last = min(first, centres[triangle, k]), max(last, centres[triangle, k])
+                first, last = min(first, centers[triangle, k]), max(last, centers[triangle, k])
             boxes[node, k], boxes[node, 3 + k] = least, greatest
             if last - first > widest:
                 axis, widest = k, last - first
@@ -34,7 +34,7 @@ def _build(low, high, centres):
             links[node] = begin, end - begin
             continue
         part = order[begin:end].copy()
-        order[begin:end] = part[np.argsort(centres[part, axis])]
+        order[begin:end] = part[np.argsort(centers[part, axis])]
         middle = (begin + end) // 2
         links[node] = used, 0
         stack.append((used, begin, middle))

@@ -3,11 +3,11 @@
 
 import numpy as np
 
-SPHERE_CENTRE = (-0.45, -0.55, -0.3)
+SPHERE_CENTER = (-0.45, -0.55, -0.3)
 TABLE_TOP = -0.25
 
 # Where a cubemap's center may lie in the scenes below, the awkward places first of all.
-CENTRES = {
+CENTERS = {
     "plain": (0.05, 0.1, 0.15),
     "symmetric": (0.0, 0.0, 0.0),
     "in the table top": (-0.5, TABLE_TOP, 0.5),
@@ -15,7 +15,7 @@ CENTRES = {
     "in the table top's plane": (0.05, TABLE_TOP, 0.15),
     "on a wall": (1.0, 0.3, 0.2),
     "outside": (1.6, 0.2, 0.1),
-    "inside the sphere": SPHERE_CENTRE,
+    "inside the sphere": SPHERE_CENTER,
 }
 
 
@@ -41,7 +41,7 @@ def box(low, high, divisions: int = 1) -> np.ndarray:
     return np.concatenate(sides)
 
 
-def sphere(centre, radius: float, rings: int, bumps: float = 0.0) -> np.ndarray:
+def sphere(center, radius: float, rings: int, bumps: float = 0.0) -> np.ndarray:
     """A closed sphere of longitudes and latitudes; degenerate triangles at the poles are left out."""
     latitude = np.linspace(0.0, np.pi, rings + 1)[:, None]
     longitude = np.linspace(0.0, 2 * np.pi, 2 * rings + 1)[None, :]
@@ -54,18 +54,18 @@ def sphere(centre, radius: float, rings: int, bumps: float = 0.0) -> np.ndarray:
     points = np.stack([x, y, z], -1)
     points[0], points[-1] = (0, 1, 0), (0, -1, 0)
     points *= (1 + bumps * np.sin(9 * x + 4 * y) * np.cos(11 * y - 5 * z))[..., None]
-    triangles = grid_triangles(points * radius + np.asarray(centre))
+    triangles = grid_triangles(points * radius + np.asarray(center))
     area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
     return triangles[area > 1e-14]
 
 
-def torus(centre, radius: float, tube: float, rings: int) -> np.ndarray:
+def torus(center, radius: float, tube: float, rings: int) -> np.ndarray:
     around = np.linspace(0.0, 2 * np.pi, 2 * rings + 1)[None, :]
     across = np.linspace(0.0, 2 * np.pi, rings + 1)[:, None]
     around[0, -1] = across[-1, 0] = 0.0
     distance = radius + tube * np.cos(across)
     points = np.stack([distance * np.cos(around), tube * np.sin(across) + 0 * around, distance * np.sin(around)], -1)
-    return grid_triangles(points + np.asarray(centre))
+    return grid_triangles(points + np.asarray(center))
 
 
 def furnished_room(divisions: int = 1) -> np.ndarray:
@@ -85,7 +85,7 @@ def room_with_meshes(triangle_count: int) -> np.ndarray:
     return np.concatenate(
         [
             furnished_room(),
-            sphere(SPHERE_CENTRE, 0.4, rings),
+            sphere(SPHERE_CENTER, 0.4, rings),
             torus((0.5, 0.5, 0.3), 0.35, 0.12, rings),
             sphere((0.45, -0.5, 0.5), 0.38, rings, bumps=0.15),
         ]

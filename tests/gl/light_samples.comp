@@ -17,14 +17,14 @@ void main() {
     RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
     float u_choice = next_random(random);
     LightSample sampled = sample_whole_light(lights[0], parameters.point, u_choice, next_random2(random));
-    float density = 0.0;
+    float pdf = 0.0;
     vec3 seen = vec3(0.0);
     if (sampled.triangle != NO_TRIANGLE) {
         seen = vec3(parameters.emitted);
-        density = emissive_triangle_density(parameters.point, sampled.triangle);
+        pdf = emissive_triangle_pdf(parameters.point, sampled.triangle);
     } else if (sampled.distance > 0.0)
-        seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, density);
+        seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, pdf);
     results[3u * index] = vec4(sampled.direction, sampled.distance);
-    results[3u * index + 1u] = vec4(sampled.weight, sampled.density);
-    results[3u * index + 2u] = vec4(seen, density);
+    results[3u * index + 1u] = vec4(sampled.weight, sampled.pdf);
+    results[3u * index + 2u] = vec4(seen, pdf);
 }

@@ -32,9 +32,9 @@ void main() {
     if (through) back.ior = 1.0 / lobe.ior;
     vec3 forward = evaluate_lobe(lobe, n, wo, wi), reverse = evaluate_lobe(back, through ? -n : n, wi, wo);
     results[5u * index + 2u] = vec4(forward.x, reverse.x, through ? 1.0 : 0.0, 0.0);
-    // The direction's density, by the means of functions of it.
+    // The direction's pdf, by the means of functions of it.
     vec3 at = sampled.direction;
     results[5u * index + 3u] = largest(sampled.weight) > 0.0 ? vec4(1.0, at.x, at.y * at.y, at.z * at.x) : vec4(0.0);
-    float density = largest(evaluated) > 0.0 ? lobe_density(lobe, n, wo, wi) * 4.0 * PI : 0.0;
-    results[5u * index + 4u] = density * vec4(1.0, wi.x, wi.y * wi.y, wi.z * wi.x);
+    float pdf = largest(evaluated) > 0.0 ? lobe_pdf(lobe, n, wo, wi) * 4.0 * PI : 0.0;
+    results[5u * index + 4u] = pdf * vec4(1.0, wi.x, wi.y * wi.y, wi.z * wi.x);
 }

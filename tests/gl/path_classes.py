@@ -2,7 +2,7 @@
 """Scenes in which one light path class L(S|G|D)*E alone reaches the camera, and what it shows there.
 
 A spot lights the first surface of a class only, and the path lengths are as short as the class allows. The camera
-looks through pixel centres at the inside of smoothly lit surfaces, farther from the edges than a splat reaches.
+looks through pixel centers at the inside of smoothly lit surfaces, farther from the edges than a splat reaches.
 """
 
 import dataclasses
@@ -21,12 +21,12 @@ SIZE = 24
 """Pixels along a side."""
 MODES = RAYS, PHOTONS = DirectLight.RAYS, DirectLight.PHOTONS
 FIRST, SECOND, THIRD = np.array([0.9, 0.7, 0.5]), np.array([0.6, 0.8, 0.7]), np.array([0.8, 0.75, 0.9])
-"""Colours of the surfaces in the order in which light meets them: a wrong number of bounces shows in the hue."""
+"""Colors of the surfaces in the order in which light meets them: a wrong number of bounces shows in the hue."""
 CUT = 0.5
 SHARP, TRACED, STORED = 0.2, 0.48, 0.52
 """Roughness that draws caustics, just below the cut-off, just above it."""
 EXTENT = 0.35
-"""Radius of the spot, metres, for paths that find it by scattering alone."""
+"""Radius of the spot, meters, for paths that find it by scattering alone."""
 UP, DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0])
 FLOOR = Plane(np.zeros(3), UP)
 WALL = Plane(np.array([1.2, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]))
@@ -39,7 +39,7 @@ NARROW, WIDE = 0, 1
 class Case:
     scene: Scene
     expected: Callable[[np.ndarray], np.ndarray]
-    """(H, W, 3) radiance if each importon met the photons that lie at an offset (3,), metres."""
+    """(H, W, 3) radiance if each importon met the photons that lie at an offset (3,), meters."""
     gathers: int | None = None
     """The radius that its photons are gathered with, NARROW or WIDE; None: by rays alone."""
     across: np.ndarray | None = None
@@ -117,7 +117,7 @@ def traced_only(scene: Scene, iterations: int, photons: int = 64) -> None:
 
 
 def colored(values: np.ndarray, *colors: np.ndarray) -> np.ndarray:
-    """(H, W) of white surfaces to (H, W, 3) of coloured ones."""
+    """(H, W) of white surfaces to (H, W, 3) of colored ones."""
     return values[..., None] * np.prod(colors, axis=0)
 
 

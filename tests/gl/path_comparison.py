@@ -100,7 +100,7 @@ def gathering(case: Case, monkeypatch: pytest.MonkeyPatch, found: bool) -> Case:
     scene = dataclasses.replace(case.scene, settings=changed)
     if found:  # seldom: what the rays look for is small
         traced_only(scene, 64, 64 if settings.direct_light is DirectLight.RAYS else 2048)
-        scene.settings.radius_scale = 10.0  # photons where the rays end have disks of a few centimetres
+        scene.settings.radius_scale = 10.0  # photons where the rays end have disks of a few centimeters
     return dataclasses.replace(case, scene=scene, gathers=None if found else case.gathers)
 
 

@@ -24,7 +24,7 @@ SLAB = 0.6, 0.8
 @dataclass(frozen=True)
 class Layer:
     thickness: float
-    """Metres along z."""
+    """Meters along z."""
     index: float
 
 

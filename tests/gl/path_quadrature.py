@@ -145,11 +145,11 @@ class Spot:
         everywhere = np.broadcast_to(directions, origins.shape)
         return origins.reshape(-1, 3), everywhere.reshape(-1, 3), (shares[:, None] * flux).ravel()
 
-    def towards(self, points: np.ndarray, detail: int) -> tuple[np.ndarray, np.ndarray]:
+    def toward(self, points: np.ndarray, detail: int) -> tuple[np.ndarray, np.ndarray]:
         """Directions to the light (..., n, 3) and irradiance across them (..., n) of all light at points (..., 3)."""
-        to_centre = self.position - points
-        distance = np.linalg.norm(to_centre, axis=-1)
-        axis = to_centre / distance[..., None]
+        to_center = self.position - points
+        distance = np.linalg.norm(to_center, axis=-1)
+        axis = to_center / distance[..., None]
         if self.radius == 0:
             return axis[..., None, :], (self.along(-axis) / distance**2)[..., None]
         drop = 1 - np.sqrt(1 - (self.radius / distance) ** 2)  # of the cosine, over the cap that is seen
@@ -189,7 +189,7 @@ def lit(
     spot: Spot, scatter: Scatter, normal: np.ndarray, points: np.ndarray, viewers: np.ndarray, detail: int = 6
 ) -> np.ndarray:
     """Radiance toward viewers of points (..., 3) that the spot lights: L x E."""
-    to_light, irradiance = spot.towards(points, detail)
+    to_light, irradiance = spot.toward(points, detail)
     cosine = np.maximum(dot(to_light, normal), 0.0)
     return (scatter(normal, to_light, viewers[..., None, :]) * cosine * irradiance).sum(-1)
 

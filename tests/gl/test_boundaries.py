@@ -60,9 +60,9 @@ def box(name: str, half: float, inwards: bool = False) -> Mesh:
     return scenes.polygons(name, corners, [face[::-1] for face in faces] if inwards else faces)
 
 
-def sun(*towards: float) -> Light:
+def sun(*toward: float) -> Light:
     """1 W/m^2 from infinitely far."""
-    return Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), towards), np.ones(3))
+    return Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), toward), np.ones(3))
 
 
 def point_lamp(*place: float, color: tuple = (1, 1, 1)) -> Light:
@@ -87,7 +87,7 @@ def picture(renderer, scene: Scene) -> np.ndarray:
 
 @pytest.mark.parametrize("direct_light", DirectLight)
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_a_closed_box_with_walls_of_a_millimetre_is_black_outside(renderer, direct_light, mirrored):
+def test_a_closed_box_with_walls_of_a_millimeter_is_black_outside(renderer, direct_light, mirrored):
     """With both radii a hundred times the walls' thickness; photons of up to eight diffuse bounces."""
     meshes = [box("inside", 0.5, inwards=True), box("outside", 0.501)]
     options = settings(0.1, 8, photons=4096, direct_light=direct_light, camera_path_length=2)
@@ -115,7 +115,7 @@ def test_the_sides_of_a_leaf_are_apart(renderer):
 
 
 @pytest.mark.parametrize(("radius", "leaks"), [(0.1, True), (0.0029, True), (0.0028, False)])
-def test_sheets_a_millimetre_apart(renderer, radius, leaks):
+def test_sheets_a_millimeter_apart(renderer, radius, leaks):
     """Undersides stay black. The upper sheet's light reaches the lower one's top while 0.35 radii span the gap."""
     meshes = [sheet("upper", (-1, -1), (1, 1), 0.001), sheet("lower", (-1, -1), (1, 1))]
 

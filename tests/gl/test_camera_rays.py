@@ -50,9 +50,9 @@ def unit(vectors):
 
 
 def off_axis(angle, across):
-    """(..., 3) right, up, forward at an angle off the axis towards a point of the frame."""
-    towards = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-300)
-    return np.concatenate([np.sin(angle)[..., None] * towards, np.cos(angle)[..., None]], axis=-1)
+    """(..., 3) right, up, forward at an angle off the axis toward a point of the frame."""
+    toward = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-300)
+    return np.concatenate([np.sin(angle)[..., None] * toward, np.cos(angle)[..., None]], axis=-1)
 
 
 def panorama_direction(panorama, u, v):
@@ -233,8 +233,8 @@ def check_distribution(aperture, lens):
     np.testing.assert_allclose(lens.mean(axis=0).std(axis=(0, 1)) / spread, 0, atol=0.03)
     first = lens[0].reshape(-1, 2)
     assert len(np.unique(first.round(7), axis=0)) > 0.95 * len(first)
-    neighbours = (lens[0, :, 1:] * lens[0, :, :-1]).mean() / (lens[0] ** 2).mean()
-    assert abs(neighbours) < 0.15
+    neighbors = (lens[0, :, 1:] * lens[0, :, :-1]).mean() / (lens[0] ** 2).mean()
+    assert abs(neighbors) < 0.15
 
 
 @pytest.mark.parametrize("name", ["equirectangular", "mirrorball", "equidistant"])
@@ -257,7 +257,7 @@ def test_the_lens_of_a_panorama_faces_each_direction(context, library, name):
     assert opening(aperture, lens).max() <= 1 + 1e-3
 
 
-def test_clip_distances_follow_the_ray_through_the_lens_centre(context, library):
+def test_clip_distances_follow_the_ray_through_the_lens_center(context, library):
     """As in Cycles: in perspective they are stretched as that ray is, in panoramas they lie along the ray."""
     window = (-1.0, 1.0, -1.0, 1.0)
     camera = Camera(np.eye(4), window, WIDTH, HEIGHT, clip_start=0.5, clip_end=4.5, aperture=APERTURES["disk"])

@@ -59,7 +59,7 @@ def test_radii_fall_where_photons_are_many(mapper):
         now = mapper.state().radius_factors
         assert (now <= before).all() and (now >= 1.0).all()
         if iteration in (1, 2, 4):
-            assert (now < before).any(), "nothing was learnt: the test shows nothing"
+            assert (now < before).any(), "nothing was learned: the test shows nothing"
         else:
             np.testing.assert_array_equal(now, before)
         before = now

@@ -55,9 +55,9 @@ def settings(photons: int, radius: float, alpha: float, segments: int) -> Render
     )  # fmt: skip
 
 
-def lamp(lamp_radius: float, photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scene:
+def lamp(light_radius: float, photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scene:
     """A lamp 1 m above a floor: E = pi (1 + x^2)^-1.5, whatever the lamp's radius."""
-    light = Light("lamp", LightKind.POINT, scenes.placed(0, 0, 1), np.full(3, np.pi), radius=lamp_radius)
+    light = Light("lamp", LightKind.POINT, scenes.placed(0, 0, 1), np.full(3, np.pi), radius=light_radius)
     light.visibility ^= RayVisibility.CAMERA
     return Scene(
         camera_down(3, 0.8, size), [floor(4)], [Instance(0, np.eye(4), [0])], [scenes.diffuse(1, 1, 1)], [light],
@@ -156,7 +156,7 @@ bounce_radiance = CubicSpline(_DISTANCES, _ceiling_light(_DISTANCES), bc_type="c
 
 
 def pixel_points(scene: Scene) -> np.ndarray:
-    """(size, size, 2) points on the floor of the pixels' centres."""
+    """(size, size, 2) points on the floor of the pixels' centers."""
     half, size = scene.camera.window[1], scene.camera.width
     at = half * ((np.arange(size) + 0.5) / size * 2 - 1)
     return np.stack(np.meshgrid(at, at), -1)
@@ -188,7 +188,7 @@ def running_means(mapper, scene: Scene, seeds: int) -> tuple[np.ndarray, np.ndar
             near = (abs(photons["position"]) < [half, half, 1e-3]).all(1) & ((photons["flags"] & PhotonFlag.STORED) > 0)
             squares.append((photons["flux"][near, 0].astype(np.float64) ** 2).sum() / (2 * half) ** 2)
             # Interreflection's photons have the wide radius, the others that of the importons.
-            diffused = (photons["flags"][near] & PhotonFlag.DIFFUSED).any()
+            diffused = (photons["flags"][near] & PhotonFlag.AFTER_ROUGH_BOUNCE).any()
             radii.append(mapper.splat_radii[1 if diffused else 0])
     means = np.array(means, np.float64).reshape(seeds, len(CHECKPOINTS), size, size)
     return means, np.reshape(squares, (seeds, -1)).mean(0), np.reshape(radii, (seeds, -1)).mean(0)

@@ -8,13 +8,13 @@ import pytest
 from deep_cubemap_device import Scene, ray_records
 from deep_cubemap_rays import KINDS, make_rays
 from deep_cubemap_reference import Reference
-from deep_cubemap_scenes import CENTRES, box, furnished_room, room_with_meshes
+from deep_cubemap_scenes import CENTERS, box, furnished_room, room_with_meshes
 
 from rppm_addon.integrator.common.records import NO_TRIANGLE
 from rppm_addon.integrator.deep_cubemap import deep_cubemap
 from rppm_addon.scene.errors import DeviceError
 
-PLAIN = CENTRES["plain"]
+PLAIN = CENTERS["plain"]
 
 
 def bits(hits: np.ndarray) -> np.ndarray:
@@ -83,12 +83,12 @@ def test_embree_agrees(context, library, meshes):
     assert np.all(hits["triangle"] != NO_TRIANGLE)
 
 
-@pytest.mark.parametrize("place", CENTRES)
-def test_all_kinds_of_rays_from_all_kinds_of_centres(context, library, meshes, reference, place):
-    centre = CENTRES[place]
-    with Scene(context, library, meshes, centre, 64) as scene:
+@pytest.mark.parametrize("place", CENTERS)
+def test_all_kinds_of_rays_from_all_kinds_of_centers(context, library, meshes, reference, place):
+    center = CENTERS[place]
+    with Scene(context, library, meshes, center, 64) as scene:
         for kind in KINDS:
-            rays = ray_records(*make_rays(kind, 60_000, centre, seed=3))
+            rays = ray_records(*make_rays(kind, 60_000, center, seed=3))
             hits = scene.trace(rays)
             wrong = different(hits, reference.trace(rays))
             inside = np.all(np.abs(rays["origin"]) < 0.999, axis=1)
@@ -101,18 +101,18 @@ def test_all_kinds_of_rays_from_all_kinds_of_centres(context, library, meshes, r
 @pytest.mark.parametrize("place", ["plain", "on a corner of the table", "outside"])
 def test_large_triangles_bit_for_bit(context, library, place):
     """Against a GPU kernel that tests all triangles with the same routine."""
-    centre = CENTRES[place]
-    with Scene(context, library, furnished_room(4), centre, 128) as scene:
+    center = CENTERS[place]
+    with Scene(context, library, furnished_room(4), center, 128) as scene:
         for kind in KINDS:
-            rays = ray_records(*make_rays(kind, 30_000, centre, seed=4))
+            rays = ray_records(*make_rays(kind, 30_000, center, seed=4))
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
 
 
 @pytest.mark.parametrize("scale, offset", [(0.01, 0.0), (100.0, 0.0), (1.0, 1000.0), (0.01, 1.0)])
 def test_scale_and_offset(context, library, scale, offset):
     triangles = furnished_room(4) * np.float32(scale) + np.float32(offset)
-    centre = np.float32(PLAIN) * np.float32(scale) + np.float32(offset)
-    with Scene(context, library, triangles, centre, 64) as scene:
+    center = np.float32(PLAIN) * np.float32(scale) + np.float32(offset)
+    with Scene(context, library, triangles, center, 64) as scene:
         for kind in KINDS:
             origins, directions = make_rays(kind, 20_000, PLAIN, seed=5)
             rays = ray_records(origins * np.float32(scale) + np.float32(offset), directions)
@@ -229,9 +229,9 @@ def test_broken_triangles_do_no_harm(context, library):
 
 def test_lists_that_are_too_short_grow(context, library, meshes, monkeypatch):
     monkeypatch.setattr(deep_cubemap, "_expected", lambda triangle_count: {"tile": 200})
-    centre = meshes[len(meshes) // 2, 0]  # on a dense mesh: a long core list
-    rays = ray_records(*make_rays("past the centre", 20_000, centre, seed=16))
-    with Scene(context, library, meshes, centre) as scene:
+    center = meshes[len(meshes) // 2, 0]  # on a dense mesh: a long core list
+    rays = ray_records(*make_rays("past the center", 20_000, center, seed=16))
+    with Scene(context, library, meshes, center) as scene:
         first = scene.cubemap.memory_bytes
         hits = scene.trace(rays)
         scene.build(64)
@@ -240,7 +240,7 @@ def test_lists_that_are_too_short_grow(context, library, meshes, monkeypatch):
     assert different(hits, Reference(meshes).trace(rays)) == 0
 
 
-def test_a_crowd_at_the_centre(context, library):
+def test_a_crowd_at_the_center(context, library):
     """The core list outgrows its first capacity many times over."""
     rng = np.random.default_rng(17)
     crowd = (rng.normal(size=(5000, 1, 3)) * 1e-5 + rng.normal(size=(5000, 3, 3)) * 1e-5).astype(np.float32)

@@ -58,7 +58,7 @@ LARGE = {
 """The one center of scenes that take long to build."""
 
 
-def centres(triangles: np.ndarray) -> dict[str, np.ndarray]:
+def centers(triangles: np.ndarray) -> dict[str, np.ndarray]:
     """Where a cubemap may be put: somewhere between the things, and the awkward places."""
     rng = np.random.default_rng(1)
     low, high = triangles.min((0, 1)).astype(float), triangles.max((0, 1)).astype(float)
@@ -116,17 +116,17 @@ def test_hits_equal_those_of_boxes(context, library, tmp_path, name):
     """Where they differ all triangles are tested: it must be the boxes that missed one by rounding."""
     triangles = SCENES[name](tmp_path)
     volumes = BoundingVolumes(context, library, build_nodes(triangles))
-    places = centres(triangles)
+    places = centers(triangles)
     number = found = by_boxes = 0
     wrong = []
     for place in places if len(triangles) < 200_000 else [LARGE[name]]:
         with Scene(context, library, triangles, places[place], 0) as scene:
-            maker = HardRays(triangles, scene.centre, seed=2)
+            maker = HardRays(triangles, scene.center, seed=2)
             for kind in KINDS:
                 rays = maker.rays(kind, RAYS)
                 hits, expected = scene.trace(rays), boxes_trace(scene, volumes, rays)
                 other = np.flatnonzero(np.any(bits(hits) != bits(expected), axis=1))
-                assert len(other) < 100, f"{len(other)} differences of {kind} rays about the centre {place}"
+                assert len(other) < 100, f"{len(other)} differences of {kind} rays about the center {place}"
                 if len(other):
                     truth = tried_one_by_one(scene, rays[other])
                     by_boxes += np.count_nonzero(np.any(bits(expected[other]) != bits(truth), axis=1))
@@ -173,7 +173,7 @@ def nearest_in_float64(triangles, origins, directions, sources):
 
 
 def edge_distance(point: np.ndarray, corners: np.ndarray) -> float:
-    """Metres from a point to the nearest of a triangle's edges."""
+    """Meters from a point to the nearest of a triangle's edges."""
     found = []
     for a, b in zip(corners, np.roll(corners, -1, 0)):
         along = np.clip((point - a) @ (b - a) / max((b - a) @ (b - a), 1e-300), 0.0, 1.0)
@@ -219,8 +219,8 @@ def test_differences_from_float64_are_explained(context, library, name, count):
     triangles = SCENES[name](None)
     reasons = Counter()
     number = 0
-    with Scene(context, library, triangles, centres(triangles)["in the middle"], 0) as scene:
-        maker = HardRays(triangles, scene.centre, seed=3)
+    with Scene(context, library, triangles, centers(triangles)["in the middle"], 0) as scene:
+        maker = HardRays(triangles, scene.center, seed=3)
         for kind in KINDS:
             rays = maker.rays(kind, count)
             hits = scene.trace(rays)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Small random scenes on a coarse grid: coincident, degenerate, edge-on and overlapping triangles.
 
-All coordinates are multiples of 1/4, so that rays meet edges, vertices, the centre's planes and
+All coordinates are multiples of 1/4, so that rays meet edges, vertices, the center's planes and
 cell borders exactly, again and again.
 """
 
@@ -19,12 +19,12 @@ points_on_grid = arrays.arrays(np.float32, (32, 3), elements=grid)
 resolutions = st.sampled_from([4, 8, 16, 64])
 
 
-def check(context, library, triangles, centre, origins, targets, resolution):
+def check(context, library, triangles, center, origins, targets, resolution):
     directions = (targets - origins).astype(np.float64)
     directions /= np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-30)
     rays = ray_records(origins, directions.astype(np.float32))
     rays["source_triangle"][::4] = 0
-    with Scene(context, library, triangles, centre, resolution) as scene:
+    with Scene(context, library, triangles, center, resolution) as scene:
         hits, expected, free = scene.trace(rays), scene.brute_force(rays), scene.occluded(rays)
     rays_without_direction = np.all(rays["direction"] == 0, axis=1)
     expected["triangle"][rays_without_direction] = NO_TRIANGLE
@@ -36,8 +36,8 @@ def check(context, library, triangles, centre, origins, targets, resolution):
 
 @settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(triangles_on_grid, arrays.arrays(np.float32, 3, elements=grid), points_on_grid, points_on_grid, resolutions)
-def test_soups_about_any_grid_point(context, library, triangles, centre, origins, targets, resolution):
-    check(context, library, triangles, centre, origins, targets, resolution)
+def test_soups_about_any_grid_point(context, library, triangles, center, origins, targets, resolution):
+    check(context, library, triangles, center, origins, targets, resolution)
 
 
 @settings(max_examples=50, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
@@ -48,8 +48,8 @@ def test_soups_about_any_grid_point(context, library, triangles, centre, origins
     points_on_grid,
     resolutions,
 )
-def test_soups_about_any_point(context, library, triangles, centre, origins, targets, resolution):
-    check(context, library, triangles, centre, origins, targets, resolution)
+def test_soups_about_any_point(context, library, triangles, center, origins, targets, resolution):
+    check(context, library, triangles, center, origins, targets, resolution)
 
 
 @st.composite
@@ -65,7 +65,7 @@ def hard_triangles(draw):
     )
     place = draw(st.sampled_from(["anywhere", "vertex", "edge", "plane"]))
     rng = np.random.default_rng(seed)
-    centre = rng.uniform(-0.5, 0.5, 3).astype(np.float32)
+    center = rng.uniform(-0.5, 0.5, 3).astype(np.float32)
     triangles = []
     for kind in kinds:
         corners = rng.uniform(-1, 1, (3, 3))
@@ -74,7 +74,7 @@ def hard_triangles(draw):
         elif kind == "huge":
             corners *= 1e4
         elif kind == "needle":
-            corners[1] = 2 * centre.astype(float) - corners[0]
+            corners[1] = 2 * center.astype(float) - corners[0]
             corners[2] = corners[1] + rng.normal(size=3) * 1e-6
         elif kind == "duplicate" and triangles:
             corners = triangles[rng.integers(0, len(triangles))][rng.permutation(3)]
@@ -86,19 +86,19 @@ def hard_triangles(draw):
     triangles = np.array(triangles, np.float32)
     if place != "anywhere":
         weights = {"vertex": (1, 0, 0), "edge": (0.5, 0.5, 0), "plane": (2, -3, 2)}[place]
-        centre = (np.array(weights) @ triangles[rng.integers(0, len(triangles))]).astype(np.float32)
-    return triangles, centre, rng
+        center = (np.array(weights) @ triangles[rng.integers(0, len(triangles))]).astype(np.float32)
+    return triangles, center, rng
 
 
 @settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(hard_triangles(), st.sampled_from([0, 4, 64, 1024]))
 def test_soups_of_hard_triangles(context, library, scene, resolution):
-    triangles, centre, rng = scene
+    triangles, center, rng = scene
     corners = triangles[rng.integers(0, len(triangles), 64)].astype(float)
     weights = rng.dirichlet((0.5, 0.5, 0.5), 64)
     weights[:16] = np.eye(3)[rng.integers(0, 3, 16)]
     targets = np.einsum("nk,nkx->nx", weights, corners)
-    targets[32:40] = centre
+    targets[32:40] = center
     origins = rng.uniform(-1.5, 1.5, (64, 3)).astype(np.float32)
-    origins[40:48] = centre
-    check(context, library, triangles, centre, origins, targets, resolution)
+    origins[40:48] = center
+    check(context, library, triangles, center, origins, targets, resolution)

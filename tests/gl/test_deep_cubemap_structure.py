@@ -8,7 +8,7 @@ points are shaken by as much.
 import numpy as np
 import pytest
 from deep_cubemap_device import Scene
-from deep_cubemap_scenes import CENTRES, furnished_room, room_with_meshes, sphere
+from deep_cubemap_scenes import CENTERS, furnished_room, room_with_meshes, sphere
 from deep_cubemap_structure import BEFORE, BEHIND, BINS, LIST, TILE, Structure, as_sets, read_structure
 
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import JOIN_MOST, DeepCubemap
@@ -46,16 +46,16 @@ SCENES = {
 
 
 @pytest.mark.parametrize("resolution", [0, 64, 128])
-@pytest.mark.parametrize("place", CENTRES)
+@pytest.mark.parametrize("place", CENTERS)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_point_is_on_file(context, library, name, place, resolution):
     triangles = SCENES[name]()
     rng = np.random.default_rng(21)
-    with Scene(context, library, triangles, CENTRES[place], resolution) as scene:
+    with Scene(context, library, triangles, CENTERS[place], resolution) as scene:
         structure = read_structure(scene.cubemap)
-        centre = scene.centre.astype(float)
+        center = scene.center.astype(float)
     chosen, points = points_on(triangles, rng)
-    points = points - centre + rng.uniform(-4e-7, 4e-7, points.shape)
+    points = points - center + rng.uniform(-4e-7, 4e-7, points.shape)
     outside_core = np.linalg.norm(points, axis=1) > structure.state["core_radius"]
     chosen, points = chosen[outside_core], points[outside_core]
     levels, depths = structure.rows_of(points)
@@ -95,7 +95,7 @@ def test_every_point_is_on_file(context, library, name, place, resolution):
 @pytest.mark.parametrize("resolution", [0, 16, 64])
 @pytest.mark.parametrize("name", SCENES)
 def test_marks_tell_of_the_bins_before_and_behind(context, library, name, resolution):
-    with Scene(context, library, SCENES[name](), CENTRES["plain"], resolution) as scene:
+    with Scene(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
         structure = read_structure(scene.cubemap)
     row, bin_, triangle, marks = structure.entries[:, :4].T
     order = np.lexsort((bin_, triangle, row))
@@ -116,7 +116,7 @@ def test_lists_are_for_few_triangles_and_bins_for_many(context, library):
     used = set()
     for name in SCENES:
         for resolution in (0, 16, 64):
-            with Scene(context, library, SCENES[name](), CENTRES["plain"], resolution) as scene:
+            with Scene(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
                 structure = read_structure(scene.cubemap)
             held = np.bincount(distinct(structure)[:, 0], minlength=len(structure.kind))
             leaf, binned = structure.kind != TILE, structure.kind == BINS
@@ -170,9 +170,9 @@ def touched_cells(extents: np.ndarray, x: int, y: int, side: int, slack: float) 
 @pytest.mark.parametrize("name", SCENES)
 def test_cells_that_hold_much_are_divided_where_that_gains(context, library, name):
     triangles, resolution = SCENES[name](), 1024
-    with Scene(context, library, triangles, CENTRES["plain"], resolution) as scene:
+    with Scene(context, library, triangles, CENTERS["plain"], resolution) as scene:
         structure = read_structure(scene.cubemap)
-        about = triangles.astype(float) - scene.centre.astype(float)
+        about = triangles.astype(float) - scene.center.astype(float)
     # triangles of each cell, handed up from the leaves
     pairs, held = distinct(structure), {}
     parent = np.full(len(structure.kind), -1)
@@ -220,7 +220,7 @@ def test_cells_that_hold_much_are_divided_where_that_gains(context, library, nam
 
 @pytest.mark.parametrize("most_bins", [1, 1024])
 def test_other_numbers_of_bins(context, library, most_bins):
-    with Scene(context, library, SCENES["crowd"](), CENTRES["plain"], 64) as scene:
+    with Scene(context, library, SCENES["crowd"](), CENTERS["plain"], 64) as scene:
         scene.cubemap.release()
         scene.cubemap = DeepCubemap(context, library, True, most_bins=most_bins)
         scene.build(64)
@@ -239,7 +239,7 @@ def assert_same(first: Structure, second: Structure) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_lists_are_the_same_every_time(context, library, name):
     """But for the order of cells and within a bin, which no result depends on."""
-    with Scene(context, library, SCENES[name](), CENTRES["plain"], 256) as scene:
+    with Scene(context, library, SCENES[name](), CENTERS["plain"], 256) as scene:
         first = read_structure(scene.cubemap)
         scene.build(64)
         scene.build(256)
@@ -247,14 +247,14 @@ def test_lists_are_the_same_every_time(context, library, name):
     assert_same(first, second)
 
 
-@pytest.mark.parametrize("place", CENTRES)
+@pytest.mark.parametrize("place", CENTERS)
 @pytest.mark.parametrize("name", SCENES)
 def test_the_compute_route_builds_the_same(context, library, name, place):
     """Rasterized rectangles and those walked by a compute shader leave the same fragments behind."""
     triangles = SCENES[name]()
     structures = []
     for rasterize in (True, False):
-        with Scene(context, library, triangles, CENTRES[place], 0, rasterize) as scene:
+        with Scene(context, library, triangles, CENTERS[place], 0, rasterize) as scene:
             structures.append(read_structure(scene.cubemap))
     assert_same(*structures)
 
@@ -263,9 +263,9 @@ def test_small_things_in_the_distance_get_small_cells(context, library):
     """A bare room stays coarse; a detailed ball of a hundredth of its size gets the finest cells, nothing else does."""
     ball, radius = np.array([0.7, 0.3, 0.3]), 0.01
     triangles = np.concatenate([furnished_room(1), sphere(ball, radius, 70).astype(np.float32)])
-    with Scene(context, library, furnished_room(1), CENTRES["plain"], 0) as scene:
+    with Scene(context, library, furnished_room(1), CENTERS["plain"], 0) as scene:
         bare = read_structure(scene.cubemap)
-    with Scene(context, library, triangles, CENTRES["plain"], 0) as scene:
+    with Scene(context, library, triangles, CENTERS["plain"], 0) as scene:
         detailed = read_structure(scene.cubemap)
     assert bare.level.max() == BASE_LEVEL and detailed.level.max() >= BASE_LEVEL + 3
     finest = detailed.level == detailed.level.max()
@@ -275,7 +275,7 @@ def test_small_things_in_the_distance_get_small_cells(context, library):
     x, y = (detailed.x[finest], detailed.y[finest])
     side = detailed.root_side << 2 * int(detailed.level.max())
     assert np.all(detailed.face[finest] == 0)
-    away = ball - np.array(CENTRES["plain"])
+    away = ball - np.array(CENTERS["plain"])
     for cells, lateral in ((x, away[1]), (y, away[2])):
         seen = np.abs((cells + 0.5) / side * 2 - 1 - lateral / away[0]) * away[0]
         assert seen.max() < 3 * radius

@@ -14,7 +14,7 @@ from support.lobes import material
 from rppm_addon.scene import DirectLight, Scene
 
 NEAREST_BLOCK = 0.8 * 2.6 / BLOCKS
-"""Metres across a block of the room's front, the window's width being 0.8 at 1 m."""
+"""Meters across a block of the room's front, the window's width being 0.8 at 1 m."""
 EDGES = 3
 """Edges between walls that cross a block."""
 

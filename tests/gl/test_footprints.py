@@ -98,11 +98,11 @@ class Ball:
 
     index = 0.0
 
-    def __init__(self, centre: tuple, radius: float) -> None:
-        self.centre, self.radius = np.array(centre, float), radius
+    def __init__(self, center: tuple, radius: float) -> None:
+        self.center, self.radius = np.array(center, float), radius
 
     def hit(self, origin: np.ndarray, ray: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        offset = origin - self.centre
+        offset = origin - self.center
         along = (offset * ray).sum(-1)
         distance = -along - np.sqrt(along**2 - (offset**2).sum(-1) + self.radius**2)
         return distance, (offset + distance[..., None] * ray) / self.radius

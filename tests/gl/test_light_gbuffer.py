@@ -82,7 +82,7 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     gbuffer = LightGBuffer(mapper.context, library)
     left = LivingPaths(mapper.context, library, "left", "")
     geometry = context.geometry
-    gbuffer.build(lights.table, geometry.centre, lights.scene_radius, geometry)
+    gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry)
     gbuffer.find(lights.buffers["Lights"], context.geometry, rays, hits.buffer, count, left)
     settled = 1.0 - left.read_count() / count
     context.deep_cubemap.trace(rays, hits.buffer, left)

@@ -101,9 +101,9 @@ def spherical_triangles(context, library, cases: np.ndarray, samples: int) -> tu
 def test_triangles_are_sampled_evenly_in_solid_angle(context, library):
     """Counts in sixteen parts of each triangle against their solid angles, chi-square of 15 degrees of freedom."""
     cases = triangles()
-    towards, angles = spherical_triangles(context, library, np.array(list(cases.values())), SAMPLES)
+    toward, angles = spherical_triangles(context, library, np.array(list(cases.values())), SAMPLES)
     statistics = []
-    for (name, case), directions, angle in zip(cases.items(), towards, angles):
+    for (name, case), directions, angle in zip(cases.items(), toward, angles):
         corners = case[1:].astype(np.float64) - case[0]
         expected = solid_angles(corners)
         # Rounding of the products in the volume, whose sum can be far smaller.
@@ -135,9 +135,9 @@ def test_degenerate_triangles_give_no_nan(context, library):
         (0 * a, a, a, b), (0 * a, a, a, a), (0 * a, a, b, (a + b) / 2), (0 * a, 0 * a, 0 * a, 0 * a),  # no area
         (0 * a, a, -a, b), (0 * a, 1e-20 * a, 1e-20 * b, 1e-20 * c), (0 * a, 1e12 * a, 1e12 * b, 1e12 * c),
     ])  # fmt: skip
-    towards, angles = spherical_triangles(context, library, cases, 1024)
+    toward, angles = spherical_triangles(context, library, cases, 1024)
     assert np.isfinite(angles).all() and (angles >= 0).all() and (angles < 6.2832).all(), angles
-    assert np.isfinite(towards).all()
+    assert np.isfinite(toward).all()
 
 
 AREA = {"size": (0.8, 0.5)}
@@ -162,7 +162,7 @@ def mapper(context, library):
 
 
 def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float = 0.0) -> dict[str, np.ndarray]:
-    """Samples of the scene's first light from a point: direction, distance, weight, density, seen, seen_density."""
+    """Samples of the scene's first light from a point: direction, distance, weight, pdf, seen, seen_pdf."""
     results = mapper.context.moderngl.buffer(reserve=48 * count)
     mapper.device_scene.lights.environment.use()
     library.compute(str(FOLDER / "light_samples.comp")).run(
@@ -178,16 +178,16 @@ def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float =
     table = np.frombuffer(results.read(), np.float32).reshape(count, 3, 4).astype(np.float64)
     results.release()
     assert np.isfinite(table).all()
-    (direction, weight, seen), (distance, density, seen_density) = table[..., :3].swapaxes(0, 1), table[..., 3].T
+    (direction, weight, seen), (distance, pdf, seen_pdf) = table[..., :3].swapaxes(0, 1), table[..., 3].T
     return {
-        "direction": direction, "distance": distance, "weight": weight, "density": density,
-        "seen": seen, "seen_density": seen_density,
+        "direction": direction, "distance": distance, "weight": weight, "pdf": pdf,
+        "seen": seen, "seen_pdf": seen_pdf,
     }  # fmt: skip
 
 
 @pytest.mark.parametrize("where", POINTS)
 @pytest.mark.parametrize("name", EMITTERS)
-def test_what_a_ray_sees_of_a_light_has_the_sampled_density(mapper, library, name, where):
+def test_what_a_ray_sees_of_a_light_has_the_sampled_pdf(mapper, library, name, where):
     mapper.build(floor_scene(EMITTERS[name], DirectLight.RAYS))
     sample = light_samples(mapper, library, POINTS[where])
     lit = sample["weight"][:, 0] > 0
@@ -198,9 +198,9 @@ def test_what_a_ray_sees_of_a_light_has_the_sampled_density(mapper, library, nam
     # On the rim, rounding may take the ray past the light.
     both = lit & (sample["seen"][:, 0] > 0)
     assert both.sum() > 0.999 * lit.sum()
-    np.testing.assert_allclose(sample["seen_density"][both], sample["density"][both], rtol=2e-4)
+    np.testing.assert_allclose(sample["seen_pdf"][both], sample["pdf"][both], rtol=2e-4)
     np.testing.assert_allclose(
-        (sample["seen"][both, 0] / sample["density"][both]), sample["weight"][both, 0], rtol=2e-3
+        (sample["seen"][both, 0] / sample["pdf"][both]), sample["weight"][both, 0], rtol=2e-3
     )
 
 
@@ -253,7 +253,7 @@ def test_the_variance_beside_an_emissive_wall_is_bounded(mapper, library):
     for distance in (0.5, 0.1, 0.02, 0.004):
         point = np.array([distance, 0.1, 0.0])
         sample = light_samples(mapper, library, point, emitted=1.0)
-        np.testing.assert_allclose(sample["seen_density"], sample["density"], rtol=2e-4)
+        np.testing.assert_allclose(sample["seen_pdf"], sample["pdf"], rtol=2e-4)
         received = sample["weight"][:, 0] * sample["direction"][:, 2]
         expected = irradiance(corners - point, np.array([0, 0, 1.0]))
         assert abs(received.mean() - expected) < 4.5 * received.std() / math.sqrt(SAMPLES) + 1e-4 * expected

@@ -113,14 +113,14 @@ def unknown() -> NodeGraph:
     return graph
 
 
-def grey() -> NodeGraph:
+def gray() -> NodeGraph:
     graph = NodeGraph()
     graph.surface = graph.add("bsdf_diffuse", "bsdf", color=0.8)
     return graph
 
 
-def test_an_unknown_kind_is_grey(mapper, caplog):
-    expected = picture(mapper, shown(grey()))
+def test_an_unknown_kind_is_gray(mapper, caplog):
+    expected = picture(mapper, shown(gray()))
     scene = shown(unknown())
     with caplog.at_level(logging.WARNING):
         np.testing.assert_allclose(picture(mapper, scene), expected, rtol=1e-4, atol=1e-6)
@@ -130,26 +130,26 @@ def test_an_unknown_kind_is_grey(mapper, caplog):
     assert scene.warnings == [warning]  # said once
 
 
-def test_what_the_driver_refuses_is_grey(mapper, monkeypatch):
+def test_what_the_driver_refuses_is_gray(mapper, monkeypatch):
     """A node whose GLSL calls a function that is not there."""
-    expected = picture(mapper, shown(grey()))
+    expected = picture(mapper, shown(gray()))
     broken = copy.copy(KINDS["gamma"])
     monkeypatch.setitem(KINDS, "broken", broken)
     graph = NodeGraph()
     color = graph.add("broken", "color", name="Broken", color=0.5, gamma=2.0)
     graph.surface = graph.add("bsdf_diffuse", "bsdf", color=color)
-    scene = shown(graph, grey())
+    scene = shown(graph, gray())
     np.testing.assert_allclose(picture(mapper, scene), expected, rtol=1e-4, atol=1e-6)
     (warning,) = scene.warnings
     assert 'Material "graph 0"' in warning and "node_broken" in warning and "\n" not in warning
 
 
 def test_bad_graphs_of_worlds_and_lights_give_nothing(mapper):
-    scene = shown(grey())
+    scene = shown(gray())
     scene.world.graph = unknown()
     scene.lights.append(dataclasses.replace(scene.lights[0], name="refused", graph=unknown()))
     scene.materials[0].interior = unknown()
-    expected = picture(mapper, shown(grey()))
+    expected = picture(mapper, shown(gray()))
     np.testing.assert_allclose(picture(mapper, scene).mean(), expected.mean(), rtol=0.2)
     assert len(scene.warnings) == 3
     assert any("The world" in text for text in scene.warnings)

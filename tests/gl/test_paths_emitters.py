@@ -35,16 +35,16 @@ RADIANCE = np.array([3.0, 2.0, 1.0])
 def source(kind: str, matrix: np.ndarray) -> tuple[Light | None, list[tuple[Mesh, Lobe]], Callable]:
     """A rectangle of 0.7 x 0.4 or a ball that shines along -Z of a matrix: as a light, as surfaces, and the function
     of rays that tells what they see of it."""
-    x, y, centre = 0.35 * matrix[:3, 0], 0.2 * matrix[:3, 1], matrix[:3, 3]
+    x, y, center = 0.35 * matrix[:3, 0], 0.2 * matrix[:3, 1], matrix[:3, 3]
     normal = -matrix[:3, 2]
 
     def rectangle(origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        place = Plane(centre, normal).hit(origins, directions) - centre
+        place = Plane(center, normal).hit(origins, directions) - center
         inside = (abs(place @ x) < x @ x) & (abs(place @ y) < y @ y) & (directions @ normal < 0)
         return inside[..., None] * RADIANCE
 
     def ball(origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        offset = centre - origins
+        offset = center - origins
         along = quadrature.dot(offset, directions)
         inside = quadrature.dot(offset, offset) - along**2 < 0.2**2
         return inside[..., None] * RADIANCE
@@ -54,7 +54,7 @@ def source(kind: str, matrix: np.ndarray) -> tuple[Light | None, list[tuple[Mesh
         return light, [], rectangle
     if kind == "ball":
         return Light("lamp", LightKind.POINT, matrix, RADIANCE * np.pi * 0.2**2, radius=0.2), [], ball
-    corners = (centre - x - y, centre - x + y, centre + x + y, centre + x - y)
+    corners = (center - x - y, center - x + y, center + x + y, center + x - y)
     emission = Lobe(LobeKind.EMISSION, color=tuple(RADIANCE))
     return None, [(scenes.rectangle("lamp", *map(tuple, corners)), emission)], rectangle
 

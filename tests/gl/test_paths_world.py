@@ -15,11 +15,11 @@ from rppm_addon.scene import Image, Instance, RenderSettings, Scene, World
 
 FLOOR, WALL = np.array([0.9, 0.7, 0.5]), np.array([0.6, 0.8, 0.7])
 DISTANCE = 0.5
-"""From the wall to what the camera sees, metres."""
+"""From the wall to what the camera sees, meters."""
 
 
 def corner(extent: float, wall: Lobe, mode=RAYS, **settings: object) -> Scene:
-    """A diffuse floor and, at x = 0, an upright wall, both of so many metres each way, in a white world."""
+    """A diffuse floor and, at x = 0, an upright wall, both of so many meters each way, in a white world."""
     meshes = [
         scenes.rectangle("floor", (-extent, -extent, 0), (0, -extent, 0), (0, extent, 0), (-extent, extent, 0)),
         scenes.rectangle("wall", (0, -extent, 0), (0, -extent, extent), (0, extent, extent), (0, extent, 0)),
@@ -75,7 +75,7 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_floor_gets_the_world_by_the_wall(mapper, name):
-    """The floor has the white world for neighbour, and, where the wall is, the wall's colour."""
+    """The floor has the white world for neighbor, and, where the wall is, the wall's color."""
     extent, wall, mode, settings = CASES[name]
     scene = corner(extent, wall, mode, **settings)
     share = share_of_wall(scene, extent)[..., None]

@@ -73,24 +73,26 @@ def importons_at(positions: np.ndarray, radii: np.ndarray, gathers: int = 0) -> 
     return importons
 
 
-@pytest.mark.parametrize("flags", [0, PhotonFlag.DIFFUSED, PhotonFlag.DIFFUSED | PhotonFlag.INDIRECT])
+@pytest.mark.parametrize(
+    "flags", [0, PhotonFlag.AFTER_ROUGH_BOUNCE, PhotonFlag.AFTER_ROUGH_BOUNCE | PhotonFlag.INDIRECT]
+)
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (1e4, -1e4), (-3e4, 7.0)])
 @pytest.mark.parametrize("largest", [0.4, 0.02])
 def test_no_photon_within_reach_is_missed(device, flags, offset, largest):
     """Radii far below the largest, and floats that are coarser than the smallest of them."""
     random = np.random.default_rng(11)
     side = 16
-    centres = np.stack(np.meshgrid(np.arange(side), np.arange(side)), -1).reshape(-1, 2) * 2.1 * largest
-    reach = largest * random.choice([1.0, 0.4, 0.3, 0.1, 0.06], len(centres))
-    around = random.uniform(-1.05, 1.05, (len(centres), 40, 2))
+    centers = np.stack(np.meshgrid(np.arange(side), np.arange(side)), -1).reshape(-1, 2) * 2.1 * largest
+    reach = largest * random.choice([1.0, 0.4, 0.3, 0.1, 0.06], len(centers))
+    around = random.uniform(-1.05, 1.05, (len(centers), 40, 2))
     around[:, :20] = np.tile([(0.9995, 0), (-0.9995, 0), (0, 0.9995), (0, -0.9995)], (5, 1))
-    around *= reach[:, None, None] * random.uniform(0.998, 1.0, (len(centres), 40, 1))
+    around *= reach[:, None, None] * random.uniform(0.998, 1.0, (len(centers), 40, 1))
 
     def on_floor(points: np.ndarray) -> np.ndarray:
         points = points.reshape(-1, 2) + offset
         return np.concatenate([points, np.zeros((len(points), 1))], axis=1).astype(np.float32)
 
-    photons, importons = photons_at(on_floor(centres[:, None] + around), flags), importons_at(on_floor(centres), reach)
+    photons, importons = photons_at(on_floor(centers[:, None] + around), flags), importons_at(on_floor(centers), reach)
     radii = SplatRadii(largest, 0.5 * reach.min())
     contributed, diffused, _ = device.gather(photons, importons, radii)
     offsets = photons["position"].astype(np.float64) - importons["position"][:, None].astype(np.float64)
@@ -105,7 +107,7 @@ def test_no_photon_within_reach_is_missed(device, flags, offset, largest):
         assert not diffused.any()
 
 
-@pytest.mark.parametrize("flags", [0, PhotonFlag.DIFFUSED])
+@pytest.mark.parametrize("flags", [0, PhotonFlag.AFTER_ROUGH_BOUNCE])
 def test_as_many_photons_as_one_likes_lie_in_a_cell(device, flags):
     """llvmpipe ends the loops of a thread after 65535 rounds; nothing may be lost for that."""
     count = 150_000
@@ -125,7 +127,9 @@ def test_who_takes_what(device):
     """Importons whose paths gather take no indirect photons; those without a radius nothing at all."""
     positions = np.zeros((3, 3), np.float32)
     photons = photons_at(positions, 0)
-    photons["flags"] |= np.array([0, PhotonFlag.DIFFUSED, PhotonFlag.DIFFUSED | PhotonFlag.INDIRECT], np.uint32)
+    photons["flags"] |= np.array(
+        [0, PhotonFlag.AFTER_ROUGH_BOUNCE, PhotonFlag.AFTER_ROUGH_BOUNCE | PhotonFlag.INDIRECT], np.uint32
+    )
     both = GatherFlag.GATHERED_BY_RAY | GatherFlag.GATHERS_BY_RAY
     for gathers, expected in ((0, 2), (GatherFlag.GATHERS_BY_RAY, 1), (GatherFlag.GATHERED_BY_RAY, 2), (both, 1)):
         importons = importons_at(np.zeros((2, 3), np.float32), np.array([0.1, 0.0], np.float32), gathers)

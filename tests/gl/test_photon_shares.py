@@ -9,7 +9,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
+from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.scene import Light, LightKind, World
 
 SETTINGS = {
@@ -27,12 +27,12 @@ def test_sources_have_their_power_and_photons(renderer):
     scene.world = World(np.full(3, 0.01))
     statistics = renderer.render(scene).statistics
     watts, photons = statistics.source_watts, statistics.source_photons
-    assert set(watts) == set(photons) == {source_name("light"), source_name("lamp"), SURFACES, SURROUNDINGS}
+    assert set(watts) == set(photons) == {source_name("light"), source_name("lamp"), SURFACES, ENVIRONMENT}
     assert watts[source_name("light")] == pytest.approx(math.pi * 12 * 0.25, rel=1e-3)
     assert watts[source_name("lamp")] == pytest.approx(4 * math.pi * 12 / 32, rel=1e-6)
     # The ball's facets have slightly less area than the sphere; both of their sides emit.
     assert watts[SURFACES] == pytest.approx(2 * math.pi * 4 * math.pi * 0.35**2, rel=0.05)
-    assert watts[SURROUNDINGS] == pytest.approx(4 * math.pi**2 * 3.0 * 0.01, rel=0.01)
+    assert watts[ENVIRONMENT] == pytest.approx(4 * math.pi**2 * 3.0 * 0.01, rel=0.01)
     assert sum(photons.values()) == 4000
     weights = {name: value * (4.0 if name == source_name("lamp") else 1.0) for name, value in watts.items()}
     for name, count in photons.items():

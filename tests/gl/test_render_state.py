@@ -66,7 +66,7 @@ def test_a_state_goes_on_bit_for_bit(mapper, other_mapper, direct_light, stops):
     mapper.build(scene)
     states = [run_until(mapper, stop) for stop in stops]
     assert_same_state(run_until(mapper, LAST), whole)  # asking for the state changes nothing
-    assert len({state.wide_radius for state in states}) > 1, "nothing was learnt: the test shows nothing"
+    assert len({state.wide_radius for state in states}) > 1, "nothing was learned: the test shows nothing"
     for name in ("tallies", "radius_factors"):
         assert not np.array_equal(getattr(states[0], name), getattr(states[-1], name)), name
     for state in states:

@@ -60,9 +60,9 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene
 
 
 def mean(renderer, *arguments, final_gather: bool = True) -> tuple[float, float]:
-    """Mean radiance of a picture and its standard error, from the differences of neighbouring pixels.
+    """Mean radiance of a picture and its standard error, from the differences of neighboring pixels.
 
-    Splats make neighbours alike, so that the error is too small for pictures by photons.
+    Splats make neighbors alike, so that the error is too small for pictures by photons.
     """
     scene = glossy_floor(*arguments)
     scene.settings = scene.settings.with_values(use_final_gather=final_gather)
@@ -111,7 +111,7 @@ def test_a_sweep_of_roughness_does_not_jump_at_the_cut(renderer):
 
 
 def test_rough_glass_passes_a_point_light(renderer):
-    """Light of a point through rough glass reaches the camera by next-event rays only (LGE)."""
+    """Light of a point through rough glass reaches the camera by shadow rays only (LGE)."""
     scene = glossy_floor("point", Lobe(LobeKind.REFRACTION, roughness=0.4, ior=1.3), 0.5, DirectLight.RAYS)
     scene.lights = [Light("l", LightKind.POINT, above(0.2, -1.0), np.full(3, 3.0))]
     picture = renderer.render(scene).frame.combined[..., :3]

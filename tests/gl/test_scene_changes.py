@@ -121,15 +121,15 @@ def test_changes_one_after_the_other(mapper, other_mapper):
     np.testing.assert_array_equal(mapper.film.read_radiance(), other_mapper.film.read_radiance())
 
 
-def test_the_centre_of_the_deep_cubemap_changes_no_picture(mapper, other_mapper):
+def test_the_center_of_the_deep_cubemap_changes_no_picture(mapper, other_mapper):
     scene = first_scene()
     mapper.build(scene)
-    centre = mapper.device_scene.center.copy()
+    center = mapper.device_scene.center.copy()
     moved = moved_camera(scene)
     mapper.update(moved, center_tolerance=math.inf)
-    np.testing.assert_array_equal(mapper.device_scene.center, centre)
+    np.testing.assert_array_equal(mapper.device_scene.center, center)
     other_mapper.build(moved)
-    assert not np.array_equal(other_mapper.device_scene.center, centre)
+    assert not np.array_equal(other_mapper.device_scene.center, center)
     kept, built = pictures(mapper), pictures(other_mapper)
     # Splats and rays start from other cells: the same photons and hits all the same.
     for a, b in zip(kept, built, strict=True):

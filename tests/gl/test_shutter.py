@@ -214,5 +214,5 @@ def test_a_lens_leaves_no_ghosts(renderer):
     assert (np.hypot(rows - 31.5, columns - 31.5) < radius + 2).all()
     quadrants = [lit[:32, :32], lit[:32, 32:], lit[32:, :32], lit[32:, 32:]]
     assert min(quadrant.sum() for quadrant in quadrants) > 0
-    neighbours = sum(np.roll(lit, shift, axis) for axis in (0, 1) for shift in (-1, 1))
-    assert neighbours[lit].mean() < 1.0, "lit pixels lie apart, not in clusters"
+    neighbors = sum(np.roll(lit, shift, axis) for axis in (0, 1) for shift in (-1, 1))
+    assert neighbors[lit].mean() < 1.0, "lit pixels lie apart, not in clusters"

@@ -21,7 +21,9 @@ def brute_force(importons, photons, wide):
     """
     stored = photons[(photons["flags"] & PhotonFlag.STORED) != 0]
     normals, flux = unpack(stored["geometric_normal"]), stored["flux"].astype(np.float64)
-    diffused, indirect = ((stored["flags"] & flag) != 0 for flag in (PhotonFlag.DIFFUSED, PhotonFlag.INDIRECT))
+    diffused, indirect = (
+        (stored["flags"] & flag) != 0 for flag in (PhotonFlag.AFTER_ROUGH_BOUNCE, PhotonFlag.INDIRECT)
+    )
     result = np.zeros((len(importons), 3))
     for index, importon in enumerate(importons):
         if importon["radius"] <= 0:
@@ -73,16 +75,16 @@ def test_direct_splats_are_all_pairs(mapper, route):
 
 
 @pytest.mark.parametrize("resolution", [16, 32, 128])
-@pytest.mark.parametrize("centre", [None, (0.1, 0.999, 0.02), (0.0, 0.0, 0.0), (-0.99999, 0.2, -0.99999)])
-def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, centre):
-    """Also with the cubemap's centre on a wall, in a corner and on the planes between its faces."""
+@pytest.mark.parametrize("center", [None, (0.1, 0.999, 0.02), (0.0, 0.0, 0.0), (-0.99999, 0.2, -0.99999)])
+def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, center):
+    """Also with the cubemap's center on a wall, in a corner and on the planes between its faces."""
     monkeypatch.setattr(splatting, "_CUBE_RESOLUTION", resolution)
     count = 24 * 24
     gathered = []
     for segments in (1, 2):  # the sums hold the direct splats, too
         mapper.build(diffuse_room(camera_path_length=segments))
-        if centre is not None:
-            mapper.device_scene.center = np.array(centre)
+        if center is not None:
+            mapper.device_scene.center = np.array(center)
         mapper.iterate()
         gathered.append(mapper.stages.density_estimator.sums.read(count)[:, 0])
     importons = last_importons(mapper, count)  # those seen in the mirror

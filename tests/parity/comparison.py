@@ -34,7 +34,7 @@ def block_means(pictures: np.ndarray) -> np.ndarray:
 
 
 def _smooth(values: np.ndarray) -> np.ndarray:
-    """Mean over the 3x3 neighbors: few seeds tell a block's variance only together with its neighbours'."""
+    """Mean over the 3x3 neighbors: few seeds tell a block's variance only together with its neighbors'."""
     padded = np.pad(values, 1, mode="edge")
     rows, columns = values.shape
     return sum(padded[i : i + rows, j : j + columns] for i in range(3) for j in range(3)) / 9.0

@@ -137,7 +137,7 @@ def _encoded(picture: np.ndarray) -> Image.Image:
 
 
 def sheet(previews: list[Preview], scale: int = 3) -> Image.Image:
-    """Labelled pictures: rows of RPPM's and of Cycles' in turn."""
+    """Labeled pictures: rows of RPPM's and of Cycles' in turn."""
     side = CELL * scale
     rows = -(-len(previews) // COLUMNS)
     made = Image.new("RGB", (COLUMNS * (side + 2), rows * 2 * (side + LABEL)), "white")

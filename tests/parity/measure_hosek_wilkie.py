@@ -68,7 +68,7 @@ def _linear(shape: np.ndarray, pixels: Pixels, channel: int) -> tuple[np.ndarray
     return linear, parts @ linear - value
 
 
-def _minimise(difference: Callable, slope: Callable, start: np.ndarray) -> tuple[np.ndarray, float]:
+def _minimize(difference: Callable, slope: Callable, start: np.ndarray) -> tuple[np.ndarray, float]:
     """Where the differences' squares are least, and the root of their mean there."""
     place, now, damping = start, difference(start), 1e-3
     for step in range(60):
@@ -109,7 +109,7 @@ def _alone(pixels: Pixels, channel: int, starts: list) -> np.ndarray:
 
     best = None
     for start in starts:
-        found = _minimise(difference, slope, np.array(start, np.float64))
+        found = _minimize(difference, slope, np.array(start, np.float64))
         if best is None or found[1] < best[1]:
             best = found
         if best[1] < 5.0:
@@ -145,7 +145,7 @@ def _together(pixels: list[Pixels], channel: int, start: np.ndarray) -> tuple[np
         ]
         return np.concatenate(rows)
 
-    found, error = _minimise(difference, slope, start.reshape(-1))
+    found, error = _minimize(difference, slope, start.reshape(-1))
     return found.reshape(6, 4), error
 
 

@@ -167,12 +167,12 @@ def light(kind: str, energy: float, matrix: Matrix, **properties: object) -> bpy
     return _link(data, matrix)
 
 
-def camera(at: Sequence[float], towards: Sequence[float], angle: float = 40.0) -> bpy.types.Object:
+def camera(at: Sequence[float], toward: Sequence[float], angle: float = 40.0) -> bpy.types.Object:
     """The scene's camera; ``angle`` is the field of view in degrees."""
     data = bpy.data.cameras.new("Camera")
     data.angle = math.radians(angle)
     data.clip_start, data.clip_end = 0.01, 100.0
-    direction = Vector(towards) - Vector(at)
+    direction = Vector(toward) - Vector(at)
     made = _link(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
     bpy.context.scene.camera = made
     return made

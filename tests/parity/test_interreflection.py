@@ -19,10 +19,10 @@ from .scenes import (
 )
 
 
-def _box_with_coloured_side(shader: str, **inputs) -> None:
-    colour = "Base_Color" if shader == PRINCIPLED else "Color"
-    box((1.0, 1.0, 1.0), material(shader, **{colour: (0.7, 0.7, 0.7)}, **inputs))
-    red = material(shader, **{colour: (0.7, 0.1, 0.05)}, **inputs)
+def _box_with_colored_side(shader: str, **inputs) -> None:
+    color = "Base_Color" if shader == PRINCIPLED else "Color"
+    box((1.0, 1.0, 1.0), material(shader, **{color: (0.7, 0.7, 0.7)}, **inputs))
+    red = material(shader, **{color: (0.7, 0.1, 0.05)}, **inputs)
     plane(0.999, red, place(at=(-0.99, 0.0, 0.0), turn=(0.0, 90.0, 0.0)))
     camera((0.0, -0.95, 0.0), (0.0, 1.0, -0.1), 75.0)
 
@@ -31,7 +31,7 @@ def _box_with_coloured_side(shader: str, **inputs) -> None:
 @pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
 def test_closed_diffuse_box(renderer, mode):
     new_scene()
-    _box_with_coloured_side(DIFFUSE)
+    _box_with_colored_side(DIFFUSE)
     light("AREA", 30.0, place(at=(0.2, 0.1, 0.9)), shape="SQUARE", size=0.6)
     reference = render_cycles(samples=512)
     result = render_rppm(renderer, direct_light=mode, photons=65536, photon_path_length=32, iterations=12)
@@ -42,7 +42,7 @@ def test_closed_diffuse_box(renderer, mode):
 def test_closed_principled_box(renderer):
     """Plastic walls: diffuse below a rough dielectric coat, light stored and gathered on both."""
     new_scene()
-    _box_with_coloured_side(PRINCIPLED, Roughness=0.6, IOR=1.5)
+    _box_with_colored_side(PRINCIPLED, Roughness=0.6, IOR=1.5)
     light("AREA", 30.0, place(at=(0.2, 0.1, 0.9)), shape="SQUARE", size=0.6)
     reference = render_cycles(samples=512)
     result = render_rppm(renderer, photons=65536, photon_path_length=32, iterations=12)

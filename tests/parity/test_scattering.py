@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Translucent sheets, rough diffuse surfaces and sheen in whole scenes, against Cycles.
 
-All of them scatter photons, light by next-event rays, gathering rays and importons alike.
+All of them scatter photons, light by shadow rays, gathering rays and importons alike.
 """
 
 import pytest
@@ -25,7 +25,7 @@ RED, GREEN, BLUE = (0.8, 0.4, 0.3), (0.3, 0.7, 0.4), (0.3, 0.4, 0.8)
 
 
 SURFACES = {
-    # name: the sheet's or ball's node, its colour and roughness
+    # name: the sheet's or ball's node, its color and roughness
     "translucent": (TRANSLUCENT, RED, 0.0),
     "rough": (DIFFUSE, RED, 1.0),
     "sheen": (SHEEN, RED, 0.6),

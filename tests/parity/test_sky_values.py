@@ -116,10 +116,10 @@ def test_sun_disc(sky_type, elevation, size, altitude, densities):
     """Cycles with the disk less Cycles without it."""
     sky = _sky(sky_type, elevation, altitude, densities, rotation=25.0, sun_size=math.radians(size), sun_intensity=1.5)
     angle = 1.2 * sky.sun_size
-    with_disc, directions = close_up(sky, angle)
-    reference = with_disc - close_up(replace(sky, sun_disc=False), angle)[0]
-    disc = sun_disc(sky)
-    ours = disc.radiance(directions)
+    with_disk, directions = close_up(sky, angle)
+    reference = with_disk - close_up(replace(sky, sun_disc=False), angle)[0]
+    disk = sun_disc(sky)
+    ours = disk.radiance(directions)
     level = reference.mean(axis=0)
     at_edge = np.any(reference > 0.0, axis=1) != np.any(ours > 0.0, axis=1)
     assert at_edge.mean() < 0.01
@@ -130,11 +130,11 @@ def test_sun_disc(sky_type, elevation, size, altitude, densities):
     forward = directions @ sky.direction_to_sun()
     solid_angle = (2.0 * math.tan(angle / 2) / math.sqrt(len(directions))) ** 2 * forward**3
     irradiance = (reference * solid_angle[:, None]).sum(axis=0)
-    assert np.allclose(disc.irradiance(), irradiance, rtol=0.01, atol=1e-3 * irradiance.max())
+    assert np.allclose(disk.irradiance(), irradiance, rtol=0.01, atol=1e-3 * irradiance.max())
 
 
 @pytest.mark.parametrize("sky_type, elevation, altitude", [(SINGLE, -0.4, 20000.0), (MULTIPLE, -0.9, 100.0)])
-def test_no_disc_below_the_horizon(sky_type, elevation, altitude):
+def test_no_disk_below_the_horizon(sky_type, elevation, altitude):
     sky = _sky(sky_type, elevation, altitude)
     assert sun_disc(sky) is None
     shown = close_up(sky, 0.02)[0]

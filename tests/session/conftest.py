@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from support.floor import floor_scene
 
-from rppm_addon.session.process.client import Patience, RendererProcess
+from rppm_addon.session.process.client import RendererProcess, Timeouts
 
 FAKE = Path(__file__).with_name("fake_renderer.py")
 
@@ -65,13 +65,13 @@ def scene_of(iterations=1000, size=16, **changes):
 
 @pytest.fixture
 def start(tmp_path):
-    """start(fault, **patience): a renderer process that is faked, or real when no fault is given."""
+    """start(fault, **timeouts): a renderer process that is faked, or real when no fault is given."""
     before = children(), open_blocks()
     processes = []
 
-    def start(fault=None, **patience):
+    def start(fault=None, **timeouts):
         python = [sys.executable, "-I"] if fault is None else [sys.executable, "-I", str(FAKE), fault, str(tmp_path)]
-        process = RendererProcess(python, sys.path, tmp_path / "renderer.log", Patience(**patience))
+        process = RendererProcess(python, sys.path, tmp_path / "renderer.log", Timeouts(**timeouts))
         processes.append(process)
         return process
 

@@ -138,7 +138,7 @@ def dies_amid_a_message(pipes):
     sys.exit(7)
 
 
-def sends_rubbish_first(pipes):
+def sends_malformed_data_first(pipes):
     pipes.output.write(b"\xff" + random.Random(1).randbytes(1 << 16))
     pipes.output.flush()
     time.sleep(1000)

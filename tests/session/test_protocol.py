@@ -31,7 +31,7 @@ def test_a_pipe_that_ends_amid_a_message_has_ended(length):
     [b"\4\0\0\0abcd", b"\2\0\0\0[]", b"\2\0\0\0{}", b'\x0a\0\0\0{"kind":3}', b"\2\0\0\0\xff\xfe",
      (LONGEST_MESSAGE + 1).to_bytes(4, "little")],
 )  # fmt: skip
-def test_rubbish(text):
+def test_malformed_text(text):
     with pytest.raises(ProtocolError):
         read_message(io.BytesIO(text))
 

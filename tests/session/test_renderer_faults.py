@@ -45,7 +45,7 @@ def failed(process):
         ("ends_before_the_greeting", "ended with code 3"),
         ("dies_with_each_scene", "ended by SIGSEGV"),
         ("dies_amid_a_message", "ended with code 7"),
-        ("sends_rubbish_first", "cannot be understood"),
+        ("sends_malformed_data_first", "cannot be understood"),
         ("sends_no_json", "cannot be understood"),
         ("sends_unknown_messages", "cannot be understood .*weather"),
         ("sends_wrong_content", "cannot be understood .*mood"),
@@ -81,15 +81,15 @@ def test_a_program_that_is_not_there(start, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("fault", "patience", "text"),
+    ("fault", "timeouts", "text"),
     [
         ("hangs_in_the_greeting", {"start": 0.5}, "did not start within 0.5 s"),
         ("hangs_and_stops_reading", {"start": 30.0, "ping": 0.05, "answer": 0.5}, "did not answer for 0.5 s"),
         ("hangs_after_a_frame", {"start": 30.0, "ping": 0.05, "answer": 0.5}, "did not answer for 0.5 s"),
     ],
 )
-def test_who_hangs_is_ended(start, fault, patience, text):
-    process = start(fault, **patience)
+def test_who_hangs_is_ended(start, fault, timeouts, text):
+    process = start(fault, **timeouts)
     viewport(process)
     assert text in failed(process)
     assert process.restarts == MOST_RESTARTS

@@ -25,7 +25,7 @@ def floor_scene():
         Camera(down, (-0.5, 0.5, -0.375, 0.375), 16, 12),
         meshes=[floor],
         instances=[Instance(0, np.eye(4), [0], "Floor")],
-        materials=[material("Grey", Lobe(LobeKind.DIFFUSE, color=(0.5, 0.5, 0.5)))],
+        materials=[material("Gray", Lobe(LobeKind.DIFFUSE, color=(0.5, 0.5, 0.5)))],
         lights=[Light("Lamp", LightKind.POINT, lamp, np.full(3, 10.0))],
         settings=RenderSettings(iterations=3, photons=1024),
     )

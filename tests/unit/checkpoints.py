@@ -21,7 +21,7 @@ def still_render(**values: object) -> StillRender:
     )
 
 
-def pause(left_out: int = 0, iteration: int = 5, learnt: bool = True) -> Pause:
+def pause(left_out: int = 0, iteration: int = 5, learned: bool = True) -> Pause:
     """Numbers of no meaning, other ones for other iterations; some pixels have found no surface."""
     random = np.random.default_rng([left_out, iteration])
     radiance, normal, depth, factors = (
@@ -32,10 +32,10 @@ def pause(left_out: int = 0, iteration: int = 5, learnt: bool = True) -> Pause:
     normal[counts == 0], depth[counts == 0] = 0.0, 1e10
     counts = np.stack([counts, np.where(depth < 1e10, counts, 0)], axis=-1)
     passes = {"Depth": depth, "Normal": normal}
-    tallies, learnt_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
+    tallies, learned_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
     state = RenderState(
         left_out, iteration, PhotonCounts(100, 60), 0.1 + random.random(), 3.0 + random.random(), radiance, passes,
-        counts, factors, tallies, learnt_tallies if learnt else None,
+        counts, factors, tallies, learned_tallies if learned else None,
     )  # fmt: skip
     return Pause(state, "a device", 0.25)
 

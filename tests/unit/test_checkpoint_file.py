@@ -21,10 +21,10 @@ from rppm_addon.session import checkpoint_file
 from rppm_addon.session.checkpoint_file import read_checkpoint, read_summary, write_checkpoint
 
 
-@pytest.mark.parametrize("learnt", [False, True])
-def test_what_is_written_is_read_bit_for_bit(tmp_path, learnt):
+@pytest.mark.parametrize("learned", [False, True])
+def test_what_is_written_is_read_bit_for_bit(tmp_path, learned):
     path = tmp_path / "new" / "still.exr"
-    render, pause = checkpoints.still_render(source={"blend": {"path": "a.blend"}}), checkpoints.pause(3, 9, learnt)
+    render, pause = checkpoints.still_render(source={"blend": {"path": "a.blend"}}), checkpoints.pause(3, 9, learned)
     render.settings["passes"] = ["Depth", "Normal", "Deep Cubemap"]
     state = pause.state
     state.radiance[0, :4] = [[np.nan, np.inf, -np.inf, -0.0]] * 4
@@ -36,7 +36,7 @@ def test_what_is_written_is_read_bit_for_bit(tmp_path, learnt):
     summary, found = read_checkpoint(path)
     assert summary == read_summary(path)
     assert (summary.render, summary.seconds, summary.photons) == (render, 12.5, 6 * 60)
-    assert (found.device, found.radius_metres) == (pause.device, pause.radius_metres)
+    assert (found.device, found.radius_meters) == (pause.device, pause.radius_meters)
     assert_same_arrays(pause.inspections, found.inspections)
     assert_same_state(state, found.state)
     arrays = [value for value in vars(found.state).values() if isinstance(value, np.ndarray)]

@@ -5,7 +5,14 @@ import numpy as np
 import pytest
 
 from rppm_addon.integrator.common.iteration import learns_after
-from rppm_addon.integrator.lights.guide import _DEFENSIVE, _FINEST, cells_of, probabilities, starts, usefulness
+from rppm_addon.integrator.lights.guide import (
+    _DEFENSIVE,
+    _FINEST,
+    cells_of,
+    contribution_probability,
+    probabilities,
+    starts,
+)
 
 
 @pytest.mark.parametrize("kind", _FINEST)
@@ -19,12 +26,12 @@ def test_cells_are_no_more_than_photons(kind, photons):
 
 def test_cells_without_photons_are_taken_for_what_lies_around_them():
     left = np.zeros((4, 8))
-    useful = np.zeros((4, 8))
+    contributed = np.zeros((4, 8))
     left[:, :4], left[:, 4:] = 100, 100
-    useful[:, 4:] = 50
+    contributed[:, 4:] = 50
     left[0, 0] = left[0, 7] = 0
-    useful[0, 7] = 0
-    estimate = usefulness(left, useful)
+    contributed[0, 7] = 0
+    estimate = contribution_probability(left, contributed)
     assert estimate.shape == (4, 8)
     assert estimate[0, 0] < 0.05 < 0.4 < estimate[0, 7]
     np.testing.assert_allclose(estimate[1:, 4:], 0.5, atol=0.03)
@@ -33,7 +40,7 @@ def test_cells_without_photons_are_taken_for_what_lies_around_them():
 def test_usefulness_converges_to_the_truth():
     truth = np.random.default_rng(1).random((2, 4, 1, 8))
     left = np.full(truth.shape, 1e7)
-    np.testing.assert_allclose(usefulness(left, left * truth), truth, atol=1e-5)
+    np.testing.assert_allclose(contribution_probability(left, left * truth), truth, atol=1e-5)
 
 
 def test_every_cell_keeps_its_defensive_share():

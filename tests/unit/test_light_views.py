@@ -9,12 +9,12 @@ import pytest
 from rppm_addon.integrator.common.records import LIGHT, LightShape
 from rppm_addon.integrator.stages.light_gbuffer import light_views, views_side
 
-CENTRE, RADIUS = np.array([1.0, 2.0, 3.0]), 5.0
+CENTER, RADIUS = np.array([1.0, 2.0, 3.0]), 5.0
 
 
 def light(kind: int, **values: object) -> np.void:
     record = LIGHT.zeros(1)[0]
-    record["kind"], record["normal"], record["position"], record["cosine_cone"] = kind, (0.6, 0.0, -0.8), CENTRE, 1.0
+    record["kind"], record["normal"], record["position"], record["cosine_cone"] = kind, (0.6, 0.0, -0.8), CENTER, 1.0
     for name, value in values.items():
         record[name] = value
     return record
@@ -36,7 +36,7 @@ def light(kind: int, **values: object) -> np.void:
     ],
 )
 def test_views_by_kind_and_extent(record, count):
-    views = light_views(record, CENTRE, RADIUS)
+    views = light_views(record, CENTER, RADIUS)
     assert len(views) == count
     for view in views:
         axes = np.array([view["right"], view["up"], view["forward"]], np.float64)
@@ -46,7 +46,7 @@ def test_views_by_kind_and_extent(record, count):
 def test_parallel_light_stays_within_the_margin():
     """Rays across the scene, at any angle of the sun's disk, against the cone line that they have at its middle."""
     angle = 0.0046
-    view = light_views(light(LightShape.SUN, cosine_cone=math.cos(angle)), CENTRE, RADIUS)[0]
+    view = light_views(light(LightShape.SUN, cosine_cone=math.cos(angle)), CENTER, RADIUS)[0]
     tip, margin = float(view["tip_distance"]), float(view["margin"])
     place = np.linspace(-RADIUS, RADIUS, 21)[:, None]
     depth = np.linspace(-RADIUS, RADIUS, 21)[None, :]

@@ -171,7 +171,7 @@ def bad_graphs():
     graph = NodeGraph()
     shader = graph.add("bsdf_diffuse", "bsdf", name="Shader")
     graph.surface = graph.add("emission", "emission", color=shader)
-    yield "shader as a colour", graph, "Shader"
+    yield "shader as a color", graph, "Shader"
     graph = NodeGraph()
     graph.surface = graph.add("math", "value", name="Number")
     yield "number as a surface", graph, "Number.*no shader"

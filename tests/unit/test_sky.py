@@ -68,10 +68,10 @@ def test_sun_disc_is_where_it_is_wanted():
     assert sun_disc(Sky("PREETHAM")) is None
     assert sun_disc(Sky(sun_disc=False)) is None
     assert sun_disc(Sky(sun_intensity=0.0)) is None
-    disc = sun_disc(Sky(sun_elevation=0.5, sun_rotation=1.0))
-    assert np.allclose(disc.direction, [math.sin(1) * math.cos(0.5), math.cos(1) * math.cos(0.5), math.sin(0.5)])
-    assert disc.radiance(disc.direction[None]).min() > 1e5
-    assert not disc.radiance(-disc.direction[None]).any()
+    disk = sun_disc(Sky(sun_elevation=0.5, sun_rotation=1.0))
+    assert np.allclose(disk.direction, [math.sin(1) * math.cos(0.5), math.cos(1) * math.cos(0.5), math.sin(0.5)])
+    assert disk.radiance(disk.direction[None]).min() > 1e5
+    assert not disk.radiance(-disk.direction[None]).any()
 
 
 def test_unknown_types_are_refused():

@@ -29,7 +29,7 @@ _PASS_SECONDS = 0.25
 _FILTER_DEVIATION = 0.427
 """Pixels; of the Gauss curve nearest to Blackman-Harris with Cycles' width of 1.5."""
 _SUN_DISTANCE = 5000.0
-"""Metres; Mitsuba's only sun has no extent and casts other shadows, so a far disk stands for it."""
+"""Meters; Mitsuba's only sun has no extent and casts other shadows, so a far disk stands for it."""
 
 
 def choose_variant() -> str:

@@ -16,7 +16,7 @@ from .lights.world import export_world
 from .motion import MotionExporter, is_blurred
 from .objects.objects import ObjectExporter
 from .report import ExportStopped, Report
-from .settings import export_cubemap_centre, export_exposure, export_settings, preview_settings
+from .settings import export_cubemap_center, export_exposure, export_settings, preview_settings
 from .sync import SceneSync
 
 __all__ = [
@@ -61,7 +61,7 @@ def export_scene(
     if engine is not None and engine.is_preview:
         scene.settings = preview_settings(scene.settings)
     scene.settings.validate()
-    scene.cubemap_centre = export_cubemap_centre(depsgraph)
+    scene.cubemap_center = export_cubemap_center(depsgraph)
     scene.exposure = export_exposure(source)
     objects = ObjectExporter(context)
     blurred = is_blurred(depsgraph, engine)

@@ -32,7 +32,7 @@ class FrameExporter:
         # Blender makes a new depsgraph for another layer, but may tell as little of it as of one that has changed.
         layer = depsgraph.scene.session_uid, depsgraph.view_layer_eval.name
         sync = self._sync if layer == self._layer else None
-        # Changes that an export which failed has not taken in are told once only.
+        # Changes that an export which failed has not taken in are reported once only.
         self._sync, self._layer = None, layer
         self._render = should_stop, show
         try:

@@ -43,7 +43,7 @@ def export_settings(
 
 
 def seed_of_frame(seed: int, frame: int) -> int:
-    """A seed of each frame's own, 0 to 2^31 - 1: seeds and frames that are neighbours have nothing in common.
+    """A seed of each frame's own, 0 to 2^31 - 1: seeds and frames that are neighbors have nothing in common.
 
     The last rounds of MurmurHash3 (Appleby), a permutation of 32 bits, of the frame, then of what that gives and the
     seed.
@@ -68,8 +68,8 @@ def preview_settings(settings: RenderSettings) -> RenderSettings:
     )
 
 
-def export_cubemap_centre(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
-    """(3,) metres where the chosen object is in this frame; None where none is chosen."""
+def export_cubemap_center(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
+    """(3,) meters where the chosen object is in this frame; None where none is chosen."""
     stored = getattr(depsgraph.scene, "rppm", None)
     chosen = None if stored is None else stored.cubemap_center_object
     return None if chosen is None else np.array(chosen.evaluated_get(depsgraph).matrix_world.translation, float)

@@ -16,7 +16,7 @@ from .lights.world import export_world
 from .objects.object_pass import Placed
 from .objects.objects import ObjectExporter
 from .report import Report
-from .settings import export_cubemap_centre, export_exposure, export_settings
+from .settings import export_cubemap_center, export_exposure, export_settings
 
 _MOST_UNUSED = 64
 """Images of frames gone by are kept up to so many."""
@@ -141,7 +141,7 @@ class SceneSync:
             images=list(self._images.images),
             settings=settings,
             exposure=export_exposure(source),
-            cubemap_centre=export_cubemap_centre(depsgraph),
+            cubemap_center=export_cubemap_center(depsgraph),
             warnings=self._report.warnings,
         )
         if self._most_images == 0:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ...integrator.lights.sources import SURFACES, SURROUNDINGS, source_name
+from ...integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from ..readings import photon_shares
 from ..reports import RenderReport, reports_of
 from .base import RppmPanel
@@ -47,7 +47,7 @@ def source_rows(scene: bpy.types.Scene) -> list[SourceRow]:
         shares = photon_shares(report.source_watts, factors)
         emitted = max(sum(report.source_photons.values()), 1)
         for name in report.source_watts:
-            icon = {SURFACES: "MATERIAL", SURROUNDINGS: "WORLD"}.get(name, "LIGHT")
+            icon = {SURFACES: "MATERIAL", ENVIRONMENT: "WORLD"}.get(name, "LIGHT")
             shown = _object_name(name)
             rows.append(
                 SourceRow(shown, icon, lights[name], shares[name], report.source_photons.get(name, 0) / emitted)
@@ -64,7 +64,7 @@ def _object_name(source: str) -> str:
 
 
 def _light_of(source: str) -> bpy.types.Light | None:
-    found = bpy.data.objects.get(_object_name(source)) if source not in {SURFACES, SURROUNDINGS} else None
+    found = bpy.data.objects.get(_object_name(source)) if source not in {SURFACES, ENVIRONMENT} else None
     return found.data if found is not None and found.type == "LIGHT" else None
 
 

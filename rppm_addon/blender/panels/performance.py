@@ -61,7 +61,7 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
     reading(column, "Samples", f"{report.iterations} of {report.settings.iterations}")
     reading(column, "Photons", f"{count_text(report.photons_per_iteration)} a sample")
-    radius = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_metres, precision=4)
+    radius = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_meters, precision=4)
     reading(column, "Largest Radius", radius)
     reading(column, "Memory", bytes_text(report.memory_bytes))
     rates = f"{rate_text(report.iterations_per_second)} samples, {rate_text(report.photons_per_second)} photons"

@@ -19,7 +19,7 @@ SETTINGS = (
     "radius_scale",
     "alpha",
 )
-"""What trades time for quality; limits in metres, seeds and the like belong to a scene."""
+"""What trades time for quality; limits in meters, seeds and the like belong to a scene."""
 
 
 class RPPM_PT_presets(PresetPanel, bpy.types.Panel):

@@ -42,7 +42,7 @@ class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
         reading(column, "Viewport", f"{viewport.shrinkage:.0%} after {scene.rppm.preview_samples} samples")
         report = reports_of(scene.session_uid).latest
         if report is not None:
-            length = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_metres, precision=4)
+            length = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_meters, precision=4)
             reading(column, f"Last {report.kind.value}", f"{length} in sample {report.iterations}")
 
 

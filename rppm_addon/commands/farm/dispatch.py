@@ -42,7 +42,7 @@ class Dispatcher:
         self._told = ""
 
     def run(self, tasks: Sequence[Task], watch: Watch) -> list[Task]:
-        """Do tasks and return what failed of them; their errors are told when they come.
+        """Do tasks and return what failed of them; their errors are reported when they come.
 
         Raises FarmError when the scheduler or all workers are gone. Returns early when asked to stop.
         """

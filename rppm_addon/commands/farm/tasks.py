@@ -29,7 +29,7 @@ class Task:
 
     @property
     def name(self) -> str:
-        """As the user is told: ``frame 7``."""
+        """As users see it: ``frame 7``."""
         if len(self.frames) < 2:
             return f"frame {self.frames[0]}" if self.frames else self.words
         return f"frames {', '.join(map(str, self.frames))}"

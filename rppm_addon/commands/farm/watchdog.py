@@ -13,7 +13,7 @@ STANDARD_INPUT = 0
 """Its number for the system, whatever sys.stdin is."""
 BETWEEN_INTERRUPTS_SECONDS = 5.0
 """The first has the render write its checkpoint and end, the second ends it wherever it is."""
-PATIENCE_SECONDS = 10.0
+TIMEOUT_SECONDS = 10.0
 """Blender's own code may not hear interrupts; after so long the process ends regardless."""
 
 
@@ -30,5 +30,5 @@ def _end_when_released() -> None:
     for _ in range(2):
         _thread.interrupt_main()
         time.sleep(BETWEEN_INTERRUPTS_SECONDS)
-    time.sleep(PATIENCE_SECONDS)
+    time.sleep(TIMEOUT_SECONDS)
     os._exit(INTERRUPTED)

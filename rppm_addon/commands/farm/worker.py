@@ -23,7 +23,7 @@ import rppm_addon
 from .errors import TaskError
 from .ledger import ATTEMPT
 from .tasks import Task
-from .watchdog import PATIENCE_SECONDS
+from .watchdog import TIMEOUT_SECONDS
 
 TOPIC = "rppm-farm"
 """Of the events that tell how far a task is: task, where, fraction, frames."""
@@ -140,7 +140,7 @@ class _Program:
     def __exit__(self, *_: object) -> None:
         self._process.stdin.close()  # its watchdog ends it
         try:
-            self._process.wait(2 * PATIENCE_SECONDS)
+            self._process.wait(2 * TIMEOUT_SECONDS)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
@@ -162,10 +162,10 @@ class _Program:
         status = self._process.returncode
         if status == 0:
             return ""
-        told = [line.removeprefix("rppm: ") for line in self._lines if line.startswith("rppm: ")]
-        frames = [line for line in told if line.startswith("frame ")]
-        if told and status > 0:
-            return "\n".join(frames or told[-1:])
+        messages = [line.removeprefix("rppm: ") for line in self._lines if line.startswith("rppm: ")]
+        frames = [line for line in messages if line.startswith("frame ")]
+        if messages and status > 0:
+            return "\n".join(frames or messages[-1:])
         how = f"exit status {status}"
         if status < 0:
             how = f"ended by {signal.Signals(-status).name}"

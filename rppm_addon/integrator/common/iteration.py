@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every stage of an iteration is told of it."""
+"""What every stage of an iteration gets to know of it."""
 
 from dataclasses import dataclass
 

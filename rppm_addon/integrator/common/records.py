@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Records that stages hand to each other. Lengths in metres, flux in W, radiance in W/(m^2 sr)."""
+"""Records that stages hand to each other. Lengths in meters, flux in W, radiance in W/(m^2 sr)."""
 
 import enum
 
@@ -12,7 +12,7 @@ from ...scene.meshes import RayVisibility
 
 NO_TRIANGLE = 0xFFFFFFFF
 INFINITY_DISTANCE = 1e30
-"""Metres, of rays that may go on for ever."""
+"""Meters, of rays that may go on for ever."""
 Constants("Distances", NO_TRIANGLE=NO_TRIANGLE, INFINITY_DISTANCE=INFINITY_DISTANCE)
 Constants("RayVisibility", RAY=RayVisibility)
 
@@ -114,7 +114,7 @@ class MicrofacetKind(enum.IntEnum):
     SHEET = 7
     """Passes all through a sheet without thickness: a mirror's light, on the other side."""
     SHEEN = 8
-    """f0.xy are the coefficients of sheen_density."""
+    """f0.xy are the coefficients of sheen_pdf."""
     VELVET = 9
     """f0.x is sigma."""
 
@@ -164,11 +164,13 @@ PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
 StorageBlock("WorldRadiances", "float world_radiances[];")
 
-DEPARTURE = Record("Departure", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint")
+ADJOINT_QUERY = Record(
+    "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint"
+)
 """How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
 closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
 the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on."""
-StorageBlock("Departures", "Departure departures[];")
+StorageBlock("AdjointQueries", "AdjointQuery adjoint_queries[];")
 
 PHOTON = Record(
     "Photon",
@@ -199,7 +201,7 @@ class PhotonFlag(enum.IntFlag):
     ACTIVE = 1
     STORED = 2
     ESCAPED = 4
-    DIFFUSED = 8
+    AFTER_ROUGH_BOUNCE = 8
     """A diffuse or rough surface has scattered the path before."""
     INDIRECT = 16
     """What stores photons has scattered it."""
@@ -218,7 +220,7 @@ Constants("PhotonFlags", PHOTON=PhotonFlag)
 CAMERA_PATH = Record(
     "CameraPath",
     throughput="vec3",
-    scatter_density="float",
+    scatter_pdf="float",
     total_length="float",
     primary_distance="float",
     primary_radius="float",
@@ -227,8 +229,8 @@ CAMERA_PATH = Record(
 """A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
 the clip start,
 ``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit (before it, the radius of a pixel's
-cone at distance 1, or of its beam of parallel rays), ``scatter_density`` that of the
-scattered direction in 1/sr where next-event rays sample the same light, else 0."""
+cone at distance 1, or of its beam of parallel rays), ``scatter_pdf`` that of the
+scattered direction in 1/sr where shadow rays sample the same light, else 0."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Of the pixels of a band, W/(m^2 sr), and alpha."""
@@ -287,7 +289,7 @@ GATHERING_VERTEX = Record(
     radius="float",
 )
 """Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
-the importon's, metres, and so is ``shared_radius``, but for 0 where what the ray finds is not shared; less than 0
+the importon's, meters, and so is ``shared_radius``, but for 0 where what the ray finds is not shared; less than 0
 marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
 sharp surfaces, but for the photons' share, or from a second such vertex, of which ``radius`` then is."""
 StorageBlock("GatheringVertices", "GatheringVertex gathering_vertices[];")
@@ -340,7 +342,7 @@ LIGHT = Record(
 """A light as integrator/lights/light_entry.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
 unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
 ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
-``first_cell`` those of lights/guide.py; ``map`` where its map lies among the lamps' maps, left, bottom, width
+``first_cell`` those of lights/guide.py; ``map`` where its map lies among the lights' maps, left, bottom, width
 and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
 ``map_extent`` the tangent of half of what a cone's map shows."""
 
@@ -370,7 +372,7 @@ LIGHT_NODE = Record(
     unused0="uint",
     unused1="uint",
 )
-"""Lights below a node of the light tree: their box, metres; the sum of their intensities, W/sr, of a sun its
+"""Lights below a node of the light tree: their box, meters; the sum of their intensities, W/sr, of a sun its
 irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; and of
 a leaf the number of its light or emissive triangle."""
 
@@ -407,5 +409,5 @@ CAMERA_VIEW = Record(
 iteration's jitter; ``pixel_area`` is a pixel's area on the window: at distance 1 of perspective
 cameras, m^2 of orthographic ones, share of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
 ``panorama_range`` is left, right, bottom, top in radians or of a cylinder of radius 1; ``sensor`` and
-``lens`` are in millimetres."""
+``lens`` are in millimeters."""
 StorageBlock("Camera", "CameraView camera;")

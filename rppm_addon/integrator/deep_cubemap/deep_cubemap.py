@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The deep cubemap (DIRT): builds it by rasterization, traces rays through it.
 
-All triangles are sorted into the cells of a cubemap around a centre and, within a cell, by depth.
+All triangles are sorted into the cells of a cubemap around a center and, within a cell, by depth.
 Cells that hold many triangles are divided into tiles of 4 x 4 cells, level by level, so that a small
 detailed object in a large scene gets small cells and a bare wall large ones.
 Building takes these steps, shaders of these names in shaders/deep_cubemap:
@@ -43,7 +43,7 @@ log = logging.getLogger(__name__)
 
 STATE = Record(
     "DeepCubemapState",
-    centre="vec3",
+    center="vec3",
     margin="float",
     low_complement="uvec3",
     root_exponent="uint",
@@ -75,7 +75,7 @@ STATE = Record(
     core_count="uint",
     core_capacity="uint",
 )
-"""Lengths in metres. ``margin``: how far cells are widened; ``root_exponent``: log2 of the roots along
+"""Lengths in meters. ``margin``: how far cells are widened; ``root_exponent``: log2 of the roots along
 a face's side. The counts may pass the capacities, then something was dropped and building starts over."""
 
 CELL = Record("CubemapCell", near_complement="uint", far="uint", slices="uint", content="uint")
@@ -118,7 +118,7 @@ FINEST_RESOLUTION = 1 << 14
 # Of the scene's radius. The margin is thirty times the rounding error of float positions, so that a
 # point that a ray reaches is found in the cells of its triangle.
 _MARGIN = 2.0**-20
-# Nearer to the centre than this many margins, rays test a list.
+# Nearer to the center than this many margins, rays test a list.
 _CORE_MARGINS = 64.0
 _BASE_LEVEL = 2
 _LEAST_GAIN = 32
@@ -155,7 +155,7 @@ class _TooLong(Exception):
 class DeepCubemap:
     """A deep cubemap on the GPU. Buffers are kept between builds and grow with need.
 
-    ``resolution`` (cells along a face's side where they are finest), ``centre`` (three floats, metres)
+    ``resolution`` (cells along a face's side where they are finest), ``center`` (three floats, meters)
     and ``counts`` are those of the last build; ``fragment`` counts those of all levels.
     ``rasterize``: whether triangles are found in cells by rasterization or in a compute shader, which leave the
     same behind; None takes the one that is faster, found by trying both with the first scene of a thousand triangles.
@@ -200,21 +200,21 @@ class DeepCubemap:
         self._too_many, self._last_level = 1 << 32, 0
         self._fragments_found = 0
         self.resolution = 0
-        self.centre = (0.0, 0.0, 0.0)
+        self.center = (0.0, 0.0, 0.0)
         self.counts: dict[str, int] = {}
 
     def build(
         self,
         triangles: moderngl.Buffer,
         triangle_count: int,
-        centre: tuple[float, float, float],
+        center: tuple[float, float, float],
         scene_radius: float,
         resolution: int = 0,
     ) -> None:
         """Sort triangles into the cubemap.
 
         ``triangles`` holds three vec4 a triangle and must stay as it is while rays are traced.
-        ``scene_radius``: the greatest distance from ``centre`` of any vertex (metres); nothing farther
+        ``scene_radius``: the greatest distance from ``center`` of any vertex (meters); nothing farther
         out is hit. Rays may start anywhere, yet lose precision from some ten radii on.
         ``resolution``: the most cells along a face's side, a power of two from 4 to FINEST_RESOLUTION, which 0 stands
         for too. Triangles with infinite or NaN coordinates are left out.
@@ -224,11 +224,11 @@ class DeepCubemap:
         if not 4 <= resolution <= FINEST_RESOLUTION or resolution & (resolution - 1):
             raise ValueError(f"cubemap resolution {resolution} is not a power of two from 4 to {FINEST_RESOLUTION}")
         self._triangles = triangles
-        self.centre = tuple(float(c) for c in centre)
+        self.center = tuple(float(c) for c in center)
         exponent = resolution.bit_length() - 1
         scene_radius = max(float(scene_radius), 1e-20)
         state = STATE.zeros(1)[0]
-        state["centre"] = self.centre
+        state["center"] = self.center
         state["margin"] = scene_radius * _MARGIN
         state["core_radius"] = scene_radius * _MARGIN * _CORE_MARGINS
         state["scene_radius"] = scene_radius

@@ -16,7 +16,7 @@ from .deep_cubemap import DeepCubemap
 def inspect_deep_cubemap(
     context: Context, library: ProgramLibrary, deep_cubemap: DeepCubemap, camera: Camera
 ) -> np.ndarray:
-    """(height, width, 4) float32: CUBEMAP_COSTS of the rays through the pixels' centres, row 0 at the bottom."""
+    """(height, width, 4) float32: CUBEMAP_COSTS of the rays through the pixels' centers, row 0 at the bottom."""
     width, height = camera.resolution
     program = library.compute("deep_cubemap/inspect.comp", {"DEEP_CUBEMAP_COUNT": 1})
     view_buffer, result = GrowingBuffer(context, "camera"), GrowingBuffer(context, "inspection", "lower the resolution")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the deep cubemap's centre goes."""
+"""Where the deep cubemap's center goes."""
 
 from collections.abc import Iterator
 
@@ -12,27 +12,27 @@ FAR = 4.0
 """Times the scene's radius: from farther off, the margins of cells would outgrow small triangles."""
 
 _NUDGE = np.array([0.00307, -0.00251, 0.00193])
-"""Shares of the scene's radius, unlikely to put the centre on a surface or a plane of symmetry."""
+"""Shares of the scene's radius, unlikely to put the center on a surface or a plane of symmetry."""
 
 
 def cubemap_centers(scene: Scene, geometry: Geometry) -> Iterator[np.ndarray]:
-    """(3,) points, metres, the best first: the scene's own choice if it has one, else the camera.
+    """(3,) points, meters, the best first: the scene's own choice if it has one, else the camera.
 
     From the camera what is seen is cut as finely as it is looked at, camera rays stay in the cell that they
     start in, and the measured cost of all other rays is about that of any other place. A camera far outside
-    of the scene is brought nearer. The points that follow are for where the centre lies in a surface.
+    of the scene is brought nearer. The points that follow are for where the center lies in a surface.
     """
-    wanted = scene.camera.matrix[:3, 3] if scene.cubemap_centre is None else np.asarray(scene.cubemap_centre, float)
-    offset = wanted - geometry.centre
+    wanted = scene.camera.matrix[:3, 3] if scene.cubemap_center is None else np.asarray(scene.cubemap_center, float)
+    offset = wanted - geometry.center
     distance = float(np.linalg.norm(offset))
     if not np.isfinite(distance):
         offset, distance = np.zeros(3), 0.0
-    point = geometry.centre + offset * min(1.0, FAR * geometry.radius / max(distance, 1e-30))
+    point = geometry.center + offset * min(1.0, FAR * geometry.radius / max(distance, 1e-30))
     yield point
     for share in (0.1, 0.5, 2.0):
         yield point + share * _NUDGE * geometry.radius
 
 
 def radius_about(center: np.ndarray, geometry: Geometry) -> float:
-    """The greatest distance from a point to the scene's bounds, metres: no triangle lies farther out."""
+    """The greatest distance from a point to the scene's bounds, meters: no triangle lies farther out."""
     return float(np.linalg.norm(np.maximum(center - geometry.bounds_low, geometry.bounds_high - center)))

@@ -23,7 +23,7 @@ CORNER_RADII = 2.0
 
 @dataclass(frozen=True)
 class SplatRadii:
-    """Largest radii of an iteration, metres."""
+    """Largest radii of an iteration, meters."""
 
     narrow: float
     """r_max of Eq. 3."""
@@ -48,11 +48,11 @@ class Radii:
     """Radii of an iteration: those of the first one, and how far Eq. 2 has shrunk them since."""
 
     minimum: float
-    """r_min of the first iteration, metres."""
+    """r_min of the first iteration, meters."""
     maximum: float
-    """r_max of the first iteration, metres."""
+    """r_max of the first iteration, meters."""
     wide: float
-    """For photons that a diffuse surface has scattered, of the first iteration, metres."""
+    """For photons that a diffuse surface has scattered, of the first iteration, meters."""
     scale: float
     """s_r of Eq. 3."""
     most_factor: float
@@ -67,12 +67,12 @@ class Radii:
 
     @property
     def by_ray(self) -> float:
-        """For caustics at the ends of gathering rays, metres."""
+        """For caustics at the ends of gathering rays, meters."""
         return radius_by_ray(self.maximum, self.wide) * self.shrinkage
 
     @property
     def corner(self) -> float:
-        """Metres; a gathering ray shorter than this does not end the search."""
+        """Meters; a gathering ray shorter than this does not end the search."""
         return CORNER_RADII * self.wide * self.shrinkage
 
     @property
@@ -104,7 +104,7 @@ def most_radius_factor(settings: RenderSettings) -> float:
 
 
 def wide_radius(diffused_photons: int, expected: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
-    """Radius of the first iteration for photons that a diffuse surface has scattered, metres.
+    """Radius of the first iteration for photons that a diffuse surface has scattered, meters.
 
     Such light varies slowly, and its photons are spread over all of the scene: the disk holds
     the ``expected`` number of them where they lie evenly on surfaces as large as the bounds' six sides. Once photons
@@ -134,7 +134,7 @@ def photons_found_by_ray(counts: np.ndarray) -> float:
 
 
 def fitted_wide_radius(radius: float, expected: int, found: float) -> float:
-    """The radius, metres, with which half of the view, or of the lit ends of gathering rays, would find ``expected``
+    """The radius, meters, with which half of the view, or of the lit ends of gathering rays, would find ``expected``
     photons or more.
 
     Infinite if none are found. ``found`` is what photons_found or photons_found_by_ray says of ``radius``.
@@ -143,7 +143,7 @@ def fitted_wide_radius(radius: float, expected: int, found: float) -> float:
 
 
 def widest_radius(footprints: np.ndarray, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
-    """What the wide radius of the first iteration never exceeds, metres.
+    """What the wide radius of the first iteration never exceeds, meters.
 
     A twentieth of the scene's diagonal, and ten times the Eq. 3 radius in the middle of the view (``footprints``, as
     for radius_limits): beyond, splats would cover the picture.
@@ -154,7 +154,7 @@ def widest_radius(footprints: np.ndarray, bounds_low: np.ndarray, bounds_high: n
 
 
 def radius_by_ray(narrow: float, wide: float) -> float:
-    """Radius, metres, for caustics at the ends of gathering rays, from r_max and the wide radius.
+    """Radius, meters, for caustics at the ends of gathering rays, from r_max and the wide radius.
 
     They are bright and rare there, which a wider disk makes them less.
     """
@@ -166,7 +166,7 @@ def _seen(footprints: np.ndarray) -> np.ndarray:
 
 
 def radius_limits(settings: RenderSettings, footprints: np.ndarray, scene_radius: float) -> tuple[float, float]:
-    """r_min and r_max of the first iteration, metres.
+    """r_min and r_max of the first iteration, meters.
 
     ``footprints`` (rows, columns) are the Eq. 3 radii of the camera's first hits. Unset limits follow them:
     r_max, at which all photons are splatted, covers 95 % of the view, and r_min keeps a

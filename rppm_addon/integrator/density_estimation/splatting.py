@@ -25,7 +25,7 @@ Record("SplatParameters", count="uint", radius="float", wide_radius="float", gat
 Record("QuadParameters", width="uint", height="uint", **SUM_PARAMETERS, **ESTIMATE_PARAMETERS)
 Record(
     "CubeParameters",
-    centre="vec3",
+    center="vec3",
     count="uint",
     radius="float",
     resolution="uint",
@@ -129,7 +129,7 @@ class Splatting:
         self._reset_jobs()
         estimate = {**sums.parameters, **importons.parameters(photons)}
         cube = {
-            "centre": importons.center,
+            "center": importons.center,
             "radius": importons.narrow_radius(photons),
             "resolution": self._resolution,
             "gathers": importons.gathers,

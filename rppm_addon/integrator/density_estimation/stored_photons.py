@@ -80,7 +80,7 @@ class StoredPhotons:
     """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
     radii: SplatRadii
     largest_coordinate: float
-    """Of any position, metres, by its absolute value."""
+    """Of any position, meters, by its absolute value."""
 
     def first(self, count: int) -> "StoredPhotons":
         """No more than so many of them."""
@@ -123,10 +123,10 @@ class TakingImportons:
     raster: CameraRaster | None
     """Where first hits lie on the camera's raster."""
     center: np.ndarray
-    """Of the splat cubemap for all others, (3,) metres, which changes no sum."""
+    """Of the splat cubemap for all others, (3,) meters, which changes no sum."""
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
-        """That the narrow radii of these importons do not exceed, metres."""
+        """That the narrow radii of these importons do not exceed, meters."""
         return photons.radii.by_ray if self.by_ray else photons.radii.caustic
 
     def parameters(self, photons: StoredPhotons) -> dict[str, object]:

@@ -24,7 +24,7 @@ class Changes:
     """Lights, the world, or how many photons they share."""
     world: bool
     """The world, its images, or the camera if its nodes ask for it."""
-    lamps: bool
+    light_objects: bool
     """Light objects, their images, or the camera if their nodes ask for it."""
     cubemap: bool
     """Where the deep cubemap is asked to be, and how fine."""
@@ -39,7 +39,7 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
     world = images or before.world is not after.world or (camera and _asks_for_camera([after.world.graph]))
     graphs = [light.graph for light in after.lights]
     graphs_before = [light.graph for light in before.lights]
-    lamps = images or not same_members(before.lights, after.lights) or (camera and _asks_for_camera(graphs))
+    light_objects = images or not same_members(before.lights, after.lights) or (camera and _asks_for_camera(graphs))
     return Changes(
         materials=images
         or not same_members(before.materials, after.materials)
@@ -47,9 +47,9 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
         geometry=not same_members(before.instances, after.instances)
         or not same_members(before.meshes, after.meshes)
         or len(before.materials) != len(after.materials),
-        lights=world or lamps or after.photon_count != before.photon_count,
+        lights=world or light_objects or after.photon_count != before.photon_count,
         world=world,
-        lamps=lamps,
+        light_objects=light_objects,
         cubemap=after.settings.cubemap_resolution != before.settings.cubemap_resolution
         or not np.array_equal(_point(before), _point(after), equal_nan=True),
     )
@@ -62,7 +62,7 @@ def snapshot(scene: Scene) -> Scene:
 
 
 def _point(scene: Scene) -> np.ndarray:
-    return np.full(3, np.nan) if scene.cubemap_centre is None else np.asarray(scene.cubemap_centre)
+    return np.full(3, np.nan) if scene.cubemap_center is None else np.asarray(scene.cubemap_center)
 
 
 def _asks_for_camera(graphs: list[NodeGraph | None]) -> bool:

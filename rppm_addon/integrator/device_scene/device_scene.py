@@ -41,11 +41,11 @@ class DeviceScene:
         self.scene: Scene | None = None
         """With a shutter, as it is at the iteration's moment."""
         self.center = np.full(3, np.nan)
-        """Of the deep cubemap, (3,) metres."""
+        """Of the deep cubemap, (3,) meters."""
         self._source_scene: Scene | None = None
         """The scene, its shutter included."""
         self._uploaded_scene: Scene | None = None
-        """What stands on the device; None is nothing that a change could be told from."""
+        """What stands on the device; None: nothing to compare a change with."""
         self._warnings: dict[str, list[str]] = {}
         """What was said when a part was built, which holds for scenes after it as well."""
         self._moving: MovingScene | None = None
@@ -148,7 +148,7 @@ class DeviceScene:
                     self.resolve,
                     photons,
                     not changes.world,
-                    not changes.lamps,
+                    not changes.light_objects,
                     keep_learned,
                 )
         elif not keep_learned:

@@ -26,7 +26,7 @@ def moment(iteration: int, seed: int) -> float:
 
 
 def swept_bounds(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest coordinates that what moves comes to, each (3,) metres; infinite if nothing moves.
+    """Lowest and highest coordinates that what moves comes to, each (3,) meters; infinite if nothing moves.
 
     Looked for at a few moments: in between, what turns may come out of them by a little.
     """

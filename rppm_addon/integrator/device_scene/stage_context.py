@@ -25,7 +25,7 @@ class StageContext:
     lights: Lights
     deep_cubemap: DeepCubemap
     center: np.ndarray
-    """Of the deep cubemap, (3,) metres."""
+    """Of the deep cubemap, (3,) meters."""
     resolve: Resolve
     timers: StageTimers
 

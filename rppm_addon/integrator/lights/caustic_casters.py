@@ -58,7 +58,7 @@ def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
 
 
 def caustic_targets(scene: Scene, geometry: Geometry) -> np.ndarray:
-    """(n, 4) float32 bounding spheres, centre and radius in metres, of up to 64 objects with sharp
+    """(n, 4) float32 bounding spheres, center and radius in meters, of up to 64 objects with sharp
     specular lobes. Objects half as large as the scene are none: photons meet them anyway."""
 
     def sharp(material: Material) -> bool:

@@ -170,7 +170,7 @@ class Emitters:
         living: LivingPaths,
         iteration: int,
     ) -> None:
-        """Give next-event rays to emitters with varying emission the radiance of the place that they sampled."""
+        """Give shadow rays to emitters with varying emission the radiance of the place that they sampled."""
         if not self._varying:
             return
         for buffer, record in ((self._rays, RAY), (self._hits, HIT), (self._closures, CLOSURE)):
@@ -215,7 +215,7 @@ def chances(weights: np.ndarray) -> np.ndarray:
 
 
 def _may_emit(scene: Scene, placement: Placement, materials: MaterialTables) -> tuple[np.ndarray, ...]:
-    """Of one instance: records without radiance, corners (n, 3, 3) in metres, material and whether it varies."""
+    """Of one instance: records without radiance, corners (n, 3, 3) in meters, material and whether it varies."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
     slots = np.array([m if 0 <= m < len(scene.materials) else -1 for m in instance.materials] or [-1])

@@ -60,7 +60,7 @@ class Environment:
         return self.distribution.size + sum(16 * texture.width * texture.height for texture in self._textures)
 
     def build(self, world: World, images: list[Image], materials: MaterialTables) -> None:
-        """Evaluate the world's nodes: once where they give one colour, else for a map of all directions, and for
+        """Evaluate the world's nodes: once where they give one color, else for a map of all directions, and for
         another of what the camera sees where Light Path nodes tell it apart."""
         self._release_textures()
         self.width = self.height = 0

@@ -3,7 +3,7 @@
 
 After Hachisuka and Jensen, Robust Adaptive Photon Tracing using Photon Path Visibility (2011), with tallies in place
 of their Markov chains: the unit cube of the random numbers that place and direct a light's photons is cut into
-cells, and a cell is chosen by how often its photons were of use. Every cell keeps a share, and the flux is divided
+cells, and a cell is chosen by how often its photons contributed. Every cell keeps a share, and the flux is divided
 by the density, so energy stays as it is.
 """
 
@@ -49,25 +49,25 @@ def cells_of(kind: int, photons: int) -> tuple[int, int, int, int]:
     return tuple(cells)
 
 
-def usefulness(left: np.ndarray, useful: np.ndarray) -> np.ndarray:
-    """Share of each cell's photons that are of use, from tallies of any shape of powers of two.
+def contribution_probability(left: np.ndarray, contributed: np.ndarray) -> np.ndarray:
+    """Share of each cell's photons that contribute, from tallies of any shape of powers of two.
 
     A cell with few photons is taken for the coarser cell that it lies in, that for the next coarser, and so on.
     """
     if left.size == 1:
-        return (useful + 0.5) / (left + 1.0)
+        return (contributed + 0.5) / (left + 1.0)
     halves = tuple(n for size in left.shape for n in ((size // 2, 2) if size > 1 else (1, 1)))
     pairs = tuple(range(1, 2 * left.ndim, 2))
-    coarse = usefulness(left.reshape(halves).sum(pairs), useful.reshape(halves).sum(pairs))
+    coarse = contribution_probability(left.reshape(halves).sum(pairs), contributed.reshape(halves).sum(pairs))
     for axis, size in enumerate(left.shape):
         if size > 1:
             coarse = np.repeat(coarse, 2, axis)
-    return (useful + _PRIOR_PHOTONS * coarse) / (left + _PRIOR_PHOTONS)
+    return (contributed + _PRIOR_PHOTONS * coarse) / (left + _PRIOR_PHOTONS)
 
 
 def probabilities(estimate: np.ndarray) -> np.ndarray:
-    """What to choose cells by, (n,) summing to 1: the square root of the usefulness gives the sum of photons the least
-    variance, and a share is defensive."""
+    """What to choose cells by, (n,) summing to 1: the root of the probability to contribute gives the sum of
+    photons the least variance, and a share is defensive."""
     weight = np.sqrt(estimate)
     return (1.0 - _DEFENSIVE) * weight / weight.sum() + _DEFENSIVE / weight.size
 
@@ -117,7 +117,7 @@ class Guide:
         self._photon_cells.require(4 * photons)
 
     def tally(self, photons: moderngl.Buffer, count: int, segments: int) -> None:
-        """Count an iteration's photons that were of use, once they have been splatted."""
+        """Count an iteration's photons that contributed, once they have been splatted."""
         self._program.run(
             count,
             {"Photons": photons, "PhotonCells": self._photon_cells.buffer, "Tallies": self._tallies.buffer},
@@ -129,14 +129,14 @@ class Guide:
         self._starts.upload(np.concatenate([starts(probability) for probability in found]))
 
     def read_tallies(self) -> np.ndarray:
-        """(cells, 2) uint32: the photons that left through each cell so far, and those that were of use."""
+        """(cells, 2) uint32: the photons that left through each cell so far, and those that contributed."""
         return self._tallies.read(np.uint32, 2 * self._cell_count).reshape(-1, 2).copy()
 
     def learn(self) -> tuple[np.ndarray, np.ndarray]:
         """Choose cells by the tallies from now on.
 
-        Returns each light's mean root of the usefulness, (n,), and the shares of its photons that should have been
-        of use before and will be from now on, (n, 2).
+        Returns each light's mean root of the probability to contribute, (n,), and the fractions of its photons that
+        should have contributed before and will from now on, (n, 2).
         """
         before = self._probabilities
         weights, estimates = self._choose_by_tallies(self.read_tallies())
@@ -155,13 +155,13 @@ class Guide:
         return None if learned is None else self._choose_by_tallies(learned)[0]
 
     def _choose_by_tallies(self, tallies: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Each light's mean root of the usefulness, and the usefulness of its cells."""
+        """Each light's mean root of the probability to contribute, and the probability to contribute of its cells."""
         self.learned = tallies
         estimates, first = [], 0
         for cells in self._cells:
             count = int(np.prod(cells))
             part = tallies[first : first + count].astype(np.float64).reshape(*cells[::-1], 2)
-            estimates.append(usefulness(part[..., 0], part[..., 1]).ravel())
+            estimates.append(contribution_probability(part[..., 0], part[..., 1]).ravel())
             first += count
         self._choose_by([probabilities(estimate) for estimate in estimates])
         return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates

@@ -87,7 +87,7 @@ def sun_leaves(lights: np.ndarray) -> np.ndarray:
 
 
 def triangle_leaves(emissive: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Leaves of emissive triangles (EMISSIVE_TRIANGLE records) with corners (n, 3, 3) in metres, which shine on both
+    """Leaves of emissive triangles (EMISSIVE_TRIANGLE records) with corners (n, 3, 3) in meters, which shine on both
     sides."""
     leaves = LIGHT_NODE.zeros(len(emissive))
     leaves["member"] = np.arange(len(emissive))
@@ -122,10 +122,10 @@ def _widened(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def _morton_order(leaves: np.ndarray) -> np.ndarray:
-    centres = 0.5 * (leaves["low"].astype(np.float64) + leaves["high"])
-    low = centres.min(axis=0)
-    extent = max((centres.max(axis=0) - low).max(), 1e-30)
-    cells = ((centres - low) / extent * ((1 << _MORTON_BITS) - 1)).astype(np.int64)
+    centers = 0.5 * (leaves["low"].astype(np.float64) + leaves["high"])
+    low = centers.min(axis=0)
+    extent = max((centers.max(axis=0) - low).max(), 1e-30)
+    cells = ((centers - low) / extent * ((1 << _MORTON_BITS) - 1)).astype(np.int64)
     codes = np.zeros(len(leaves), np.int64)
     for bit in range(_MORTON_BITS):
         for axis in range(3):

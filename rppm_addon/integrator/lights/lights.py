@@ -22,10 +22,10 @@ from .caustic_casters import caustic_targets
 from .emitters import Emitters
 from .environment import Environment
 from .guide import Guide
-from .lamp_maps import LampMaps
 from .light_entry import light_entry
+from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
-from .sources import SURFACES, SURROUNDINGS, source_name
+from .sources import ENVIRONMENT, SURFACES, source_name
 
 log = logging.getLogger(__name__)
 
@@ -33,7 +33,7 @@ _LEARNED = ("photon_count", "first_photon", "cells", "first_cell")
 """Of a light's record, what follows from what photons were good for."""
 
 LIGHT_PARAMETERS = {
-    "scene_centre": "vec3",
+    "scene_center": "vec3",
     "scene_radius": "float",
     "world_radiance": "vec3",
     "light_count": "uint",
@@ -82,7 +82,7 @@ class Lights:
         """(n, 4) float32 spheres that photons are aimed at (caustic_casters.py)."""
         self.target_count = 0
         self.environment = Environment(context)
-        self.lamp_maps = LampMaps(context)
+        self.light_maps = LightMaps(context)
         self.guide = Guide(context, library)
         self._light_tree = LightTree(context)
         self.table = LIGHT.zeros(0)
@@ -95,7 +95,7 @@ class Lights:
         self.has_falloff = False
         self._power, self._photons, self._most_photons = 0.0, 1, 1
         self.scene_radius = 0.0
-        """Metres, a little more than the geometry's."""
+        """Meters, a little more than the geometry's."""
         self.times_built = 0
 
     @property
@@ -122,13 +122,13 @@ class Lights:
             "photon targets": self.targets.size,
             "light tree": self._light_tree.nodes.size,
             "environment": self.environment.memory_bytes,
-            "lamp maps": self.lamp_maps.memory_bytes,
+            "light maps": self.light_maps.memory_bytes,
             **self.guide.memory_bytes,
         }
 
     @property
     def source_watts(self) -> dict[str, float]:
-        """Power within the scene, the channels' mean, by source: lights (source_name), SURFACES and SURROUNDINGS."""
+        """Power within the scene, the channels' mean, by source: lights (source_name), SURFACES and ENVIRONMENT."""
         return self._by_source(self._powers)
 
     @property
@@ -145,7 +145,7 @@ class Lights:
     def use_maps(self) -> None:
         """Bind the textures of programs that include emission/lights.glsl."""
         self.environment.use()
-        self.lamp_maps.use()
+        self.light_maps.use()
 
     def parameters(self, iteration: Iteration) -> dict[str, object]:
         """Values of LIGHT_PARAMETERS."""
@@ -159,14 +159,14 @@ class Lights:
         resolve: Resolve,
         photons: int,
         keep_world: bool = False,
-        keep_lamps: bool = False,
+        keep_light_objects: bool = False,
         keep_learned: bool = False,
     ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        photons: of that iteration, no more than the scene's. keep_world, keep_lamps: the world, or all light objects,
-        are those of the last call. keep_learned: the lights are those of the last call at another time, and what was
-        learned of them holds.
+        photons: of that iteration, no more than the scene's. keep_world, keep_light_objects: the world, or
+        all light objects, are those of the last call. keep_learned: the lights are those of the last call at another
+        time, and what was learned of them holds.
         Raises SceneError when all lights have a photon share of 0.
         """
         self.times_built += 1
@@ -183,11 +183,11 @@ class Lights:
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(share, 0.0))
 
-        if not keep_lamps:
-            self.lamp_maps.build(scene.lights, scene.images, materials)
+        if not keep_light_objects:
+            self.light_maps.build(scene.lights, scene.images, materials)
         for index, light in enumerate(scene.lights):
             entry, power = light_entry(light, radius)
-            nodes = self.lamp_maps.nodes.get(index)
+            nodes = self.light_maps.nodes.get(index)
             if nodes is not None:
                 entry["strength"] *= nodes.scale
                 entry["falloff"], entry["smoothing"] = nodes.falloff, nodes.smoothing
@@ -203,7 +203,7 @@ class Lights:
             self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.WORLD, int(RayVisibility.ALL)
-        add(SURROUNDINGS, entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
+        add(ENVIRONMENT, entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
         if not entries:
             # As in an animation whose lights go out: the picture is black, as Cycles' is.
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
@@ -236,7 +236,7 @@ class Lights:
         self._triangles = geometry.triangles.buffer
         self._light_tree.build(table, self.emitters.leaves)
         self._parameters = {
-            "scene_centre": geometry.centre,
+            "scene_center": geometry.center,
             "scene_radius": radius,
             "world_radiance": self.environment.radiance,
             "light_count": len(entries),
@@ -275,11 +275,11 @@ class Lights:
         Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
         of use from now on.
         """
-        weights, useful = self.guide.learn()
-        before = self.table["photon_count"] @ useful[:, 0]
+        weights, contributed = self.guide.learn()
+        before = self.table["photon_count"] @ contributed[:, 0]
         self._share_photons(self._weights * weights, photons)
         self._lights.upload(self.table)
-        return float(self.table["photon_count"] @ useful[:, 1] / before)
+        return float(self.table["photon_count"] @ contributed[:, 1] / before)
 
     def restore(self, tallies: np.ndarray, learned: np.ndarray | None, photons: int) -> None:
         """Know what the guide of this scene's lights knew (Guide.restore, which tells what is raised) when the last
@@ -301,5 +301,5 @@ class Lights:
         self.targets.release()
         self._light_tree.nodes.release()
         self.guide.release()
-        self.lamp_maps.release()
+        self.light_maps.release()
         self.environment.release()

@@ -2,7 +2,7 @@
 """Names of light sources in statistics."""
 
 SURFACES = "Emissive surfaces"
-SURROUNDINGS = "World"
+ENVIRONMENT = "World"
 
 
 def source_name(light: str) -> str:

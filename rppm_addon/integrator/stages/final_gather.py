@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Final gather: what camera paths find along one ray from the first surface that stores photons.
 
-Neighbouring pixels share what their rays found: the mean over a disk of a few Eq. 3 radii, which shrinks by Eq. 2 and
+Neighboring pixels share what their rays found: the mean over a disk of a few Eq. 3 radii, which shrinks by Eq. 2 and
 so keeps the estimate consistent. After Jensen, Realistic Image Synthesis Using Photon Mapping (2001), section 9.2.
 """
 
@@ -32,7 +32,7 @@ Record(
 )
 
 _MOST_TAPS = 32
-"""Neighbours that a pixel looks at."""
+"""Neighbors that a pixel looks at."""
 SHARED_RADIUS = 6.0
 """Times the Eq. 3 radius: indirect light varies more slowly than caustics."""
 

@@ -112,7 +112,7 @@ class FirstHits:
             if self._gbuffer is None:
                 self._gbuffer = LightGBuffer(self._context, self._library)
             lights, geometry = context.lights, context.geometry
-            self._has_views = self._gbuffer.build(lights.table, geometry.centre, lights.scene_radius, geometry) > 0
+            self._has_views = self._gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry) > 0
             self._stands = True
         return self._has_views
 

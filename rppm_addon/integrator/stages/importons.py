@@ -163,7 +163,7 @@ class Importons:
         )
 
     def footprints(self, count: int) -> np.ndarray:
-        """(count,) radii of the importons just left, metres; 0 where there is none."""
+        """(count,) radii of the importons just left, meters; 0 where there is none."""
         return self.importons.read(IMPORTON.dtype, count)["radius"]
 
     def release(self) -> None:

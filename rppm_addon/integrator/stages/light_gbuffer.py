@@ -7,8 +7,9 @@ little behind the first of them. A photon tests those of its texel. A hit before
 where a texel is empty there is none; what its texel does not settle is traced. So both routes give the same hits, bit
 for bit.
 
-Lamps have six views, the faces of a cube, or one where their cone is narrow; suns have one, from so far off that their
-light is nearly parallel there. The margin by which texels are widened holds small lamps' extent and suns' disks.
+Point lights and spots have six views, the faces of a cube, or one where their cone is narrow; suns have one, from
+so far off that their light is nearly parallel there. The margin by which texels are widened holds small lights'
+extent and suns' disks.
 """
 
 import math
@@ -27,7 +28,7 @@ from ..surfaces.geometry import Geometry
 
 LIGHT_VIEW = Record(
     "LightView",
-    centre="vec3",
+    center="vec3",
     margin="float",
     right="vec3",
     tangent="float",
@@ -37,8 +38,8 @@ LIGHT_VIEW = Record(
     least_depth="float",
 )
 """What a light sees through a window of half the extent ``tangent`` at depth 1. Depths begin at the tip,
-``tip_distance`` before the centre; ``margin`` is how far texels are widened; nearer than ``least_depth`` float rounding
-tells nothing of directions. Lengths in metres."""
+``tip_distance`` before the center; ``margin`` is how far texels are widened; nearer than ``least_depth`` float rounding
+tells nothing of directions. Lengths in meters."""
 
 Record(
     "LightGBufferParameters",
@@ -94,14 +95,14 @@ def _faces() -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     return [(axes[(k + 1) % 3], axes[(k + 2) % 3], sign * axes[k]) for k in range(3) for sign in (1.0, -1.0)]
 
 
-def light_views(light: np.void, scene_centre: np.ndarray, scene_radius: float) -> np.ndarray:
+def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -> np.ndarray:
     """The views (LIGHT_VIEW) that hold all rays of a LIGHT record's photons: six, one, or none."""
     kind = int(light["kind"])
     if kind == LightShape.SUN:
         tip = _SUN_DISTANCE * scene_radius
         sine = math.sqrt(max(0.0, 1.0 - float(light["cosine_cone"]) ** 2))
         views, looks = LIGHT_VIEW.zeros(1), [_look(light["normal"].astype(np.float64))]
-        views["centre"], views["tip_distance"], views["tangent"] = scene_centre, tip, 1.01 * scene_radius / tip
+        views["center"], views["tip_distance"], views["tangent"] = scene_center, tip, 1.01 * scene_radius / tip
         # Over the scene's depth rays leave their texel's cone so far.
         slope = sine / max(float(light["cosine_cone"]), 1e-3) + 1.0 / _SUN_DISTANCE
         views["margin"] = scene_radius * (1.02 * slope + _ROUNDING)
@@ -112,9 +113,9 @@ def light_views(light: np.void, scene_centre: np.ndarray, scene_radius: float) -
         views = LIGHT_VIEW.zeros(1 if narrow else 6)
         looks = [_look(light["normal"].astype(np.float64))] if narrow else _faces()
         tangent = max(1.001 * math.tan(cone), 1e-3) if narrow else 1.0
-        farthest = float(np.linalg.norm(light["position"] - scene_centre)) + scene_radius
+        farthest = float(np.linalg.norm(light["position"] - scene_center)) + scene_radius
         rounding = _ROUNDING * farthest
-        views["centre"], views["tangent"] = light["position"], tangent
+        views["center"], views["tangent"] = light["position"], tangent
         views["margin"] = 1.01 * math.hypot(1.0, tangent) * float(light["radius"]) + rounding
         views["least_depth"] = 16.0 * rounding
     else:
@@ -130,7 +131,7 @@ def views_side(views: int) -> int:
 
 
 class LightGBuffer:
-    """The views of a scene's lamps and suns. Buffers are kept between scenes and grow with need."""
+    """The views of a scene's point lights, spots and suns. Buffers are kept between scenes and grow with need."""
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         self._context = context
@@ -158,15 +159,15 @@ class LightGBuffer:
         """Bytes on the device by buffer."""
         return {buffer.name: buffer.size for buffer in self._buffers}
 
-    def build(self, lights: np.ndarray, scene_centre: np.ndarray, scene_radius: float, geometry: Geometry) -> int:
+    def build(self, lights: np.ndarray, scene_center: np.ndarray, scene_radius: float, geometry: Geometry) -> int:
         """Rasterize what the lights (LIGHT records with their photon counts) see; how many views they have.
 
-        scene_radius: of the sphere that photons from suns come through, metres. Raises DeviceError.
+        scene_radius: of the sphere that photons from suns come through, meters. Raises DeviceError.
         """
         self._light_count = len(lights)
         ranges, found, count = np.zeros((len(lights), 2), np.uint32), [LIGHT_VIEW.zeros(0)], 0
         for index in np.argsort(-lights["photon_count"].astype(np.int64), kind="stable")[:MOST_LIGHTS]:
-            views = light_views(lights[index], scene_centre, scene_radius)
+            views = light_views(lights[index], scene_center, scene_radius)
             if count and (count + len(views)) * geometry.triangle_count > _MOST_TESTS:
                 break
             ranges[index] = count, len(views)

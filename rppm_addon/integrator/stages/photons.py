@@ -11,8 +11,8 @@ from ...gl.records import Record
 from ..common.iteration import Iteration
 from ..common.living_paths import LivingPaths
 from ..common.records import (
+    ADJOINT_QUERY,
     CLOSURE,
-    DEPARTURE,
     FLUX_GROUP,
     FLUX_NAMES,
     FLUX_SUMS,
@@ -35,9 +35,9 @@ Record(
     seed="uint",
     iteration="uint",
     specular_alpha="float",
-    looks_back="uint",
+    has_adjoint_queries="uint",
 )
-Record("DepartParameters", photon_count="uint", segment="uint")
+Record("AdjointParameters", photon_count="uint", segment="uint")
 Record("BalanceParameters", photon_count="uint", segments="uint")
 
 
@@ -49,7 +49,7 @@ class Photons:
         """photon_count: the most that an iteration has."""
         self._context = context
         self._scatter = library.compute("photons/scatter.comp")
-        self._depart = library.compute("photons/depart.comp")
+        self._adjoint = library.compute("photons/adjoint.comp")
         self._balance = library.compute("photons/balance.comp")
         self.photon_count, self.segments = photon_count, segments
         remedy = "lower the photons per iteration or the photon path length"
@@ -58,7 +58,7 @@ class Photons:
         self._rays = GrowingBuffer(context, "photon rays", remedy)
         self._hits = GrowingBuffer(context, "photon hits", remedy)
         self._closures = GrowingBuffer(context, "photon closures", remedy)
-        self._departures = GrowingBuffer(context, "photon departures", remedy)
+        self._adjoint_queries = GrowingBuffer(context, "adjoint queries", remedy)
         self.world_radiances = GrowingBuffer(context, "world radiances", remedy)
         self.world_radiances.require(4 * photon_count)
         self._emitted = GrowingBuffer(context, "emitted photons", remedy)
@@ -72,7 +72,7 @@ class Photons:
             (self._rays, RAY),
             (self._hits, HIT),
             (self._closures, CLOSURE),
-            (self._departures, DEPARTURE),
+            (self._adjoint_queries, ADJOINT_QUERY),
             (self._emitted, PHOTON_PATH),
         ):
             buffer.require(record.size * photon_count)
@@ -81,7 +81,7 @@ class Photons:
 
     @property
     def _buffers(self) -> tuple[GrowingBuffer, ...]:
-        paths = self._paths, self._rays, self._hits, self._closures, self._departures
+        paths = self._paths, self._rays, self._hits, self._closures, self._adjoint_queries
         return self.photons, *paths, self._emitted, self._sums, self.world_radiances
 
     @property
@@ -92,7 +92,7 @@ class Photons:
             "Rays": self._rays.buffer,
             "PhotonPaths": self._paths.buffer,
             "Photons": self.photons.buffer,
-            "Departures": self._departures.buffer,
+            "AdjointQueries": self._adjoint_queries.buffer,
         }
 
     @property
@@ -132,8 +132,10 @@ class Photons:
             context.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self._living)
             return True
 
-    def resolve(self, context: StageContext, iteration: Iteration, segment: int, looks_back: bool = False) -> None:
-        """Hits to closures; ``looks_back``: as seen from where the photons go."""
+    def resolve(
+        self, context: StageContext, iteration: Iteration, segment: int, has_adjoint_queries: bool = False
+    ) -> None:
+        """Hits to closures; ``has_adjoint_queries``: as seen from where the photons go."""
         with context.timers.stage("photon resolve"):
             context.resolve.run(
                 self._rays.buffer,
@@ -143,13 +145,13 @@ class Photons:
                 iteration.number,
                 segment,
                 photon_paths=self._paths.buffer,
-                looks_back=looks_back,
+                has_adjoint_queries=has_adjoint_queries,
             )
 
     def scatter(self, context: StageContext, iteration: Iteration, segment: int) -> None:
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
         # Nothing goes on from the last segment's hits.
-        looks_back = context.materials.any_depends_on_view and segment < self.segments - 1
+        has_adjoint_queries = context.materials.any_depends_on_view and segment < self.segments - 1
         with context.timers.stage("photon scattering"):
             self._living.run(
                 self._scatter,
@@ -161,14 +163,14 @@ class Photons:
                     "seed": iteration.seed,
                     "iteration": iteration.number,
                     "specular_alpha": context.settings.specular_roughness**2,
-                    "looks_back": looks_back,
+                    "has_adjoint_queries": has_adjoint_queries,
                 },
             )
-        if looks_back:
-            self.resolve(context, iteration, segment, looks_back=True)
+        if has_adjoint_queries:
+            self.resolve(context, iteration, segment, has_adjoint_queries=True)
             with context.timers.stage("photon scattering"):
                 parameters = {"photon_count": self.photon_count, "segment": segment}
-                self._living.run(self._depart, self._blocks, parameters)
+                self._living.run(self._adjoint, self._blocks, parameters)
 
     def stored(self, context: StageContext, listed: PhotonList, radii: Radii) -> StoredPhotons:
         """Those that are listed, with what their estimate depends on."""

@@ -88,11 +88,11 @@ def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, n
     and not too far away for triangles to be rendered, (n,).
     """
     middle, reach = matrices[:, :3, 3], np.zeros((len(matrices), 3))
-    centres, halves = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0])
+    centers, halves = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0])
     with np.errstate(invalid="ignore", over="ignore"):
         for axis in range(3):  # written out: thousands of products of small matrices take NumPy long
             column = matrices[:, :3, axis]
-            middle = middle + column * centres[:, axis, None]
+            middle = middle + column * centers[:, axis, None]
             reach += np.abs(column) * halves[:, axis, None]
         low, high = middle - reach, middle + reach
     return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
@@ -112,7 +112,7 @@ class Geometry:
     ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/geometry/gather.comp),
     ``attributes`` a TriangleAttributes each;
     ``placements`` lists the instances that have triangles; ``matrices`` (n, 4, 4) are theirs, and ``boxes`` (n, 2, 3)
-    what they lie in, low and high in metres, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
+    what they lie in, low and high in meters, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
     """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
@@ -139,13 +139,13 @@ class Geometry:
         self.bounds_low = self.bounds_high = np.zeros(3)
 
     @property
-    def centre(self) -> np.ndarray:
-        """Centre of the bounding sphere, (3,) metres."""
+    def center(self) -> np.ndarray:
+        """Center of the bounding sphere, (3,) meters."""
         return 0.5 * (self.bounds_low + self.bounds_high)
 
     @property
     def radius(self) -> float:
-        """Radius of the bounding sphere of the bounds, metres; never zero."""
+        """Radius of the bounding sphere of the bounds, meters; never zero."""
         return max(0.5 * float(np.linalg.norm(self.bounds_high - self.bounds_low)), 1e-9)
 
     @property
@@ -199,7 +199,7 @@ class Geometry:
         self._gather.run(
             self.triangle_count,
             buffers,
-            {"fallback_point": self.centre, "triangle_count": self.triangle_count, "instance_count": len(instances)},
+            {"fallback_point": self.center, "triangle_count": self.triangle_count, "instance_count": len(instances)},
         )
 
     def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:

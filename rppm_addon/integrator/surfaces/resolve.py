@@ -37,7 +37,7 @@ Record(
     attribute_count="uint",
     orthographic="uint",
     pixel_size="float",
-    looks_back="uint",
+    has_adjoint_queries="uint",
 )
 
 
@@ -79,7 +79,7 @@ class Resolve:
         """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
         What the camera tells nodes follows by look_from.
 
-        A program that the driver refuses is replaced by that of a grey surface, with a warning in scene.warnings.
+        A program that the driver refuses is replaced by that of a gray surface, with a warning in scene.warnings.
         Raises DeviceError when the device cannot hold the attributes.
         """
         self._programs = [self._program(text, scene, materials) for text in materials.programs]
@@ -112,7 +112,7 @@ class Resolve:
         except CompileError as error:
             for name in materials.users[text]:
                 reason = first_line(error)
-                scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is grey')
+                scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is gray')
             return self._library.compute(_STAGE, inserts={"materials/generated.glsl": NEUTRAL_TEXT})
 
     def run(
@@ -125,13 +125,13 @@ class Resolve:
         segment: int,
         camera_paths: moderngl.Buffer | None = None,
         photon_paths: moderngl.Buffer | None = None,
-        looks_back: bool = False,
+        has_adjoint_queries: bool = False,
     ) -> None:
         """Fill the closures of living paths; inactive rays and misses give closures without a triangle.
 
         The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
-        are of no kind. looks_back: the same hits are seen once more, from where photons go; what chance decides is
-        decided anew.
+        are of no kind. has_adjoint_queries: the same hits are seen once more, from where photons go; what chance
+        decides is decided anew.
         """
         buffers = {
             **self._buffers,
@@ -144,7 +144,7 @@ class Resolve:
             **self._parameters,
             "iteration": iteration,
             "segment": segment,
-            "looks_back": looks_back,
+            "has_adjoint_queries": has_adjoint_queries,
             "path_kind": _PathKind.CAMERA if camera_paths else _PathKind.PHOTON if photon_paths else _PathKind.NONE,
         }
 

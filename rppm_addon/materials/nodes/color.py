@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colours: mixed, adjusted, taken apart and put together."""
+"""Colors: mixed, adjusted, taken apart and put together."""
 
 from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
@@ -10,20 +10,20 @@ BLEND_TYPES = (
 )  # fmt: skip
 MODES = ("RGB", "HSV", "HSL")
 Constants("ColorModes", MODE=MODES)
-GREY = (0.5, 0.5, 0.5)
-LIGHT_GREY = (0.8, 0.8, 0.8)
+GRAY = (0.5, 0.5, 0.5)
+LIGHT_GRAY = (0.8, 0.8, 0.8)
 
 KINDS = {
     "mix_color": NodeKind(
         "mix_color.glsl",
-        {"factor_float": (FLOAT, 0.5), "a_color": (COLOR, GREY), "b_color": (COLOR, GREY)},
+        {"factor_float": (FLOAT, 0.5), "a_color": (COLOR, GRAY), "b_color": (COLOR, GRAY)},
         {"result_color": COLOR},
         {"blend_type": BLEND_TYPES, "clamp_factor": BOOLEAN, "clamp_result": BOOLEAN},
         function_option="blend_type",
     ),
     "mix_rgb": NodeKind(
         "mix_color.glsl",
-        {"fac": (FLOAT, 0.5), "color1": (COLOR, GREY), "color2": (COLOR, GREY)},
+        {"fac": (FLOAT, 0.5), "color1": (COLOR, GRAY), "color2": (COLOR, GRAY)},
         {"color": COLOR},
         {"blend_type": BLEND_TYPES, "use_clamp": BOOLEAN},
         function_option="blend_type",
@@ -42,14 +42,14 @@ KINDS = {
             "saturation": (FLOAT, 1.0),
             "value": (FLOAT, 1.0),
             "fac": (FLOAT, 1.0),
-            "color": (COLOR, LIGHT_GREY),
+            "color": (COLOR, LIGHT_GRAY),
         },
         {"color": COLOR},
     ),
-    "rgb_to_bw": NodeKind("color.glsl", {"color": (COLOR, GREY)}, {"val": FLOAT}),
+    "rgb_to_bw": NodeKind("color.glsl", {"color": (COLOR, GRAY)}, {"val": FLOAT}),
     "separate_color": NodeKind(
         "convert.glsl",
-        {"color": (COLOR, LIGHT_GREY)},
+        {"color": (COLOR, LIGHT_GRAY)},
         {"red": FLOAT, "green": FLOAT, "blue": FLOAT},
         {"mode": MODES},
     ),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colour ramps and curves. Their tables are made by rppm_addon/blender/export/nodes/tables.py."""
+"""Color ramps and curves. Their tables are made by rppm_addon/blender/export/nodes/tables.py."""
 
 from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes.
 
-Stand-ins: GGX for the distribution of Ashikhmin and Shirley; diffuse for subsurface scattering and
+Approximations: GGX for the distribution of Ashikhmin and Shirley; diffuse for subsurface scattering and
 for toon shading, whose glossy part is GGX; for hair, GGX stretched across the fiber and translucency; for the physical
 conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
 """
@@ -17,7 +17,7 @@ _NORMAL = {"normal": (VECTOR, "normal")}
 _TANGENT = {"tangent": (VECTOR, "tangent")}
 _ANISOTROPY = {"anisotropy": (FLOAT, 0.0), "rotation": (FLOAT, 0.0)} | _NORMAL | _TANGENT
 _FILM = {"thin_film_thickness": (FLOAT, 0.0), "thin_film_ior": (FLOAT, 1.33)}
-_GREY, _WHITE = {"color": (COLOR, 0.8)}, {"color": (COLOR, 1.0)}
+_GRAY, _WHITE = {"color": (COLOR, 0.8)}, {"color": (COLOR, 1.0)}
 _SUBSURFACE_METHODS = ("BURLEY", "RANDOM_WALK", "RANDOM_WALK_SKIN")
 
 KINDS = {
@@ -25,16 +25,16 @@ KINDS = {
     "mix_shader": _shader("shader", {"fac": (FLOAT, 0.5)}),
     "add_shader": _shader("shader"),
     # Of a volume, which has no surface, the "emission" is its absorption coefficient in 1/m.
-    "volume_absorption": _shader("volume", _GREY | {"density": (FLOAT, 1.0)}),
-    "bsdf_diffuse": _shader("bsdf", _GREY | {"roughness": (FLOAT, 0.0)} | _NORMAL),
-    "bsdf_translucent": _shader("bsdf", _GREY | _NORMAL),
+    "volume_absorption": _shader("volume", _GRAY | {"density": (FLOAT, 1.0)}),
+    "bsdf_diffuse": _shader("bsdf", _GRAY | {"roughness": (FLOAT, 0.0)} | _NORMAL),
+    "bsdf_translucent": _shader("bsdf", _GRAY | _NORMAL),
     "bsdf_transparent": _shader("bsdf", _WHITE),
     "emission": _shader("emission", _WHITE | {"strength": (FLOAT, 1.0)}),
-    "background": _shader("background", _GREY | {"strength": (FLOAT, 1.0)}),
+    "background": _shader("background", _GRAY | {"strength": (FLOAT, 1.0)}),
     "holdout": _shader("holdout"),
     "bsdf_glossy": _shader(
         "bsdf",
-        _GREY | {"roughness": (FLOAT, 0.5)} | _ANISOTROPY,
+        _GRAY | {"roughness": (FLOAT, 0.5)} | _ANISOTROPY,
         {"distribution": ("BECKMANN", "GGX", "ASHIKHMIN_SHIRLEY", "MULTI_GGX")},
     ),
     "bsdf_glass": _shader(
@@ -48,11 +48,11 @@ KINDS = {
         {"distribution": ("BECKMANN", "GGX")},
     ),
     "bsdf_sheen": _shader(
-        "bsdf", _GREY | {"roughness": (FLOAT, 0.5)} | _NORMAL, {"distribution": ("ASHIKHMIN", "MICROFIBER")}
+        "bsdf", _GRAY | {"roughness": (FLOAT, 0.5)} | _NORMAL, {"distribution": ("ASHIKHMIN", "MICROFIBER")}
     ),
     "subsurface_scattering": _shader(
         "bssrdf",
-        _GREY
+        _GRAY
         | {
             "scale": (FLOAT, 0.05),
             "radius": (VECTOR, (1.0, 0.2, 0.1)),
@@ -76,11 +76,11 @@ KINDS = {
         {"distribution": ("BECKMANN", "GGX", "MULTI_GGX"), "fresnel_type": ("PHYSICAL_CONDUCTOR", "F82")},
     ),
     "bsdf_toon": _shader(
-        "bsdf", _GREY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL, {"component": ("DIFFUSE", "GLOSSY")}
+        "bsdf", _GRAY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL, {"component": ("DIFFUSE", "GLOSSY")}
     ),
     "bsdf_hair": _shader(
         "bsdf",
-        _GREY | {"offset": (FLOAT, 0.0), "roughnessu": (FLOAT, 0.1), "roughnessv": (FLOAT, 1.0)} | _TANGENT,
+        _GRAY | {"offset": (FLOAT, 0.0), "roughnessu": (FLOAT, 0.1), "roughnessv": (FLOAT, 1.0)} | _TANGENT,
         {"component": ("Reflection", "Transmission")},
     ),
     "bsdf_principled": _shader(

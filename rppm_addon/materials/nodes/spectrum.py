@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colours by temperature and by wavelength."""
+"""Colors by temperature and by wavelength."""
 
 from ..node_kinds import COLOR, FLOAT, NodeKind
 

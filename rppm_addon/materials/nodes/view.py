@@ -36,7 +36,7 @@ KINDS = {
         },
         surface=True,
     ),
-    # `ray_length` is the distance from the lamp.
+    # `ray_length` is the distance from the light.
     "light_falloff": NodeKind(
         "light_falloff.glsl",
         {"strength": (FLOAT, 100.0), "smooth": (FLOAT, 0.0), "ray_length": (FLOAT, 1.0)},

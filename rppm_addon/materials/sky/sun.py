@@ -10,7 +10,7 @@ from . import multiple_scattering as sky_multiple_scattering
 from . import single_scattering as sky_single_scattering
 
 LIMB_DARKENING = 0.6
-"""How much darker than its middle the disc's edge is."""
+"""How much darker than its middle the disk's edge is."""
 SMALLEST = 0.0005
 """Cycles' smallest full angle, radians."""
 

@@ -100,7 +100,7 @@ class ChildProcess:
     # In the reading thread.
 
     def read(self) -> dict | None:
-        """The next message; None when the process has ended its pipe. Raises ProtocolError for rubbish."""
+        """The next message; None when the process has ended its pipe. Raises ProtocolError for malformed data."""
         return read_message(self._process.stdout)
 
     def taken(self, session: int, number: int) -> None:

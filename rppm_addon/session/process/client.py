@@ -38,7 +38,7 @@ class ProcessState(enum.Enum):
 
 
 @dataclass(frozen=True)
-class Patience:
+class Timeouts:
     """How long to wait for the process, seconds."""
 
     start: float = 60.0
@@ -59,7 +59,7 @@ class RendererProcess:
     """
 
     def __init__(
-        self, python: Sequence[str], folders: Sequence[str], log_path: Path, patience: Patience | None = None
+        self, python: Sequence[str], folders: Sequence[str], log_path: Path, timeouts: Timeouts | None = None
     ) -> None:
         """No process is started yet.
 
@@ -67,7 +67,7 @@ class RendererProcess:
             python: the program that runs Python, and its options.
             folders: where that Python finds NumPy and moderngl, if not by itself.
             log_path: the file that takes what the process logs; earlier contents are dropped.
-            patience: how long to wait for what.
+            timeouts: how long to wait for what.
         """
         self.state = ProcessState.STOPPED
         self.error = ""
@@ -78,7 +78,7 @@ class RendererProcess:
         self.changed = threading.Condition()
         self._python = list(python)
         self._folders = list(folders)
-        self._patience = patience or Patience()
+        self._timeouts = timeouts or Timeouts()
         self.sessions: dict[int, Session] = {}
         self._numbers = 0
         self.outbox: collections.deque[tuple[str, dict]] = collections.deque()
@@ -120,7 +120,7 @@ class RendererProcess:
             self._leaving = True
             self.changed.notify_all()
         if keeper is not None:
-            keeper.join(self._patience.leave + 5.0)
+            keeper.join(self._timeouts.leave + 5.0)
         with self.changed:
             self._leaving = False
             self.outbox.clear()
@@ -129,7 +129,7 @@ class RendererProcess:
     # For sessions and the connection, with ``changed`` held.
 
     def post(self, kind: str, **content: object) -> None:
-        """Have a message sent to the process, if there is one; a new one is told all that it must know."""
+        """Have a message sent to the process, if there is one; a new one gets all that it must know."""
         if self.state is ProcessState.RUNNING:
             self.outbox.append((kind, content))
             self.changed.notify_all()
@@ -217,7 +217,7 @@ class RendererProcess:
                     self.outbox.append(("leave", {}))
                     self.changed.notify_all()
             if reason is None:
-                child.wait(self._patience.leave)
+                child.wait(self._timeouts.leave)
             elif not reason:
                 child.wait(1.0)
                 reason = f"The renderer process {child.ending}"
@@ -231,23 +231,23 @@ class RendererProcess:
 
         Returns what it is to be blamed for, "" if it just ended, and None if it is to leave.
         """
-        patience, started = self._patience, time.monotonic()
+        timeouts, started = self._timeouts, time.monotonic()
         while not self._leaving and not self._restarting:
             now = time.monotonic()
             if connection.ended:
                 return connection.reason
             if not connection.ready:
-                wait = started + patience.start - now
+                wait = started + timeouts.start - now
                 if wait <= 0.0:
-                    return f"The renderer process did not start within {patience.start:g} s"
+                    return f"The renderer process did not start within {timeouts.start:g} s"
             elif connection.pinged_at is not None:
-                wait = connection.pinged_at + patience.answer - now
+                wait = connection.pinged_at + timeouts.answer - now
                 if wait <= 0.0:
-                    return f"The renderer process did not answer for {patience.answer:g} s"
+                    return f"The renderer process did not answer for {timeouts.answer:g} s"
             elif not self.sessions:
                 wait = None
             else:
-                wait = connection.answered_at + patience.ping - now
+                wait = connection.answered_at + timeouts.ping - now
                 if wait <= 0.0:
                     self._limit_log()
                     connection.pinged_at = now

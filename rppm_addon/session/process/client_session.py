@@ -97,7 +97,7 @@ class Session:
     # In the reading thread.
 
     def receive(self, kind: str, content: dict) -> None:
-        """A message of the process. Raises ProtocolError, or what unpacking it raises, for rubbish."""
+        """A message of the process. Raises ProtocolError, or what unpacking it raises, for malformed data."""
         raise NotImplementedError
 
 
@@ -107,7 +107,7 @@ class ViewportSession(Session):
     def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         super().__init__(process, number, kind)
         self.status = SessionStatus()
-        """The newest that the process has told."""
+        """The newest that the process has reported."""
         self._newest: SharedFrame | None = None
         self._paused = False
         self._reader: FrameReader | None = None

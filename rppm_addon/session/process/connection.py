@@ -116,7 +116,7 @@ class Connection:
                     time.sleep(max(0.0, since + _MESSAGES_SECONDS - time.monotonic()))
                     count, since = 0, time.monotonic()
         except (ProtocolError, LookupError, TypeError, ValueError, AttributeError) as error:
-            logger.debug("rubbish", exc_info=True)
+            logger.debug("malformed data", exc_info=True)
             reason = f"The renderer process sent what cannot be understood ({type(error).__name__}: {error})"
         except Exception as error:
             logger.exception("the renderer process is read no more")

@@ -24,7 +24,7 @@ class SessionStatus:
     photons: int = 0
     elapsed_seconds: float = 0.0
     """Since the scene was taken up."""
-    radius_metres: float = 0.0
+    radius_meters: float = 0.0
     """r_max of the iteration."""
     memory_bytes: int = 0
     density_estimation: str = ""

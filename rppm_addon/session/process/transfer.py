@@ -101,7 +101,7 @@ class SceneSender:
 
     @collector_paused()
     def send(self, session: int, scene: Scene) -> tuple[list[Part], Part]:
-        """What to tell of members that are new, and then of a session's next scene.
+        """What to send of members that are new, and then of a session's next scene.
 
         Raises TypeError for a scene with something in it that no document can hold; the receiver then has no part.
         """
@@ -157,7 +157,7 @@ class _NewMembers:
         return self._array_parts + [part for part in self._parts if part.document]
 
     def handles(self, field: str, members: Sequence[object]) -> list[int]:
-        """The handles of a scene's members, of which new ones are to be told."""
+        """The handles of a scene's members, of which new ones are to be sent."""
         known = self._sent.members
         ids = list(map(id, members))
         self.used.update(ids)
@@ -209,7 +209,7 @@ class _NewMembers:
         return str(sent.arrays[key][0])
 
     def withdraw(self) -> None:
-        """Nothing is told after all."""
+        """Nothing is sent after all."""
         for key in self._added:
             del self._sent.members[key]
         for key in self._asked:
@@ -225,7 +225,7 @@ class SceneReceiver:
 
     @collector_paused()
     def learn(self, document: dict, arrays: Sequence[np.ndarray]) -> None:
-        """Take a part that tells of new members. Raises KeyError, TypeError or ValueError for what is none."""
+        """Take a part that describes new members. Raises KeyError, TypeError or ValueError for what is none."""
         kinds = _SINGLE | _LISTS | {_ARRAYS: np.ndarray}
         found = _Found(self._members, arrays)
         for name, entries in document.items():
@@ -236,7 +236,7 @@ class SceneReceiver:
                     self._members[handle] = decode(entry, kinds[name], found)
 
     def receive(self, document: dict, arrays: Sequence[np.ndarray]) -> Scene:
-        """The scene of the part that tells of it, once its members are known. Raises as learn does."""
+        """The scene of the part that describes it, once its members are known. Raises as learn does."""
         known, handles = self._members, document["members"]
         members: dict[str, Any] = {name: known[handles[name]] for name in _SINGLE}
         members |= {name: [known[handle] for handle in handles[name]] for name in _LISTS}

@@ -133,7 +133,7 @@ class Viewing:
                     iterations=settings.iterations,
                     photons=mapper.photons_emitted(mapper.iteration),
                     elapsed_seconds=now - started,
-                    radius_metres=mapper.splat_radii[0],
+                    radius_meters=mapper.splat_radii[0],
                     memory_bytes=sum(mapper.memory_bytes.values()),
                     density_estimation=mapper.density_estimation.name,
                     iterations_per_second=mapper.iteration / (now - built),

@@ -101,7 +101,7 @@ class Worker:
             os._exit(code)
 
     def _decode(self, message: dict) -> None:
-        """Put the scene in place of the documents and arrays that tell of it."""
+        """Put the scene in place of the documents and arrays that describe it."""
         kind = message["kind"]
         if kind == "members":
             self._whole.clear()

@@ -73,7 +73,7 @@ bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) {
     return lobe.kind != LOBE_NONE && lobe.alpha <= specular_alpha;
 }
 
-// Smoother lobes cannot be evaluated towards a light, only followed.
+// Smoother lobes cannot be evaluated toward a light, only followed.
 const float SMOOTHEST_LIT = 1e-4;
 
 // BSDF of the diffuse and translucent parts over that of smooth ones without a normal map; normal is unpacked.

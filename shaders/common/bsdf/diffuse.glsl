@@ -21,7 +21,7 @@ float fujii_integral(float cosine) {
     return sine * (acos(clamp(cosine, 0.0, 1.0)) - 2.0 / 3.0 - sine * cosine) + grazing;
 }
 
-// BSDF over that of a smooth surface of the same colour; v is on the normal's side.
+// BSDF over that of a smooth surface of the same color; v is on the normal's side.
 vec3 rough_diffuse_factor(uint packed_roughness, vec3 n, vec3 v, vec3 l) {
     bool behind = dot(n, l) < 0.0;
     if (packed_roughness == 0u || (behind && (packed_roughness & ROUGH_BEHIND) == 0u)) return vec3(1.0);
@@ -33,7 +33,7 @@ vec3 rough_diffuse_factor(uint packed_roughness, vec3 n, vec3 v, vec3 l) {
     if (t > 0.0) t /= max(max(nl, nv), 1e-6);
     float average = a + (2.0 * PI - 5.6) / 3.0 * b;
     float missing_v = 1.0 - a - b * fujii_integral(nv), missing_l = 1.0 - a - b * fujii_integral(nl);
-    // Squared as in Cycles, times the colour of the smooth surface.
+    // Squared as in Cycles, times the color of the smooth surface.
     vec3 multiple = parts.rgb * parts.rgb * average / (1.0 - parts.rgb * (1.0 - average))
                     * (missing_v * missing_l / (1.0 - average));
     return a + PI * b * t + multiple;

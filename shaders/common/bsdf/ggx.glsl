@@ -36,7 +36,7 @@ uint pack_anisotropy(vec3 n, vec3 tangent, float aspect) {
 vec3 to_frame(MicrofacetFrame frame, vec3 v) { return vec3(dot(v, frame.t), dot(v, frame.b), dot(v, frame.n)); }
 vec3 from_frame(MicrofacetFrame frame, vec3 v) { return v.x * frame.t + v.y * frame.b + v.z * frame.n; }
 
-float ggx_density(vec3 h, vec2 alpha) {
+float ggx_distribution(vec3 h, vec2 alpha) {
     vec3 stretched = vec3(h.xy / alpha, h.z);
     float length2 = dot(stretched, stretched);
     return 1.0 / (PI * alpha.x * alpha.y * length2 * length2);
@@ -62,8 +62,8 @@ float beckmann_lambda(vec3 w, vec2 alpha) {
     return x < 0.39 ? 0.0 : (1.0 + a * (0.396 * a - 1.259)) / (a * (3.535 + 2.181 * a));
 }
 
-float facet_density(MicrofacetFrame frame, vec3 h) {
-    return ggx_density(h, frame.alpha) * (frame.beckmann ? beckmann_ratio(h, frame.alpha) : 1.0);
+float facet_distribution(MicrofacetFrame frame, vec3 h) {
+    return ggx_distribution(h, frame.alpha) * (frame.beckmann ? beckmann_ratio(h, frame.alpha) : 1.0);
 }
 
 float facet_lambda(MicrofacetFrame frame, vec3 w) {

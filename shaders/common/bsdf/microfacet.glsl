@@ -33,7 +33,7 @@ float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
 
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
 
-// Share of what glass-like lobes reflect, grey: by it they choose between reflection and refraction.
+// Share of what glass-like lobes reflect, gray: by it they choose between reflection and refraction.
 float reflected_share(MicrofacetLobe lobe, float cosine) {
     if (lobe.kind == LOBE_GLASS) return fresnel_dielectric(cosine, lobe.ior);
     if (lobe.kind == LOBE_COATED_GLASS)
@@ -60,7 +60,7 @@ vec3 lobe_transmittance(MicrofacetLobe lobe, float cosine) {
     return vec3(0.0);
 }
 
-// Estimate of the lobe's albedo towards a direction, for choosing among lobes.
+// Estimate of the lobe's albedo toward a direction, for choosing among lobes.
 vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
     vec3 albedo = lobe.weight * lobe_reflectance(lobe, cosine);
     return lobe_transmits(lobe.kind) ? albedo + lobe_transmittance(lobe, cosine) : albedo;
@@ -152,7 +152,7 @@ vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
     if (lobe_is_sheen(lobe.kind)) {
         if (cosine_o <= 0.0 || cosine_i <= 0.0) return vec3(0.0);
-        float scattered = lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, n, wo, wi)
+        float scattered = lobe.kind == LOBE_SHEEN ? sheen_pdf(lobe.f0.xy, n, wo, wi)
                                                   : velvet_scattered(lobe.f0.x, n, wo, wi);
         return lobe.weight * (scattered / cosine_i);
     }
@@ -160,26 +160,26 @@ vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float oh, ih;
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return vec3(0.0);
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
-    float density = facet_density(frame, to_frame(frame, h));
+    float distribution = facet_distribution(frame, to_frame(frame, h));
     float masking = 1.0 / (1.0 + facet_lambda(frame, to_frame(frame, wo)) + facet_lambda(frame, to_frame(frame, wi)));
     if (cosine_i > 0.0)
-        return lobe.weight * lobe_reflectance(lobe, oh) * (density * masking / (4.0 * cosine_o * cosine_i));
+        return lobe.weight * lobe_reflectance(lobe, oh) * (distribution * masking / (4.0 * cosine_o * cosine_i));
     float spread = lobe.ior * ih + oh;
     return lobe_transmittance(lobe, oh)
-        * (density * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * max(spread * spread, 1e-12)));
+        * (distribution * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * max(spread * spread, 1e-12)));
 }
 
 // Density with which sample_lobe gives a direction, 1/sr.
-float lobe_density(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+float lobe_pdf(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     face_sheet(lobe, n, wi);
     if (lobe_is_sheen(lobe.kind))
-        return lobe.kind == LOBE_SHEEN ? sheen_density(lobe.f0.xy, n, wo, wi) : max(dot(n, wi), 0.0) / PI;
+        return lobe.kind == LOBE_SHEEN ? sheen_pdf(lobe.f0.xy, n, wo, wi) : max(dot(n, wi), 0.0) / PI;
     vec3 h;
     float oh, ih;
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return 0.0;
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
     float cosine_o = dot(wo, n);
-    float visible = ggx_density(to_frame(frame, h), frame.alpha) * oh
+    float visible = ggx_distribution(to_frame(frame, h), frame.alpha) * oh
                     / (cosine_o * (1.0 + ggx_lambda(to_frame(frame, wo), frame.alpha)));
     float reflected = reflected_share(lobe, oh);
     if (dot(wi, n) > 0.0) return visible * reflected / (4.0 * oh);

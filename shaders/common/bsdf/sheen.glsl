@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sheen of fibres: a linearly transformed cosine (Zeltner, Burley and Chiang 2022), and Ashikhmin's velvet
+// Sheen of fibers: a linearly transformed cosine (Zeltner, Burley and Chiang 2022), and Ashikhmin's velvet
 // (Ashikhmin and Premoze 2007). Both in a frame with z along the normal and wo in the plane of x and z.
 
 #include "common/sampling.glsl"
@@ -18,7 +18,7 @@ SheenFrame sheen_frame(vec3 n, vec3 wo) {
 }
 
 // coefficients a and b: the direction (a x + b z, a y, z) is distributed by the cosine. 1/sr; z is wi's cosine.
-float sheen_density(vec2 coefficients, vec3 n, vec3 wo, vec3 wi) {
+float sheen_pdf(vec2 coefficients, vec3 n, vec3 wo, vec3 wi) {
     float a = coefficients.x, b = coefficients.y, z = max(dot(wi, n), 0.0), cosine_o = dot(wo, n);
     float x = (dot(wo, wi) - cosine_o * z) * inversesqrt(max(1.0 - cosine_o * cosine_o, 1e-12));
     float ratio = a / max(a * a * (1.0 - z * z) + 2.0 * a * b * x * z + (b * b + 1.0) * z * z, 1e-20);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colour ramps and curves, tabulated as Cycles does; `table` is where theirs starts in material_data.
+// Color ramps and curves, tabulated as Cycles does; `table` is where theirs starts in material_data.
 #include "materials/data.glsl"
 
 #include <CurveTables>

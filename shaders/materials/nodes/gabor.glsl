@@ -11,7 +11,7 @@ float gabor_hash(int dimensions, vec3 cell, float seed) {
     return dimensions == 2 ? hash_to_unit(vec3(cell.xy, seed)) : hash_to_unit(vec4(cell, seed));
 }
 
-vec3 gabor_centre(int dimensions, vec3 cell, float seed) {
+vec3 gabor_center(int dimensions, vec3 cell, float seed) {
     vec3 key = vec3(cell.xy, seed);
     return dimensions == 2 ? vec3(hash_to_unit(key), hash_to_unit(key.zxy), 0.0) : hash_to_color(vec4(cell, seed));
 }
@@ -55,7 +55,7 @@ void node_tex_gabor(
         vec3 cell = corner + offset;
         for (int impulse = 0; impulse < GABOR_IMPULSES; ++impulse) {
             float seed = float(3 * impulse);
-            vec3 way = p - corner - offset - gabor_centre(dimensions, cell, seed + 1.0);
+            vec3 way = p - corner - offset - gabor_center(dimensions, cell, seed + 1.0);
             float squared = dot(way, way);
             vec3 direction = gabor_direction(dimensions, base, angles, turn, cell, seed);
             float angle = 2.0 * PI * dot(way, frequency * direction);

@@ -10,7 +10,7 @@ void differential_frame(vec3 n, out vec3 x, out vec3 y) {
     y = cross(n, x);
 }
 
-// Metres across what a pixel sees of a place that faces it.
+// Meters across what a pixel sees of a place that faces it.
 float pixel_width(Surface surface) {
     return parameters.pixel_size * (parameters.orthographic != 0u ? 1.0 : surface.ray_length);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hue, saturation, value and lightness of RGB colours (A. R. Smith, SIGGRAPH 1978), hue in [0, 1).
+// Hue, saturation, value and lightness of RGB colors (A. R. Smith, SIGGRAPH 1978), hue in [0, 1).
 
 // Sixths of the circle from red. `chroma` = largest - smallest is not 0.
 float hue_of(vec3 rgb, float largest_part, float chroma) {

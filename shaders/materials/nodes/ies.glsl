@@ -13,7 +13,7 @@ uint ies_interval(uint first, uint count, float angle) {
     return low;
 }
 
-// Weights of four neighbours for a place between the middle two (Catmull and Rom).
+// Weights of four neighbors for a place between the middle two (Catmull and Rom).
 vec4 ies_weights(float x) {
     return 0.5 * vec4(((2.0 - x) * x - 1.0) * x, (3.0 * x - 5.0) * x * x + 2.0, ((4.0 - 3.0 * x) * x + 1.0) * x,
                       (x - 1.0) * x * x);

@@ -35,7 +35,7 @@ void node_tex_noise(
     fac = fractal_noise(
         dimensions, noise_type, normalize_sum, p, detail, roughness, lacunarity, offset, gain
     );
-    // A loop of its own, that the compiler drops where the colour is not used.
+    // A loop of its own, that the compiler drops where the color is not used.
     color = vec3(fac, 0.0, 0.0);
     for (int channel = 1; channel < 3; ++channel) {
         vec4 far = p + noise_offset(dimensions, float(dimensions + channel - 1));

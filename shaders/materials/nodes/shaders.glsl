@@ -71,7 +71,7 @@ void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distributio
     else add_sheen(builder, weighted, unit(roughness), normal);
 }
 
-// A diffuse surface of the same colour stands in: as if light left where it came in.
+// A diffuse surface of the same color stands in: as if light left where it came in.
 void node_subsurface_scattering(inout ClosureBuilder builder, float weight, vec3 color, float scale, vec3 radius,
                                 float ior, float roughness, float anisotropy, vec3 normal) {
     add_diffuse(builder, vec3(weight), max(color, 0.0), 0.0, normal);
@@ -111,7 +111,7 @@ void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, v
     else add_mirror(builder, isotropic_microfacets(builder, normal, unit(size)), weight, max(color, 0.0), false);
 }
 
-// A glossy surface stretched across the fibre, or a translucent one, stands in.
+// A glossy surface stretched across the fiber, or a translucent one, stands in.
 void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, vec3 color, float offset,
                     float roughnessu,
                     float roughnessv, vec3 tangent) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of glowing bodies and of single wavelengths, linear Rec. 709 without negative parts.
+// Colors of glowing bodies and of single wavelengths, linear Rec. 709 without negative parts.
 
 // Planck's spectrum seen by the CIE 1931 observer, of luminance 1: quotients of polynomials in 1000 K / T,
 // fitted to 4.4e-4 over 800 K to 12000 K. Colder and hotter bodies look like those at the ends, as in Cycles.
@@ -15,16 +15,16 @@ void node_blackbody(float temperature, out vec3 color) {
     color = max(over / under, 0.0);
 }
 
-// A bell whose sides fall off differently: of this height at `centre`, `low` and `high` are 1 / standard deviation.
-float bell(float nanometres, float height, float centre, float low, float high) {
-    float x = (nanometres - centre) * (nanometres < centre ? low : high);
+// A bell whose sides fall off differently: of this height at `center`, `low` and `high` are 1 / standard deviation.
+float bell(float nanometers, float height, float center, float low, float high) {
+    float x = (nanometers - center) * (nanometers < center ? low : high);
     return height * exp(-0.5 * x * x);
 }
 
 // The CIE 1931 observer's x, y, z for a wavelength, as sums of bells (a form of Wyman, Sloan and Shirley, JCGT
 // 2013), fitted to 3e-3, 1.5e-3 and 5e-3.
-vec3 observer(float nanometres) {
-    float n = nanometres;
+vec3 observer(float nanometers) {
+    float n = nanometers;
     return vec3(
         bell(n, 0.148759, 432.95962, 0.106154, 0.074388) + bell(n, 1.01272, 595.269857, 0.032311, 0.033209)
             + bell(n, -0.04681, 514.138722, 0.078544, 0.092355) + bell(n, 0.129551, 620.996136, 0.058445, 0.030251)
@@ -36,7 +36,7 @@ vec3 observer(float nanometres) {
 }
 
 // Cycles tabulates the observer every 5 nm from 380 to 780, joins the points by straight lines, of which the first
-// reaches down to 375, and scales so that no colour exceeds 1.
+// reaches down to 375, and scales so that no color exceeds 1.
 void node_wavelength(float wavelength, out vec3 color) {
     color = vec3(0.0);
     if (wavelength <= 375.0 || wavelength >= 780.0) return;

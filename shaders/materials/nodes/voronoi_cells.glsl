@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points and colours of the cells of Voronoi textures (Worley, A Cellular Texture Basis Function, 1996).
+// Points and colors of the cells of Voronoi textures (Worley, A Cellular Texture Basis Function, 1996).
 // Coordinates are of one to four dimensions, a literal; the components past them are zero.
 #include "materials/nodes/hash.glsl"
 
@@ -59,7 +59,7 @@ float voronoi_root(int dimensions, int metric, float exponent, float rank) {
     return rank;
 }
 
-// Cells of a neighbourhood 3 or 5 wide.
+// Cells of a neighborhood 3 or 5 wide.
 int voronoi_cells(int dimensions, int width) {
     int square = width * width;
     return dimensions == 1 ? width : dimensions == 2 ? square : dimensions == 3 ? square * width : square * square;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one octave of a Voronoi texture tells of a place: the nearest points and the borders around it.
+// What one octave of a Voronoi texture gives at a place: the nearest points and the borders around it.
 #include "materials/nodes/voronoi_cells.glsl"
 
 #include <VoronoiFeatures>
 
-// The distance is that to the edge or the radius where that is the feature, without colour and position then.
+// The distance is that to the edge or the radius where that is the feature, without color and position then.
 struct VoronoiOctave { float distance; vec3 color; vec4 position; };
 
 // Blends a cell in with a polynomial smooth minimum; the first one replaces what is there.
@@ -24,24 +24,24 @@ void voronoi_blend(
 // From a place in a cell to the nearest plane halfway between the nearest point and another one; or half the way
 // from the nearest point to the one nearest to that.
 float voronoi_border(
-    int dimensions, bool to_edge, float randomness, vec4 corner, vec4 place, ivec4 chosen, vec4 centre
+    int dimensions, bool to_edge, float randomness, vec4 corner, vec4 place, ivec4 chosen, vec4 center
 ) {
     ivec4 cell = ivec4(corner);
     if (to_edge && dimensions == 1) {
         // Cycles looks at the two borders of the cell's own point, whose key may be -0.0.
         chosen = ivec4(0);
-        centre.x = hash_to_unit(corner.x) * randomness;
+        center.x = hash_to_unit(corner.x) * randomness;
     }
     float border = VORONOI_FAR;
     for (int index = 0; index < voronoi_cells(dimensions, 3); ++index) {
         ivec4 offset = voronoi_offset(dimensions, 3, index);
         if (!to_edge) offset += chosen;
         vec4 point = vec4(offset) + voronoi_point(dimensions, cell + offset) * randomness;
-        vec4 across = point - centre;
+        vec4 across = point - center;
         float squared = dot(across, across);
         bool other = to_edge && dimensions > 1 ? squared > 0.0001 : offset != chosen;
         float reached = 0.5 * sqrt(squared);
-        if (to_edge) reached = dot(0.5 * (point + centre) - place, across * inversesqrt(squared));
+        if (to_edge) reached = dot(0.5 * (point + center) - place, across * inversesqrt(squared));
         if (dimensions == 1) reached = abs(reached);
         if (other) border = min(border, reached);
     }
@@ -53,8 +53,8 @@ float voronoi_border(
 VoronoiOctave voronoi_octave(
     int dimensions, int metric, int feature, float smoothness, float exponent, float randomness, vec4 coordinates
 ) {
-    bool to_edge = feature == VORONOI_DISTANCE_TO_EDGE, to_neighbour = feature == VORONOI_N_SPHERE_RADIUS;
-    if (to_edge || to_neighbour) metric = VORONOI_EUCLIDEAN;
+    bool to_edge = feature == VORONOI_DISTANCE_TO_EDGE, to_neighbor = feature == VORONOI_N_SPHERE_RADIUS;
+    if (to_edge || to_neighbor) metric = VORONOI_EUCLIDEAN;
     bool smoothed = feature == VORONOI_SMOOTH_F1;
     // As in Cycles; it shows where distances are too large for a float.
     bool by_distance = smoothed || feature == VORONOI_F2;
@@ -94,13 +94,13 @@ VoronoiOctave voronoi_octave(
         octave.position += corner;
     } else {
         ivec4 chosen = voronoi_offset(dimensions, 3, feature == VORONOI_F2 ? next_index : nearest_index);
-        vec4 centre = vec4(chosen) + voronoi_point(dimensions, cell + chosen) * randomness;
-        if (to_edge || to_neighbour) {
-            octave.distance = voronoi_border(dimensions, to_edge, randomness, corner, place, chosen, centre);
+        vec4 center = vec4(chosen) + voronoi_point(dimensions, cell + chosen) * randomness;
+        if (to_edge || to_neighbor) {
+            octave.distance = voronoi_border(dimensions, to_edge, randomness, corner, place, chosen, center);
         } else {
             octave.distance = by_distance ? next : voronoi_root(dimensions, metric, exponent, nearest);
             octave.color = voronoi_color(dimensions, cell + chosen);
-            octave.position = centre + corner;
+            octave.position = center + corner;
         }
     }
     return octave;

@@ -227,7 +227,7 @@ value(
 
 
 def _bumpy_color(net):
-    """Colours of normals that lean up to 0.4 to all sides."""
+    """Colors of normals that lean up to 0.4 to all sides."""
     waves = net.out("TexNoise", "Color", {"Scale": 3.0, "Detail": 0.0})
     return net.out("VectorMath", inputs={0: waves, 1: (0.8, 0.8, 0.3), 2: (0.1, 0.1, 0.7)}, operation="MULTIPLY_ADD")
 

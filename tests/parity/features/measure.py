@@ -126,7 +126,7 @@ def compared(rppm: np.ndarray, cycles: np.ndarray, values: bool, warnings: tuple
 
 
 MOST_WRONG = 0.005
-"""Share of the pixels of values that may differ: those where an edge runs through the centre."""
+"""Share of the pixels of values that may differ: those where an edge runs through the center."""
 
 
 def shortcomings(row: Row, found: Measurement) -> list[str]:

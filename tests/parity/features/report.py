@@ -73,7 +73,7 @@ def triple(found: Measurement) -> np.ndarray:
 
 
 def sheet(results: list, parts: int, columns: int) -> Image.Image:
-    """Labelled cells with the first ``parts`` pictures of each row."""
+    """Labeled cells with the first ``parts`` pictures of each row."""
     width, height = parts * SIDE + 4, SIDE + LABEL
     page = Image.new("RGB", (columns * width, -(-len(results) // columns) * height), "white")
     draw = ImageDraw.Draw(page)

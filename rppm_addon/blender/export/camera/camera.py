@@ -85,7 +85,7 @@ def frame_shape(render: bpy.types.RenderSettings, width: int, height: int) -> tu
 def window(
     camera: bpy.types.Camera, across: float, upward: float, flat: bool = False
 ) -> tuple[float, float, float, float]:
-    """left, right, bottom, top: tangents for a perspective camera, metres for an orthographic one, shares of a
+    """left, right, bottom, top: tangents for a perspective camera, meters for an orthographic one, shares of a
     panorama's frame, which is ``across`` by ``upward`` pixel widths. flat: of a panorama, those of the perspective
     view that Blender draws of it."""
     if camera.type == "PANO" and not flat:

@@ -45,7 +45,7 @@ def export_panorama(camera: bpy.types.Camera, name: str, across: float, upward: 
 
 
 def _sensor(camera: bpy.types.Camera, across: float, upward: float) -> tuple[float, float]:
-    """Width and height of the frame on the sensor, millimetres."""
+    """Width and height of the frame on the sensor, millimeters."""
     horizontal = camera.sensor_fit == "HORIZONTAL" or (camera.sensor_fit == "AUTO" and across > upward)
     size = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
     return (size, size * upward / across) if horizontal else (size * across / upward, size)
@@ -56,7 +56,7 @@ def export_aperture(camera: bpy.types.Camera, matrix: np.ndarray, depsgraph: bpy
     lens = camera.dof
     if not lens.use_dof:
         return None
-    # Millimetres of focal length, or in an orthographic view one metre.
+    # Millimeters of focal length, or in an orthographic view one meter.
     size = 1.0 if camera.type == "ORTHO" else 1e-3 * camera.lens
     return Aperture(
         radius=0.5 * size / max(lens.aperture_fstop, _LEAST_F_STOP),
@@ -68,7 +68,7 @@ def export_aperture(camera: bpy.types.Camera, matrix: np.ndarray, depsgraph: bpy
 
 
 def _focus_distance(lens: bpy.types.CameraDOFSettings, matrix: np.ndarray, depsgraph: bpy.types.Depsgraph) -> float:
-    """Metres, of an object along the view axis."""
+    """Meters, of an object along the view axis."""
     if lens.focus_object is None:
         return lens.focus_distance
     focus = lens.focus_object.evaluated_get(depsgraph)

@@ -59,7 +59,7 @@ def export_view(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> C
 
 
 def frame_edges(projection: np.ndarray, orthographic: bool) -> tuple[float, float, float, float]:
-    """left, right, bottom, top of a projection matrix (4, 4): tangents, or metres of an orthographic one."""
+    """left, right, bottom, top of a projection matrix (4, 4): tangents, or meters of an orthographic one."""
     edges = []
     for axis in (0, 1):
         shift = -projection[axis, 3] if orthographic else projection[axis, 2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colour spaces of image files, as Blender's colour management decodes them."""
+"""Color spaces of image files, as Blender's color management decodes them."""
 
 import tempfile
 from pathlib import Path
@@ -17,7 +17,7 @@ def to_srgb(linear: np.ndarray) -> np.ndarray:
 
 
 def scene_linear(colors: np.ndarray, space: str) -> np.ndarray:
-    """(height, width, 3) float32 colours of a space that Blender knows, as the scene's linear ones.
+    """(height, width, 3) float32 colors of a space that Blender knows, as the scene's linear ones.
 
     Python cannot ask Blender for a conversion, but Blender makes one when it reads a file of floats.
     """

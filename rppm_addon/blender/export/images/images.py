@@ -136,7 +136,7 @@ def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
 
 
 def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
-    """Pixels as they are to be filtered: encoded where Cycles does it, and colours times alpha."""
+    """Pixels as they are to be filtered: encoded where Cycles does it, and colors times alpha."""
     space = image.colorspace_settings.name
     if image.alpha_mode == "NONE":
         pixels[..., 3] = 1.0
@@ -153,7 +153,7 @@ def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
     encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
     pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
     if is_associated(image):
-        # Cycles takes colours in files of bytes for straight, whatever the user says.
+        # Cycles takes colors in files of bytes for straight, whatever the user says.
         products = pixels[..., :3].astype(np.uint16) * pixels[..., 3:]
         if image.alpha_mode == "PREMUL" and image.source != "GENERATED" and image.packed_file is None:
             products = (products + 127) // 255 * pixels[..., 3:]
@@ -162,7 +162,7 @@ def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
 
 
 def is_associated(image: bpy.types.Image | None) -> bool:
-    """Whether an image's colours come multiplied by its alpha, and are divided by it where alpha is used as well."""
+    """Whether an image's colors come multiplied by its alpha, and are divided by it where alpha is used as well."""
     return (
         image is not None and image.alpha_mode in {"STRAIGHT", "PREMUL"} and image.colorspace_settings.name not in _DATA
     )

@@ -6,7 +6,7 @@ import math
 import bpy
 import numpy as np
 
-from ....materials.emitted import Emits, emits, lamp_variation
+from ....materials.emitted import Emits, emits, light_variation
 from ....scene import Light, LightKind, NodeGraph
 from ..context import ExportContext
 from ..nodes.graphs import GraphExporter
@@ -56,7 +56,7 @@ def _fill_sphere(light: Light, data: bpy.types.Light, normalize: bool) -> None:
     if normalize:
         light.strength = light.strength / (4.0 * math.pi)
     elif light.radius > 0.0:
-        # The power is then the flux of a square metre: radiance is power / pi, seen as a disk.
+        # The power is then the flux of a square meter: radiance is power / pi, seen as a disk.
         light.strength = light.strength * light.radius**2
     else:
         light.strength = light.strength / math.pi
@@ -80,7 +80,7 @@ def _fill_area(light: Light, data: bpy.types.Light, normalize: bool) -> None:
 
 
 def _power(data: bpy.types.Light, name: str, report: Report) -> np.ndarray:
-    """Energy times colour, temperature and exposure; (3,) float64."""
+    """Energy times color, temperature and exposure; (3,) float64."""
     power = data.energy * np.array(data.color, np.float64) * 2.0 ** getattr(data, "exposure", 0.0)
     if getattr(data, "use_temperature", False):
         power = power * np.array(data.temperature_color, np.float64)
@@ -100,7 +100,7 @@ def _graph(data: bpy.types.Light, name: str, context: ExportContext) -> NodeGrap
         exporter.graph.surface = exporter.surface(output)
     if exporter.graph.surface is None:
         return exporter.graph
-    varies = lamp_variation(exporter.graph)
+    varies = light_variation(exporter.graph)
     sphere = data.type in {"POINT", "SPOT"} and data.shadow_soft_size > 0.0 and not data.use_soft_falloff
     by_place = varies.place or (varies.uv and data.type != "SPOT")
     by_direction = varies.direction or (varies.uv and data.type == "SPOT")

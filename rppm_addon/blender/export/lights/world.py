@@ -16,7 +16,7 @@ from ..nodes.links import node_tree
 
 
 def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple[World, list[Light]]:
-    """The surroundings, black where the scene has no world, and the suns of its skies, which no picture resolves."""
+    """The environment, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
         return World(), []
     tree = node_tree(world)
@@ -38,12 +38,12 @@ def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple
 
 def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:
     """The sun of a sky texture: what the world makes of its irradiance, apart from what does not depend on it."""
-    disc = sun_disc(sky)
-    if disc is None:
+    disk = sun_disc(sky)
+    if disk is None:
         return None
     nodes = copy.deepcopy(graph.nodes)
     nodes[index] = ShaderNode(
-        "combine_color", inputs=dict(zip(("red", "green", "blue"), map(float, disc.irradiance())))
+        "combine_color", inputs=dict(zip(("red", "green", "blue"), map(float, disk.irradiance())))
     )
     depends = {index}
     for number, node in enumerate(nodes):
@@ -51,10 +51,10 @@ def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:
             depends.add(number)
         elif node.kind in {"background", "emission"}:
             node.inputs["strength"] = 0.0
-    backward = np.asarray(disc.direction, np.float64)  # lights shine along -Z
+    backward = np.asarray(disk.direction, np.float64)  # lights shine along -Z
     matrix = np.eye(4)
     matrix[:3, :3] = np.array(Vector(backward).to_track_quat("Z", "Y").to_matrix())
-    return Light(f"{owner} sun", LightKind.SUN, matrix, np.ones(3), sun_angle=disc.angle,
+    return Light(f"{owner} sun", LightKind.SUN, matrix, np.ones(3), sun_angle=disk.angle,
                  graph=NodeGraph(nodes, graph.surface), of_world=True)  # fmt: skip
 
 

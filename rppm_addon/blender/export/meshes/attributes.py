@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mesh attributes that shading nodes read: UV maps, colours, generated coordinates and others."""
+"""Mesh attributes that shading nodes read: UV maps, colors, generated coordinates and others."""
 
 import bpy
 import numpy as np
@@ -16,7 +16,7 @@ ISLAND = ".random_per_island"
 TANGENT = ".tangent:"
 """Before the name of a UV map, the name under which its tangents are exported; alone, those of the map in use."""
 ACTIVE_COLOR = ".active_color"
-"""Stands for the colour attribute that is rendered when none is named."""
+"""Stands for the color attribute that is rendered when none is named."""
 NO_ATTRIBUTE = ".none"
 """Stands for the UV map in use, which every triangle has at hand."""
 
@@ -30,7 +30,7 @@ _FIELDS = {
 def title_of(attribute: str) -> str:
     """What users call an attribute that a graph reads."""
     if attribute == ACTIVE_COLOR:
-        return "the colour attribute in use"
+        return "the color attribute in use"
     if attribute.startswith(TANGENT):
         return f'the UV map "{attribute.removeprefix(TANGENT)}"'
     domain, _, name = attribute.partition(":")

@@ -43,7 +43,7 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report, before: Mesh | 
         "corner_uv": _render_uv(mesh, before.corner_uv),
     }
     if not _all_near(arrays["positions"]):
-        _leave_out_the_far(arrays, name, report)
+        _skip_distant_vertices(arrays, name, report)
         if len(arrays["triangle_corners"]) == 0:
             return None
     return Mesh(
@@ -67,7 +67,7 @@ def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray
 
 
 def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
-    """(vertices, 3) float32 metres a second of the point attribute "velocity", 0 where it is not finite; None without
+    """(vertices, 3) float32 meters a second of the point attribute "velocity", 0 where it is not finite; None without
     one."""
     attribute = mesh.attributes.get("velocity")
     if attribute is None or (attribute.domain, attribute.data_type) != ("POINT", "FLOAT_VECTOR"):
@@ -112,7 +112,7 @@ def _corner_normals(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
     return normals
 
 
-def _leave_out_the_far(arrays: dict[str, np.ndarray], name: str, report: Report) -> None:
+def _skip_distant_vertices(arrays: dict[str, np.ndarray], name: str, report: Report) -> None:
     """Drop the triangles of vertices that are not finite or farther than FARTHEST."""
     positions, triangles = arrays["positions"], arrays["triangle_corners"]
     finite = (np.abs(positions) < FARTHEST).all(axis=1)  # false for NaN as well

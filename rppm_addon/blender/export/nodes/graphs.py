@@ -15,12 +15,12 @@ from ..meshes.attributes import GENERATED
 from .links import Path, Source, find_source, is_lost
 
 Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
-"""Gives the value of an output: a Link, a number or a colour."""
+"""Gives the value of an output: a Link, a number or a color."""
 
 HANDLERS: dict[str, Handler] = {}
 """By node type, the nodes that are more than their sockets and options."""
 
-STAND_INS = {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
+FALLBACKS = {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
 """By node type, the socket whose value passes through a node that is not rendered."""
 
 
@@ -96,7 +96,7 @@ class GraphExporter:
         return self.shader(output.inputs["Surface"])
 
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
-        """The shader that feeds an input; a colour in place of it glows, as in Cycles."""
+        """The shader that feeds an input; a color in place of it glows, as in Cycles."""
         source = find_source(socket, path)
         if not isinstance(source, Source):
             if source.broken is not None:
@@ -184,7 +184,7 @@ class GraphExporter:
             return handler(self, node, output, path)
         kind = kind_name(node)
         if kind not in KINDS:
-            return self._stand_in(node, output, path)
+            return self._fallback(node, output, path)
         name = snake_case(output.identifier)
         if name not in KINDS[kind].outputs:
             name = _OLDER.get(name, name)
@@ -266,15 +266,15 @@ class GraphExporter:
             self._known[key] = self.graph.add(kind, name=name, attribute=attribute).node
         return Link(self._known[key], output)
 
-    def _stand_in(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    def _fallback(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
         """For a node that is not rendered: what feeds its main input, or nothing."""
-        names = (STAND_INS.get(node.type, ""), "Color", "Base Color", "Value", "Fac", "Vector", "Shader")
+        names = (FALLBACKS.get(node.type, ""), "Color", "Base Color", "Value", "Fac", "Vector", "Shader")
         socket = next((socket for name in names for socket in node.inputs if name and socket.identifier == name), None)
         if output.type == "SHADER":
             if node.type in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "VOLUME_COEFFICIENTS"}:
                 self.warn(node, "is a volume and no surface; it is left out")
                 return None
-            self.warn(node, "is not rendered yet; a diffuse surface of its colour stands in")
+            self.warn(node, "is not rendered yet; a diffuse surface of its color stands in")
             color = 0.8 if socket is None or socket.type == "SHADER" else self.value(socket, path)
             return self.graph.add("bsdf_diffuse", "bsdf", name=node.name, color=color)
         if socket is not None and socket.type not in {"SHADER", "STRING"}:
@@ -284,7 +284,7 @@ class GraphExporter:
         return None
 
 
-_LOST = "is a group whose node tree is missing; a neutral value or a grey surface stands in"
+_LOST = "is a group whose node tree is missing; a neutral value or a gray surface stands in"
 
 
 def _is_undefined(node: bpy.types.Node) -> bool:

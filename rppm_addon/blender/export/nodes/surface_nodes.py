@@ -98,7 +98,7 @@ def _normal_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types
 
 
 @handles("BEVEL", "AMBIENT_OCCLUSION")
-def _surroundings(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+def _environment(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     exporter.warn(node, "would need rays of its own, which are not traced; it is left out")
     return exporter.add(node.type.lower(), node, path, snake_case(output.identifier))
 
@@ -116,7 +116,7 @@ def _image_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.ty
     warn = functools.partial(exporter.warn, node)
     tiles = exporter.images.tiles(node, warn)
     image = exporter.images.of_node(node, warn) if tiles is None else -1
-    # Only now is the image loaded: before, a movie has no colour space.
+    # Only now is the image loaded: before, a movie has no color space.
     unassociate = is_associated(node.image) and any(
         socket.identifier == "Alpha" and socket.is_linked for socket in node.outputs
     )

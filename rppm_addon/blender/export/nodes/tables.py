@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colour ramps and curves as tables of floats, sampled where Cycles samples them."""
+"""Color ramps and curves as tables of floats, sampled where Cycles samples them."""
 
 import bpy
 import numpy as np

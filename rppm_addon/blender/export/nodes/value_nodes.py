@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes of numbers, vectors and colours that are more than their sockets and options."""
+"""Nodes of numbers, vectors and colors that are more than their sockets and options."""
 
 import bpy
 
@@ -46,7 +46,7 @@ def _rgb_to_bw(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.
 @handles("VALTORGB")
 def _ramp(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
     ramp = node.color_ramp
-    # Cycles steps also where Blender interpolates because the ramp's colours are HSV.
+    # Cycles steps also where Blender interpolates because the ramp's colors are HSV.
     options = {"constant": ramp.interpolation == "CONSTANT"}
     name = snake_case(output.identifier)
     return exporter.add("val_to_rgb", node, path, name, options=options, table=ramp_table(ramp))

@@ -20,11 +20,11 @@ def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     linear = result[:, :3, :3]
     size = np.abs(linear).max(axis=(1, 2))
     usable = finite & (size > 0.0)
-    normalised = linear / np.where(size > 0.0, size, 1.0)[:, None, None]
+    normalized = linear / np.where(size > 0.0, size, 1.0)[:, None, None]
     # A cheap test first: nearly all placements are far from singular.
-    doubtful = np.flatnonzero(usable & (np.abs(np.linalg.det(normalised)) < 1e-4))
+    doubtful = np.flatnonzero(usable & (np.abs(np.linalg.det(normalized)) < 1e-4))
     for index in doubtful:
-        left, scales, right = np.linalg.svd(normalised[index])
+        left, scales, right = np.linalg.svd(normalized[index])
         least = scales[0] * FLATTEST
         if scales[1] < least:
             usable[index] = False

@@ -18,7 +18,7 @@ class ParticleTable:
         self._systems: dict[int, list[tuple]] = {}
 
     def of(self, instance: bpy.types.DepsgraphObjectInstance) -> Particle | None:
-        """What the Particle Info node tells of a multiplied instance; None when it stands for no particle."""
+        """What the Particle Info node gives for a multiplied instance; None when it stands for no particle."""
         system = instance.particle_system
         if system is None:
             return None

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rppm_addon.integrator.lights.lamp_maps import _bordered, _mean, _packed
-from rppm_addon.materials.emitted import lamp_variation
+from rppm_addon.integrator.lights.light_maps import _bordered, _mean, _packed
+from rppm_addon.materials.emitted import light_variation
 from rppm_addon.materials.evaluation import MapShape
 from rppm_addon.scene import Light, LightKind, NodeGraph
 
@@ -68,6 +68,6 @@ def graph_of(kind: str, output: str) -> NodeGraph:
     ],
 )
 def test_what_lamps_vary_by(kind, output, what):
-    varies = lamp_variation(graph_of(kind, output))
+    varies = light_variation(graph_of(kind, output))
     told = {name for name in ("place", "direction", "uv", "distance") if getattr(varies, name)}
     assert told == {what} and bool(varies) == (what != "distance")

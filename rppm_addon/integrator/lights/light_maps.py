@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the nodes of lamps give by place or direction, as maps for shaders/emission/lamp_maps.glsl."""
+"""What the nodes of lights give by place or direction, as maps for shaders/emission/light_maps.glsl."""
 
 import math
 from dataclasses import dataclass, field
@@ -8,8 +8,8 @@ import moderngl
 import numpy as np
 
 from ...gl.context import Context
-from ...materials.emitted import LampVariation, lamp_variation
-from ...materials.evaluation import LampKind, LampSurface, MapShape
+from ...materials.emitted import LightVariation, light_variation
+from ...materials.evaluation import LightSurface, LightSurfaceKind, MapShape
 from ...materials.tables import MaterialTables
 from ...scene.images import Image
 from ...scene.lights import Light, LightKind
@@ -24,8 +24,8 @@ _MOST_TEXELS = 1 << 24
 
 
 @dataclass
-class LampNodes:
-    """What the nodes of a light do to it. At a distance d in metres they multiply its strength by ``scale`` times the
+class LightNodes:
+    """What the nodes of a light do to it. At a distance d in meters they multiply its strength by ``scale`` times the
     map times d^falloff d^2 / (smoothing + d^2), which the Light Falloff node's outputs are."""
 
     scale: np.ndarray
@@ -41,13 +41,13 @@ class LampNodes:
     """Among the maps: left, bottom, width, height from 0 to 1."""
 
 
-class LampMaps:
-    """The maps of all lamps in one texture. Each has a border of one texel, so that filtering meets nothing else."""
+class LightMaps:
+    """The maps of all lights in one texture. Each has a border of one texel, so that filtering meets nothing else."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
         self._texture: moderngl.Texture | None = None
-        self.nodes: dict[int, LampNodes] = {}
+        self.nodes: dict[int, LightNodes] = {}
         """By the index of their light."""
 
     @property
@@ -58,7 +58,7 @@ class LampMaps:
     def build(self, lights: list[Light], images: list[Image], materials: MaterialTables) -> None:
         """Ask the nodes of all lights that have some."""
         with_nodes = {index: light for index, light in enumerate(lights) if light.graph is not None}
-        varying = {index: lamp_variation(light.graph) for index, light in with_nodes.items()}
+        varying = {index: light_variation(light.graph) for index, light in with_nodes.items()}
         shapes = {index: _shape(with_nodes[index], varies) for index, varies in varying.items() if varies}
         sizes = {index: _size(with_nodes[index], shape, images) for index, shape in shapes.items()}
         widest = min(int(self._context.limits["GL_MAX_TEXTURE_SIZE"]), 2 * (_WIDEST_MAP + 2))
@@ -83,7 +83,7 @@ class LampMaps:
         self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
 
     def use(self) -> None:
-        """Bind the maps to texture unit 2, where lamp_maps.glsl reads them."""
+        """Bind the maps to texture unit 2, where light_maps.glsl reads them."""
         self._texture.use(2)
 
     def release(self) -> None:
@@ -94,11 +94,11 @@ class LampMaps:
 
 
 def is_sphere(light: Light) -> bool:
-    """Whether the normals of a lamp are those of a sphere, and not the light's direction."""
+    """Whether the normals of a light are those of a sphere, and not the light's direction."""
     return light.kind in (LightKind.POINT, LightKind.SPOT) and light.radius > 0.0 and not light.soft_falloff
 
 
-def _shape(light: Light, varies: LampVariation) -> MapShape:
+def _shape(light: Light, varies: LightVariation) -> MapShape:
     if light.kind is LightKind.AREA:
         return MapShape.PLACES if varies.place or varies.uv else MapShape.DIRECTIONS
     if light.kind is LightKind.SUN:
@@ -158,20 +158,20 @@ def _asked(
     lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-9)
     normal, u, v = -axes[:, 2] / lengths[2], axes[:, 0], axes[:, 1]
     if light.kind is LightKind.AREA:
-        kind = LampKind.AREA
+        kind = LightSurfaceKind.AREA
         width, height = light.size if light.shape in ("RECTANGLE", "ELLIPSE") else (light.size[0], light.size[0])
         u, v = 0.5 * width * u, 0.5 * height * v
     else:
-        kind = LampKind.SPHERE
+        kind = LightSurfaceKind.SPHERE
         if light.kind is LightKind.SUN:
-            kind = LampKind.SUN_OF_A_WORLD if light.of_world else LampKind.SUN
+            kind = LightSurfaceKind.SUN_OF_A_WORLD if light.of_world else LightSurfaceKind.SUN
             u, v = u * lengths[2] / lengths[0], v * lengths[2] / lengths[1]
         u, v = (_extent(light) * axis / lengths[2] for axis in (u, v))
-    lamp = LampSurface(
+    light_surface = LightSurface(
         kind, shape, np.asarray(light.matrix)[:3, 3], normal, u, v, light.radius if is_sphere(light) else 0.0,
         object_record(light.matrix),
     )  # fmt: skip
-    return materials.evaluate(light.graph, *size, ray_length=distance, lamp=lamp)
+    return materials.evaluate(light.graph, *size, ray_length=distance, light_surface=light_surface)
 
 
 def _mean(pixels: np.ndarray, light: Light, shape: MapShape) -> np.ndarray:
@@ -197,7 +197,7 @@ def _mean(pixels: np.ndarray, light: Light, shape: MapShape) -> np.ndarray:
     return np.einsum("yxc,yx->c", pixels.astype(np.float64), weight) / max(weight.sum(), 1e-30)
 
 
-def _even(light: Light, varies: LampVariation, shape: MapShape | None, materials: MaterialTables) -> LampNodes:
+def _even(light: Light, varies: LightVariation, shape: MapShape | None, materials: MaterialTables) -> LightNodes:
     """The factor of all of a light and how it falls off."""
     asked = shape or MapShape.DIRECTIONS
     extent = _extent(light) if asked is MapShape.CONE else 0.0
@@ -206,7 +206,7 @@ def _even(light: Light, varies: LampVariation, shape: MapShape | None, materials
         return _mean(np.maximum(_asked(light, asked, _COARSE, distance, materials), 0.0), light, asked)
 
     near_values = mean(1.0)
-    found = LampNodes(near_values, near_values, shape=shape, extent=extent)
+    found = LightNodes(near_values, near_values, shape=shape, extent=extent)
     if light.kind is LightKind.SUN or not varies.distance:
         return found
     near, twice, far, farther = (float(value.sum()) for value in (near_values, *map(mean, (2.0, 1e4, 2e4))))

@@ -5,31 +5,31 @@
 
 layout(local_size_x = 64) in;
 
-#include <DepartParameters>
+#include <AdjointParameters>
 #include "common/living_paths.glsl"
 #include "common/photon.glsl"
 #include "photons/parts.glsl"
-layout(std140, binding = 0) uniform Parameters { DepartParameters parameters; };
+layout(std140, binding = 0) uniform Parameters { AdjointParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) buffer Photons;
-layout(std430, binding = 4) readonly buffer Departures;
+layout(std430, binding = 4) readonly buffer AdjointQueries;
 
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     vec3 flux = photon_paths[index].flux, viewer = -rays[index].direction;
     if (!(largest(flux) > 0.0)) return;
-    Departure departure = departures[index];
-    if (departure.part != PART_NONE) {
+    AdjointQuery query = adjoint_queries[index];
+    if (query.part != PART_NONE) {
         uint slot = parameters.segment * parameters.photon_count + index;
-        float ior = departure.part == PART_SHARP_TRANSMITTING ? 1.0 / departure.ior : 1.0;
-        vec3 share = part_share(closures[index], departure.part, ior, viewer, photons[slot].direction);
+        float ior = query.part == PART_SHARP_TRANSMITTING ? 1.0 / query.ior : 1.0;
+        vec3 share = part_share(closures[index], query.part, ior, viewer, photons[slot].direction);
         // What is too little to be compared stays as it is.
-        flux *= mix(vec3(1.0), share / max(departure.share, 1e-20), greaterThan(departure.share, vec3(1e-20)));
+        flux *= mix(vec3(1.0), share / max(query.share, 1e-20), greaterThan(query.share, vec3(1e-20)));
         photon_paths[index].flux = photons[slot].scattered_flux = flux;
-        photon_paths[index].flags = departure.flags;
+        photon_paths[index].flags = query.flags;
     }
     rays[index].direction = viewer;
     rays[index].maximum_distance = largest(flux) > 0.0 ? INFINITY_DISTANCE : 0.0;
