@@ -58,11 +58,11 @@ bench-tools: setup
 		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
 
 bench: bench-tools ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
-	.venv/bin/python tests/benchmarks/run.py --scene-folder $(SCENES) $(BENCH)
-	.venv/bin/python tests/benchmarks/frame_costs.py --output out/benchmarks/frame_costs.json $(filter --quick,$(BENCH))
+	.venv/bin/python -m benchmarks.device.run --scene-folder $(SCENES) $(BENCH)
+	.venv/bin/python -m benchmarks.frame_costs --output out/benchmarks/frame_costs.json $(filter --quick,$(BENCH))
 
 bench-export: setup ## Measure what a frame costs in which everything moves (BENCH=--quick)
-	.venv/bin/python tests/benchmarks/export_speed.py --output out/benchmarks/export.json $(BENCH)
+	.venv/bin/python -m benchmarks.export.speed --output out/benchmarks/export.json $(BENCH)
 
 bench-peers: bench-tools ## Compare with Cycles, LuxCore and Mitsuba at equal time, to out/peers/ (BENCH=--quick, --plain, --publish)
 	.venv/bin/python -m benchmarks.peers.run $(BENCH)

@@ -14,8 +14,7 @@ import time
 
 import numpy as np
 
-from tests.benchmarks.benchmark_machine import checkout_commit, processor_name, usable_cores
-
+from ..machine import checkout_commit, processor_name, usable_cores
 from . import plain
 from .description import Scene
 from .environments import OUT, ROOT, install, run_job

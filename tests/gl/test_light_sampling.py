@@ -199,9 +199,7 @@ def test_what_a_ray_sees_of_a_light_has_the_sampled_pdf(mapper, library, name, w
     both = lit & (sample["seen"][:, 0] > 0)
     assert both.sum() > 0.999 * lit.sum()
     np.testing.assert_allclose(sample["seen_pdf"][both], sample["pdf"][both], rtol=2e-4)
-    np.testing.assert_allclose(
-        (sample["seen"][both, 0] / sample["pdf"][both]), sample["weight"][both, 0], rtol=2e-3
-    )
+    np.testing.assert_allclose((sample["seen"][both, 0] / sample["pdf"][both]), sample["weight"][both, 0], rtol=2e-3)
 
 
 @pytest.mark.parametrize("where", POINTS)

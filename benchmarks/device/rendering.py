@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from benchmark_machine import Clock
-from benchmark_scenes import Subject
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DensityEstimation, RenderSettings
+
+from ..machine import Clock
+from .scenes import Subject
 
 STAGES = {
     "photon paths": (

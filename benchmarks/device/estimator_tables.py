@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tables of the estimator's figures."""
 
-from benchmark_formats import milliseconds, number, table
+from .formats import milliseconds, number, table
 
 
 def _iterations(document: dict) -> str:

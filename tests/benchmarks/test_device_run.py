@@ -6,15 +6,14 @@ import inspect
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmark_statistics import block_error, fit_line, variances
 
+from benchmarks import ROOT
+from benchmarks.device.statistics import block_error, fit_line, variances
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 
-RUN = Path(__file__).with_name("run.py")
 FIGURES = ["construction", "resolution", "rays", "placement"]
 if "most_bins" in inspect.signature(DeepCubemap.__init__).parameters:
     FIGURES.append("bins")
@@ -24,8 +23,8 @@ KINDS = {"camera", "diffuse bounce", "photon"}
 
 
 def run(*arguments: object) -> subprocess.CompletedProcess:
-    command = [sys.executable, str(RUN), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=300)
+    command = [sys.executable, "-m", "benchmarks.device.run", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=ROOT)
 
 
 @pytest.fixture(scope="module")

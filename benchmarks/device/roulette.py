@@ -2,12 +2,13 @@
 """Measures Russian roulette of splat fragments, after the paper's Fig. 5: what it saves and what it costs."""
 
 import numpy as np
-from benchmark_machine import Clock
-from benchmark_rendering import Rendering, mean_seconds, scale_of
-from benchmark_scenes import Subject
-from benchmark_statistics import variances
 
 from rppm_addon.scene.settings import DirectLight
+
+from ..machine import Clock
+from .rendering import Rendering, mean_seconds, scale_of
+from .scenes import Subject
+from .statistics import variances
 
 
 def roulette(subject: Subject, clock: Clock, quick: bool) -> dict:

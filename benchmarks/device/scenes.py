@@ -12,10 +12,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from benchmark_machine import ROOT, Clock
-from bounding_volumes import BoundingVolumes, build_nodes
 from deep_cubemap_scenes import room_with_meshes
-from ray_sets import different, photon_origins, record_rays, triangles
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.gl.context import Context
@@ -29,6 +26,11 @@ from rppm_addon.scene import Camera, Scene, load_scene
 from rppm_addon.scene.errors import RppmError
 from rppm_addon.scene.lights import Light, LightKind
 from rppm_addon.scene.meshes import Instance, Mesh
+
+from .. import ROOT
+from ..machine import Clock
+from .bounding_volumes import BoundingVolumes, build_nodes
+from .ray_sets import different, photon_origins, record_rays, triangles
 
 log = logging.getLogger("benchmark")
 

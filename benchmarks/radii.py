@@ -1,4 +1,3 @@
-#!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures the error of pictures by their first radius: Eq. 3's at several scales, and adaptive radii.
 
@@ -6,20 +5,17 @@ Prints a table. Scenes are files of ``rppm export``.
 """
 
 import argparse
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-if str(ROOT) not in sys.path:  # the checkout, installed or not
-    sys.path.insert(0, str(ROOT))
+import numpy as np
 
-import numpy as np  # noqa: E402
+from rppm_addon.commands.saved_scene import camera_at_resolution
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import Scene, load_scene
 
-from rppm_addon.commands.saved_scene import camera_at_resolution  # noqa: E402
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
-from rppm_addon.scene import Scene, load_scene  # noqa: E402
+from . import ROOT
 
 REFERENCE = {"radius_scale": 8.0, "use_adaptive_radius": False, "seed": 77}
 WORST = 0.001

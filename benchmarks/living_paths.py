@@ -1,4 +1,3 @@
-#!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures what lists of living paths save: iterations with them and with all paths in every segment, in turns.
 
@@ -6,25 +5,20 @@ Prints a table. Scenes are files of ``rppm export``.
 """
 
 import argparse
-import sys
 from contextlib import contextmanager
 from pathlib import Path
 from unittest import mock
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT, ROOT / "tests/benchmarks"):  # the checkout, installed or not
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+import numpy as np
 
-import numpy as np  # noqa: E402
-from benchmark_machine import Clock  # noqa: E402
+from rppm_addon.commands.saved_scene import camera_at_resolution
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import load_scene
 
-from rppm_addon.commands.saved_scene import camera_at_resolution  # noqa: E402
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.integrator.common.living_paths import LivingPaths  # noqa: E402
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
-from rppm_addon.scene import load_scene  # noqa: E402
+from .machine import Clock
 
 STAGES = {
     "photon paths": ("first photon hits", "photon tracing", "photon resolve", "photon scattering"),

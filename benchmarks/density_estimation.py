@@ -1,4 +1,3 @@
-#!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures both routes of density estimation, in turns, and checks that they give the same bits.
 
@@ -7,21 +6,16 @@ Takes scenes that `rppm export` wrote; without any, a box with a glass and a mir
 
 import dataclasses
 import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks"):  # the checkout, installed or not
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+import numpy as np
 
-import numpy as np  # noqa: E402
-from benchmark_machine import Clock  # noqa: E402
-from route_comparison import named_scenes, parse  # noqa: E402
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import DensityEstimation, Scene
 
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
-from rppm_addon.scene import DensityEstimation, Scene  # noqa: E402
+from .machine import Clock
+from .route_comparison import named_scenes, parse
 
 ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
 STAGES = "direct splatting", "indirect splatting"

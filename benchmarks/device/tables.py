@@ -4,10 +4,10 @@
 import json
 from pathlib import Path
 
-import benchmark_estimator_tables
-from benchmark_formats import geometric_mean, mebibytes, milliseconds, number, table
+from . import estimator_tables
+from .formats import geometric_mean, mebibytes, milliseconds, number, table
 
-BEGIN, END = "<!-- tables: begin (written by tests/benchmarks/run.py) -->", "<!-- tables: end -->"
+BEGIN, END = "<!-- tables: begin (written by benchmarks/device/run.py) -->", "<!-- tables: end -->"
 _TITLES = {
     "construction": "Construction",
     "resolution": "Resolution",
@@ -214,5 +214,5 @@ _WRITERS = {
     "bins": _bins,
     "rays": _rays,
     "placement": _placement,
-    **benchmark_estimator_tables.WRITERS,
+    **estimator_tables.WRITERS,
 }

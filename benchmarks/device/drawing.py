@@ -4,8 +4,8 @@
 import matplotlib
 
 matplotlib.use("Agg")
-import numpy as np  # noqa: E402
-from matplotlib.ticker import FuncFormatter, NullLocator  # noqa: E402
+import numpy as np
+from matplotlib.ticker import FuncFormatter, NullLocator
 
 STYLE = {
     "figure.dpi": 110,

@@ -5,10 +5,10 @@ Times are seconds, lengths meters. A point's ``seconds`` are those of an iterati
 is the iteration's time.
 """
 
-from benchmark_machine import Clock
-from benchmark_rendering import Rendering, scale_of
-from benchmark_scenes import Subject
-from benchmark_statistics import fit_line
+from ..machine import Clock
+from .rendering import Rendering, scale_of
+from .scenes import Subject
+from .statistics import fit_line
 
 _MOST_BLOCKS = 48
 _RADIUS_FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0)

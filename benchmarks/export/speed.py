@@ -1,4 +1,3 @@
-#!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures what a frame costs in which all geometry or all instances move: export, transfer and upload.
 
@@ -17,25 +16,21 @@ from contextlib import contextmanager
 from pathlib import Path
 from unittest import mock
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT, ROOT / "tests/benchmarks"):  # the checkout, installed or not
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+import bpy
+import numpy as np
 
-import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-from benchmark_machine import Clock, describe  # noqa: E402
-from export_scenes import SCENES  # noqa: E402
+import rppm_addon
+from rppm_addon.blender.export import SceneSync, export_scene
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import Camera, Scene
+from rppm_addon.session.process.arrays import pack, unpack
+from rppm_addon.session.process.protocol import frame_message
+from rppm_addon.session.process.transfer import SceneReceiver, SceneSender
 
-import rppm_addon  # noqa: E402
-from rppm_addon.blender.export import SceneSync, export_scene  # noqa: E402
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
-from rppm_addon.scene import Camera, Scene  # noqa: E402
-from rppm_addon.session.process.arrays import pack, unpack  # noqa: E402
-from rppm_addon.session.process.protocol import frame_message  # noqa: E402
-from rppm_addon.session.process.transfer import SceneReceiver, SceneSender  # noqa: E402
+from ..machine import Clock, describe
+from .scenes import SCENES
 
 STAGES = ("Blender", "export", "send", "receive", "upload", "gather", "others", "fresh export")
 CAMERA = Camera(np.diag((1.0, 1.0, 1.0, 1.0)), (-1.0, 1.0, -1.0, 1.0), 32, 32)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures the deep cubemap and the estimator: figures as JSON and PNG, and the tables of docs/benchmarks/README.md.
 
@@ -10,25 +9,20 @@ first; without it, those that lie there are used. Without Matplotlib only the JS
 import argparse
 import json
 import logging
-import os
 import sys
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT, ROOT / "tests", ROOT / "tests/gl", ROOT / "tests/benchmarks"):  # the checkout, installed or not
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.scene.errors import RppmError
 
-from benchmark_catalog import FIGURES, MEASUREMENTS, is_possible, scenes_of  # noqa: E402
-from benchmark_figures import ROUTES, make_cubemap  # noqa: E402
-from benchmark_machine import Clock, describe, slug  # noqa: E402
-from benchmark_scenes import NAMES, SceneStore, Subject, subjects  # noqa: E402
-from benchmark_tables import write_tables  # noqa: E402
-
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.scene.errors import RppmError  # noqa: E402
+from .. import ROOT
+from ..machine import Clock, describe, slug
+from .catalog import FIGURES, MEASUREMENTS, is_possible, scenes_of
+from .figures import ROUTES, make_cubemap
+from .scenes import NAMES, SceneStore, Subject, subjects
+from .tables import write_tables
 
 log = logging.getLogger("benchmark")
 
@@ -123,7 +117,7 @@ def measure(options: argparse.Namespace) -> list[Path]:
         text = json.dumps(_rounded({**document, "scenes": lines}), indent=1)
         temporary = written[-1].with_suffix(".json.new")
         temporary.write_text(text + "\n", encoding="utf-8")
-        os.replace(temporary, written[-1])
+        temporary.replace(written[-1])
     return written
 
 
@@ -141,7 +135,7 @@ def _rounded(value: object) -> object:
 def draw(files: list[Path]) -> None:
     """Draw figures beside their JSON, where Matplotlib is."""
     try:
-        from benchmark_plots import draw_figure
+        from .plots import draw_figure
     except ModuleNotFoundError as error:
         if error.name != "matplotlib":
             raise

@@ -4,10 +4,11 @@
 import json
 from pathlib import Path
 
-import benchmark_estimator_plots
 import matplotlib.pyplot as plt
 import numpy as np
-from benchmark_drawing import COLORS, STYLE, label_of, logarithmic
+
+from . import estimator_plots
+from .drawing import COLORS, STYLE, label_of, logarithmic
 
 _KIND_COLORS = {"camera": "#1f6fb4", "diffuse bounce": "#e07b00", "photon": "#2f9e44"}
 _PLACE_COLORS = {
@@ -239,5 +240,5 @@ _DRAWERS = {
     "bins": _bins,
     "rays": _rays,
     "placement": _placement,
-    **benchmark_estimator_plots.DRAWERS,
+    **estimator_plots.DRAWERS,
 }

@@ -1,4 +1,3 @@
-#!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures how animations flicker: what differs between frames beside what moves, with one seed and with many.
 
@@ -17,21 +16,18 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT, ROOT / "tests/benchmarks"):  # the checkout, installed or not
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+import bpy
+import numpy as np
 
-import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-from benchmark_machine import Clock, describe  # noqa: E402
+import rppm_addon
+from rppm_addon.blender.export import export_scene
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import Scene
 
-import rppm_addon  # noqa: E402
-from rppm_addon.blender.export import export_scene  # noqa: E402
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper  # noqa: E402
-from rppm_addon.scene import Scene  # noqa: E402
+from . import ROOT
+from .machine import Clock, describe
 
 SAMPLES = ("pool", "spotlight")
 STEPS = (0.0, 0.02, 0.1, 0.5, 1.0)

@@ -10,13 +10,14 @@ import logging
 from collections.abc import Callable
 
 import numpy as np
-from benchmark_machine import Clock
-from benchmark_scenes import SAMPLE, SHARED, Subject
-from bounding_volumes import build_nodes
 
 from rppm_addon.integrator.common.records import NO_TRIANGLE
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.scene.errors import RppmError
+
+from ..machine import Clock
+from .bounding_volumes import build_nodes
+from .scenes import SAMPLE, SHARED, Subject
 
 log = logging.getLogger("benchmark")
 

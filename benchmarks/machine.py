@@ -16,7 +16,7 @@ import numpy as np
 
 from rppm_addon.gl.context import Context
 
-ROOT = Path(__file__).resolve().parents[2]
+from . import ROOT
 
 
 def usable_cores() -> int:

@@ -1,4 +1,3 @@
-#!/usr/bin/env python
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures what frames of an animation cost beside their iterations, and whether anything grows from frame to frame.
 
@@ -16,19 +15,15 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT, ROOT / "tests", ROOT / "tests/benchmarks"):  # the checkout, installed or not
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+import bpy
+from support.held import HeldByFrame
 
-import bpy  # noqa: E402
-from benchmark_machine import Clock, describe  # noqa: E402
-from support.held import HeldByFrame  # noqa: E402
+import rppm_addon
+from rppm_addon.gl.context import Context
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
+from rppm_addon.session.observers import RenderObserver, observing
 
-import rppm_addon  # noqa: E402
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap  # noqa: E402
-from rppm_addon.session.observers import RenderObserver, observing  # noqa: E402
+from .machine import Clock, describe
 
 STAGES = ("Blender", "export", "update", "iterations", "result", "saving")
 OVERHEAD = ("update", "result")

@@ -109,7 +109,7 @@ class BoundingVolumes:
         packed = np.zeros((len(boxes), 8), np.float32)
         packed[:, :3], packed[:, 4:7] = boxes[:, :3] - slack, boxes[:, 3:] + slack
         packed.view(np.uint32)[:, 3], packed.view(np.uint32)[:, 7] = links[:, 0], links[:, 1]
-        self._program = library.compute("../tests/benchmarks/bounding_volumes.comp")
+        self._program = library.compute("../benchmarks/device/bounding_volumes.comp")
         self._nodes = context.moderngl.buffer(packed.tobytes())
         self._order = context.moderngl.buffer(order.tobytes())
         self.node_count = len(packed)

@@ -2,10 +2,11 @@
 """Measures final gather against the plain estimate: the error that each has left after as much time."""
 
 import numpy as np
-from benchmark_machine import Clock
-from benchmark_rendering import Rendering, scale_of
-from benchmark_scenes import Subject
-from benchmark_statistics import block_error
+
+from ..machine import Clock
+from .rendering import Rendering, scale_of
+from .scenes import Subject
+from .statistics import block_error
 
 BLOCKS = (1, 4, 16)
 """Sides in pixels of the blocks whose means are compared: small ones show noise, large ones blotches and bias."""
