@@ -133,7 +133,7 @@ class RppmViewLayerProperties(bpy.types.PropertyGroup):
     """Switches of the passes for which Blender's view layers have none."""
 
     __annotations__ = {
-        entry.own_switch: BoolProperty(name=entry.name, description=entry.description)
+        entry.own_switch: BoolProperty(name=entry.label, description=entry.description)
         for entry in PASSES
         if entry.own_switch
     }

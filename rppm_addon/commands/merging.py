@@ -14,7 +14,7 @@ from ..scene.errors import CheckpointError
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
 from ..session.continuation import Pause
 from ..session.merged_passes import MergedPasses
-from ..session.renderer import exposed
+from ..session.renderer import exposed, exposed_passes
 from ..session.results import Frame
 from .checkpoints import refuse_differences
 from .picture_files import write_png
@@ -83,13 +83,13 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     for summary, pause in _read_parts(found):
         state = pause.state
         radiance = radiance + state.radiance.astype(np.float64) * (summary.iteration - summary.left_out)
-        passes.add(state.passes, state.pass_counts)
+        passes.add(state.passes, state.pass_counts, summary.iteration - summary.left_out)
         inspections = inspections or pause.inspections
     summaries = [summary for summary, _ in found]
     iterations = sum(summary.iteration - summary.left_out for summary in summaries)
     render = summaries[0].render
     combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
-    frame = Frame(combined, {**passes.result(), **inspections})
+    frame = Frame(combined, {**exposed_passes(passes.result(), render.exposure), **inspections})
     return MergedStill(
         frame,
         render,

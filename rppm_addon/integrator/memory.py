@@ -141,7 +141,7 @@ def expected_memory(
         },
         "passes": {
             "film": 16 * pixels,
-            **passes_memory(pixels, passes_named(passes)),
+            **passes_memory(pixels, band, passes_named(passes)),
             "radius factors": 4 * pixels,
         },
     }

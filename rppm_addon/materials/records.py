@@ -14,11 +14,11 @@ MATERIAL = Record(
     first_constant="uint",
     opaque_shadow="uint",
     depends_on_view="uint",
-    unused="uint",
+    pass_index="uint",
 )
 """A material: absorption of its interior in 1/m, the program that evaluates its node graph, and where its constants
 start in MaterialData; whether lights shine through where it is transparent (0) or not (1); whether what it scatters
-depends on where it is seen from (1)."""
+depends on where it is seen from (1); and its index for compositors."""
 StorageBlock("Materials", "Material materials[];")
 
 IMAGE_ENTRY = Record("ImageEntry", first_texel="uint", width="uint", height="uint", format="uint")

@@ -103,6 +103,7 @@ class MaterialTables:
             record["program"] = number[graph.text]
             record["first_constant"] = layout.add(material.graph, graph)
             record["opaque_shadow"] = not material.transparent_shadow
+            record["pass_index"] = material.pass_index
             record["depends_on_view"] = depends_on_view(material.graph)
         self.any_depends_on_view = bool(records["depends_on_view"].any())
         interiors = [material.interior for material in materials]

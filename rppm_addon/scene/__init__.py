@@ -3,7 +3,7 @@
 
 from .camera import Aperture, Camera, Panorama, PanoramaKind
 from .images import Image
-from .lights import Light, LightKind, World
+from .lights import Light, LightKind, Mist, World
 from .materials import Material
 from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
 from .motion import CameraMovement, Deformation, Movement, Shutter
@@ -30,6 +30,7 @@ __all__ = [
     "Material",
     "Mesh",
     "MeshAttribute",
+    "Mist",
     "Movement",
     "MovingScene",
     "NodeGraph",

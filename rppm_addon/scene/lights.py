@@ -58,9 +58,20 @@ class Light:
 
 
 @dataclass
+class Mist:
+    """What the pass Mist shows: 0 up to ``start``, 1 from ``start`` + ``depth`` on, meters."""
+
+    start: float = 0.0
+    depth: float = 100.0
+    exponent: float = 1.0
+    """Of the way between."""
+
+
+@dataclass
 class World:
     """The environment: constant radiance, or what a node graph gives by direction."""
 
     radiance: np.ndarray = field(default_factory=lambda: np.zeros(3))
     """(3,) float64 W/(m^2 sr); multiplies what the graph gives where there is one."""
     graph: NodeGraph | None = None
+    mist: Mist = field(default_factory=Mist)

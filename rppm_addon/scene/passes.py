@@ -21,10 +21,12 @@ class Accumulation(enum.Enum):
     """What becomes of the values that iterations find for a pixel."""
 
     MEAN = 0
-    """Their mean, with 0 from iterations that see the background."""
+    """Their mean, with ``nothing`` from iterations that see the background."""
     FIRST = 1
     """The first surface's that an iteration finds: means of positions or indices stand for nothing. As in Cycles."""
-    INSPECTION = 2
+    SUM = 2
+    """The mean of what all surfaces along a path add that see the camera as the pass asks."""
+    INSPECTION = 3
     """None do: it is computed once, from the deep cubemap and not from iterations."""
 
 
@@ -50,6 +52,10 @@ class RenderPass:
     """The property of Blender's view layers that turns it on; "" where Blender has none and the add-on adds one."""
     nothing: float = 0.0
     """Its value where nothing is seen."""
+    is_radiance: bool = False
+    """Whether it is light, W/(m^2 sr), that the film's exposure scales."""
+    group: str = ""
+    """The label of the switch that the add-on adds, where several passes share one."""
     description: str = ""
     """The tooltip of a switch that the add-on adds."""
 
@@ -66,14 +72,35 @@ class RenderPass:
     @property
     def own_switch(self) -> str:
         """The property that the add-on adds to view layers, where Blender has none."""
-        return "" if self.switch else f"use_pass_{self.identifier}"
+        return "" if self.switch else "use_pass_" + self.label.lower().replace(" ", "_")
+
+    @property
+    def label(self) -> str:
+        """Of its switch."""
+        return self.group or self.name
+
+
+def _for_denoisers(name: str, channels: str, kind: PassKind) -> RenderPass:
+    description = (
+        "Passes that denoisers take: albedo, normal and depth of the first surface that is not specular, seen through "
+        "mirrors and glass"
+    )
+    return RenderPass(name, channels, kind, Accumulation.SUM, group="Denoising Data", description=description)
 
 
 PASSES = (
     RenderPass("Depth", "Z", PassKind.VALUE, Accumulation.FIRST, "use_pass_z", NOTHING_HIT),
-    RenderPass("Normal", "XYZ", PassKind.VECTOR, Accumulation.MEAN, "use_pass_normal"),
+    RenderPass("Mist", "Z", PassKind.VALUE, Accumulation.MEAN, "use_pass_mist", 1.0),
     RenderPass("Position", "XYZ", PassKind.VECTOR, Accumulation.FIRST, "use_pass_position"),
+    RenderPass("Normal", "XYZ", PassKind.VECTOR, Accumulation.MEAN, "use_pass_normal"),
     RenderPass("UV", "UVA", PassKind.VECTOR, Accumulation.MEAN, "use_pass_uv"),
+    RenderPass("Object Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_object_index"),
+    RenderPass("Material Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_material_index"),
+    RenderPass("Emission", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_emit", is_radiance=True),
+    RenderPass("Environment", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_environment", is_radiance=True),
+    _for_denoisers("Denoising Albedo", "RGB", PassKind.COLOR),
+    _for_denoisers("Denoising Normal", "XYZ", PassKind.VECTOR),
+    _for_denoisers("Denoising Depth", "Z", PassKind.VALUE),
     RenderPass(
         "Deep Cubemap",
         "XYZ",

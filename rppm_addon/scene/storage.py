@@ -11,7 +11,7 @@ from .documents import decode, encode
 from .errors import SceneError
 from .scene import Scene
 
-FORMAT = 3
+FORMAT = 4
 
 
 def save_scene(scene: Scene, path: str | Path) -> None:

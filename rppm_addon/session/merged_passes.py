@@ -14,9 +14,10 @@ class MergedPasses:
     def __init__(self) -> None:
         self._sums: dict[str, np.ndarray] = {}
         self._counts = np.zeros((0, 0, 2), np.int64)
+        self._iterations = 0
 
-    def add(self, passes: Mapping[str, np.ndarray], counts: np.ndarray) -> None:
-        """Add a part: RenderState.passes and RenderState.pass_counts."""
+    def add(self, passes: Mapping[str, np.ndarray], counts: np.ndarray, iterations: int) -> None:
+        """Add a part of so many iterations: RenderState.passes and RenderState.pass_counts."""
         if not self._counts.size:
             self._counts = np.zeros(counts.shape, np.int64)
         for entry in passes_named(tuple(passes)):
@@ -27,10 +28,13 @@ class MergedPasses:
             )
             if entry.accumulation is Accumulation.MEAN:
                 self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * found_here
+            elif entry.accumulation is Accumulation.SUM:
+                self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * iterations
             else:
                 before = self._sums.get(entry.name, values)
                 self._sums[entry.name] = np.where(found_before, before, values)
         self._counts = self._counts + counts
+        self._iterations += iterations
 
     def result(self) -> dict[str, np.ndarray]:
         """The passes, float32, as Frame.passes has them."""
@@ -40,5 +44,7 @@ class MergedPasses:
             if entry.accumulation is Accumulation.MEAN:
                 counts = np.maximum(self._counts[..., 0], 1)
                 values = values / counts.reshape(*counts.shape, *[1] * (values.ndim - 2))
+            elif entry.accumulation is Accumulation.SUM:
+                values = values / max(self._iterations, 1)
             found[entry.name] = values.astype(np.float32)
         return found

@@ -12,7 +12,7 @@ from ..gl.programs import ProgramLibrary
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..integrator.stages.film import Film
-from ..scene.passes import DEEP_CUBEMAP
+from ..scene.passes import DEEP_CUBEMAP, PASSES
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
@@ -36,9 +36,15 @@ def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
     return radiance
 
 
+def exposed_passes(passes: Mapping[str, np.ndarray], exposure: float) -> dict[str, np.ndarray]:
+    """The passes of a film as those of a Frame."""
+    radiances = {entry.name for entry in PASSES if entry.is_radiance}
+    return {name: values * np.float32(exposure) if name in radiances else values for name, values in passes.items()}
+
+
 def read_frame(film: Film, exposure: float, inspections: Mapping[str, np.ndarray] | None = None) -> Frame:
     """The film's current picture and passes; ``inspections`` are those that it does not keep."""
-    return Frame(read_combined(film, exposure), {**film.read_passes(), **(inspections or {})})
+    return Frame(read_combined(film, exposure), {**exposed_passes(film.read_passes(), exposure), **(inspections or {})})
 
 
 class SlicedRender:

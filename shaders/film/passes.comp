@@ -1,47 +1,43 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the camera sees first, for the passes of scene/passes.py. As in Cycles, surfaces that let more than half of the
-// light straight through are passed, and depth lies along the view axis, or in a panorama along the ray.
+// light straight through are passed, and depth lies along the view axis, or in a panorama along the ray. What denoisers
+// take is that of the first surface that is not specular.
 
 layout(local_size_x = 64) in;
 
 #include <PassParameters>
-#include <Passes>
 #include "common/living_paths.glsl"
-#include "common/geometry.glsl"
+#include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "gbuffer/projections.glsl"
 layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
+#include "film/passes.glsl"
 layout(std430, binding = 0) readonly buffer Camera;
 layout(std430, binding = 1) readonly buffer Closures;
 layout(std430, binding = 2) readonly buffer Rays;
 layout(std430, binding = 3) buffer CameraPaths;
-layout(std430, binding = 4) buffer PassValues { float pass_values[]; };
 // iterations in the means; those with a surface
 layout(std430, binding = 5) buffer PassCounts { uvec2 pass_counts[]; };
 layout(std430, binding = 6) readonly buffer Hits;
 layout(std430, binding = 7) readonly buffer Attributes;
+layout(std430, binding = 9) readonly buffer Radiances;
+layout(std430, binding = 10) readonly buffer ShadingInstances;
+layout(std430, binding = 11) readonly buffer Materials;
 
 const float MOSTLY_TRANSPARENT = 0.5;
+// Lobes up to this alpha, and what is specular by more than this share, denoisers see through. As in Cycles.
+const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;
 
 uint pixel;
 uvec2 counts;      // with this iteration
 bool hit;          // else the path passed all by
 uint index;
 
-bool is_on(uint which) { return (parameters.passes & (1u << which)) != 0u; }
-
-// Where the pixel's values of a pass begin: those of a pass lie together.
-uint place_of(uint which) {
-    uint before = 0u;
-    for (uint other = 0u; other < which; other++) before += is_on(other) ? PASS_CHANNELS[other] : 0u;
-    return before * parameters.pixels + PASS_CHANNELS[which] * pixel;
-}
-
 void write_pass(uint which, vec4 value) {
     if (!is_on(which) || (PASS_ACCUMULATION[which] == ACCUMULATION_FIRST && !(hit && counts.y == 1u))) return;
-    uint place = place_of(which);
-    if (!hit) value = vec4(0.0);
+    uint place = place_of(which, pixel);
+    if (!hit) value = vec4(PASS_NOTHING[which]);
     for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++) {
         float before = pass_values[place + channel];
         pass_values[place + channel] = PASS_ACCUMULATION[which] == ACCUMULATION_MEAN
@@ -54,16 +50,32 @@ void write_pass(uint which, float value) { write_pass(which, vec4(value, 0.0, 0.
 void write_pass(uint which, vec2 value) { write_pass(which, vec4(value, 0.0, 0.0)); }
 void write_pass(uint which, vec3 value) { write_pass(which, vec4(value, 0.0)); }
 
-void clear() {
-    pass_counts[pixel] = uvec2(0u);
-    for (uint which = 0u; which < PASS_COUNT; which++)
-        for (uint channel = 0u; is_on(which) && channel < PASS_CHANNELS[which]; channel++)
-            pass_values[place_of(which) + channel] = PASS_NOTHING[which];
+// Make room for an iteration's path.
+void begin_iteration() {
+    bool first = parameters.iteration == 1u;
+    if (first) pass_counts[pixel] = uvec2(0u);
+    float kept = float(parameters.iteration - 1u) / float(parameters.iteration);
+    for (uint which = 0u; which < PASS_COUNT; which++) {
+        bool is_sum = PASS_ACCUMULATION[which] == ACCUMULATION_SUM;
+        if (!is_on(which) || !(first || is_sum)) continue;
+        for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++) {
+            uint place = place_of(which, pixel) + channel;
+            pass_values[place] = is_sum ? (first ? 0.0 : kept * pass_values[place]) : PASS_NOTHING[which];
+        }
+    }
 }
 
 float view_depth(vec3 position) {
     vec3 offset = position - camera.position;
     return camera.projection <= PROJECTION_ORTHOGRAPHIC ? dot(offset, camera.forward) : length(offset);
+}
+
+// 1 where nothing is seen for mist.
+float mist_at(vec3 position) {
+    vec3 offset = position - camera.position;
+    float depth = camera.projection == PROJECTION_ORTHOGRAPHIC ? abs(dot(offset, camera.forward)) : length(offset);
+    return pow(clamp((depth - parameters.mist_start) * parameters.mist_inverse_depth, 0.0, 1.0),
+               parameters.mist_exponent);
 }
 
 // Of the UV map in use, and 1; all 0 on meshes without one.
@@ -73,23 +85,71 @@ vec3 uv_at(Hit at) {
     return vec3(uv, corners.uv0 == corners.uv1 && corners.uv1 == corners.uv2 ? 0.0 : 1.0);
 }
 
+void write_first_surface(Closure closure) {
+    counts = pass_counts[pixel] + uvec2(1u, hit ? 1u : 0u);
+    pass_counts[pixel] = counts;
+    uint triangle = hit ? closure.triangle : 0u;
+    write_pass(PASS_DEPTH, view_depth(closure.position));
+    write_pass(PASS_MIST, mist_at(closure.position));
+    write_pass(PASS_POSITION, closure.position);
+    write_pass(PASS_NORMAL, unpack_unit_vector(closure.shading_normal));
+    write_pass(PASS_UV, uv_at(hits[index]));
+    write_pass(PASS_OBJECT_INDEX, float(shading_instances[attributes[triangle].instance].object_index));
+    write_pass(PASS_MATERIAL_INDEX, float(materials[closure.material].pass_index));
+}
+
+// What denoisers take of a surface; whether they look no further.
+bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
+    vec3 albedo = closure.diffuse + closure.translucent;
+    float rough = largest(albedo), total = rough;
+    vec3 normal = rough * unpack_unit_vector(closure.diffuse_normal);
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (lobe.kind == LOBE_NONE) continue;
+        vec3 lobe_color = lobe_albedo(lobe, lobe_cosine(lobe, viewer));
+        float weight = largest(lobe_color);
+        total += weight;
+        normal += weight * lobe_normal(lobe);
+        if (lobe.alpha <= SPECULAR_ALPHA) continue;
+        albedo += lobe_color;
+        rough += weight;
+    }
+    if (total <= 0.0 && largest(closure.transparent) > MOSTLY_TRANSPARENT) return false;
+    float throughput = (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
+    add_to_pass(PASS_DENOISING_DEPTH, pixel, vec3(throughput * closure.distance));
+    if (total > 0.0 && rough <= (1.0 - MOSTLY_SPECULAR) * total) return false;
+    add_to_pass(PASS_DENOISING_ALBEDO, pixel, path.throughput * albedo);
+    if (total <= 0.0) return true;
+    normal /= total;
+    add_to_pass(PASS_DENOISING_NORMAL, pixel,
+                vec3(dot(normal, camera.right), dot(normal, camera.up), dot(normal, camera.forward)));
+    return true;
+}
+
 void main() {
     index = living_path();
     if (index == NO_PATH) return;
     pixel = parameters.first_pixel + index;
-    if (parameters.segment == 0u && parameters.iteration == 1u) clear();
-    uint flags = camera_paths[index].flags;
-    if (!(rays[index].maximum_distance > 0.0) || (flags & PATH_STRAIGHT) == 0u || (flags & PATH_SURFACE_FOUND) != 0u)
+    if (parameters.segment == 0u) begin_iteration();
+    CameraPath path = camera_paths[index];
+    if (!(rays[index].maximum_distance > 0.0)) {
+        if (parameters.keeps_paths != 0u) pass_paths[index].w = 0.0;
         return;
-    hit = closures[index].triangle != NO_TRIANGLE;
-    vec3 transparent = closures[index].transparent;
-    if (hit && (transparent.r + transparent.g + transparent.b) / 3.0 > MOSTLY_TRANSPARENT) return;
-    camera_paths[index].flags = flags | PATH_SURFACE_FOUND;
-    counts = pass_counts[pixel] + uvec2(1u, hit ? 1u : 0u);
-    pass_counts[pixel] = counts;
-
-    write_pass(PASS_DEPTH, view_depth(closures[index].position));
-    write_pass(PASS_NORMAL, unpack_unit_vector(closures[index].shading_normal));
-    write_pass(PASS_POSITION, closures[index].position);
-    write_pass(PASS_UV, uv_at(hits[index]));
+    }
+    Closure closure = closures[index];
+    hit = closure_hit(closure);
+    bool straight = (path.flags & PATH_STRAIGHT) != 0u;
+    bool denoised = (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
+    uint kind = (hit ? PASS_PATH_HIT : 0u) | (straight ? PASS_PATH_STRAIGHT : 0u)
+              | (denoised ? 0u : PASS_PATH_DENOISED);
+    if (parameters.keeps_paths != 0u) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
+    if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
+        path.flags |= PATH_DENOISING_DATA_FOUND;
+    vec3 transparent = closure.transparent;
+    bool passes_by = hit && (transparent.r + transparent.g + transparent.b) / 3.0 > MOSTLY_TRANSPARENT;
+    if (straight && (path.flags & PATH_SURFACE_FOUND) == 0u && !passes_by) {
+        path.flags |= PATH_SURFACE_FOUND;
+        write_first_surface(closure);
+    }
+    camera_paths[index].flags = path.flags;
 }

@@ -6,7 +6,7 @@
 #include "common/ray_kinds.glsl"
 layout(std430, binding = 3) readonly buffer Triangles;
 layout(std430, binding = 4) readonly buffer Attributes;
-layout(std430, binding = 10) readonly buffer ShadingInstances { ShadingInstance shading_instances[]; };
+layout(std430, binding = 10) readonly buffer ShadingInstances;
 layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
 
 const uint NO_INSTANCE = 0xffffffffu;

@@ -16,6 +16,7 @@ from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.state import RenderState
 from rppm_addon.scene import DirectLight, Light, LightKind, Scene
 from rppm_addon.scene.errors import CheckpointError
+from rppm_addon.scene.passes import FILM_PASSES
 from rppm_addon.session.merged_passes import MergedPasses
 
 LAST = LEARNING_ITERATIONS + 3
@@ -27,7 +28,7 @@ def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
     whose photons are of less use."""
     scene = scenes.room(
         16, direct_light=direct_light, photons=4096, camera_path_length=4, photon_path_length=4, radius_scale=100.0,
-        use_splat_roulette=True,
+        use_splat_roulette=True, passes=tuple(entry.name for entry in FILM_PASSES),
     )  # fmt: skip
     rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)
     scene.materials[1] = material("rough", rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1)))
@@ -132,7 +133,7 @@ def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mappe
     np.testing.assert_array_equal(before.pass_counts + part.pass_counts, whole.pass_counts)
     merged = MergedPasses()
     for state in (before, part):
-        merged.add(state.passes, state.pass_counts)
+        merged.add(state.passes, state.pass_counts, state.iterations_in_film)
     assert merged.result().keys() == whole.passes.keys()
     for name, values in merged.result().items():
         np.testing.assert_allclose(values, whole.passes[name], rtol=1e-6, atol=1e-6, err_msg=name)

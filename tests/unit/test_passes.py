@@ -53,7 +53,9 @@ def test_merged_parts_are_the_whole():
             values = iterations[entry.name][first:end]
             seen = found[first:end].reshape(end - first, 1, 3, *[1] * (values.ndim - 3))
             if entry.accumulation is Accumulation.MEAN:
-                passes[entry.name] = np.where(seen, values, 0.0).mean(0).astype(np.float32)
+                passes[entry.name] = np.where(seen, values, entry.nothing).mean(0).astype(np.float32)
+            elif entry.accumulation is Accumulation.SUM:
+                passes[entry.name] = values.mean(0).astype(np.float32)
             else:
                 first_seen = np.take_along_axis(values, seen.argmax(0)[None], axis=0)[0]
                 passes[entry.name] = np.where(seen.any(0), first_seen, np.float32(entry.nothing))
@@ -61,7 +63,7 @@ def test_merged_parts_are_the_whole():
 
     merged = MergedPasses()
     for ends in ((0, 2), (2, 6), (6, 7)):
-        merged.add(*part(*ends))
+        merged.add(*part(*ends), ends[1] - ends[0])
     whole, _ = part(0, 7)
     assert merged.result().keys() == whole.keys()
     for name, values in merged.result().items():
@@ -69,8 +71,8 @@ def test_merged_parts_are_the_whole():
 
 
 def test_passes_that_are_off_take_no_memory():
-    assert passes_memory(100, ()) == {}
+    assert passes_memory(100, 10, ()) == {}
     channels = sum(len(entry.channels) for entry in FILM_PASSES)
-    assert passes_memory(100, PASSES) == {"pass values": 400 * channels, "pass counts": 800}
+    assert passes_memory(100, 10, PASSES) == {"pass values": 400 * channels, "pass counts": 800, "pass paths": 160}
     without, beside = (expected_memory(16, 16, 64, 2, passes=names).total_bytes for names in ((), ("Depth",)))
     assert beside - without == 256 * (4 + 8)

@@ -70,8 +70,9 @@ def test_what_another_version_saved_is_refused_in_one_line(tmp_path, monkeypatch
     monkeypatch.setattr(storage, "decode", lambda *given: {}["an old setting"])
     with pytest.raises(SceneError, match="an old setting.*export it again"):
         load_scene(path)
-    monkeypatch.setattr(storage, "FORMAT", storage.FORMAT + 1)
-    with pytest.raises(SceneError, match="scene format 3, not 4; export it again"):
+    old = storage.FORMAT
+    monkeypatch.setattr(storage, "FORMAT", old + 1)
+    with pytest.raises(SceneError, match=f"scene format {old}, not {old + 1}; export it again"):
         load_scene(path)
 
 

@@ -15,8 +15,8 @@ class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
         column.prop(context.view_layer, "use_pass_combined")
-        for entry in PASSES:
-            column.prop(*switch_of(context.view_layer, entry))
+        for switch in dict.fromkeys(switch_of(context.view_layer, entry) for entry in PASSES):
+            column.prop(*switch)
 
 
 CLASSES = (RPPM_PT_passes,)

@@ -18,7 +18,18 @@ from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
-Record("PassParameters", first_pixel="uint", iteration="uint", segment="uint", pixels="uint", passes="uint")
+Record(
+    "PassParameters",
+    first_pixel="uint",
+    iteration="uint",
+    segment="uint",
+    pixels="uint",
+    passes="uint",
+    keeps_paths="uint",
+    mist_start="float",
+    mist_inverse_depth="float",
+    mist_exponent="float",
+)
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
 Constants(
     "Passes",
@@ -31,10 +42,21 @@ Constants(
 )
 
 
-def passes_memory(pixels: int, passes: tuple[RenderPass, ...]) -> dict[str, int]:
+_OF_SEEN_LIGHT = ("Emission", "Environment", "Denoising Albedo")
+"""Passes to which light adds that camera paths meet."""
+
+
+def passes_memory(pixels: int, band_pixels: int, passes: tuple[RenderPass, ...]) -> dict[str, int]:
     """Bytes by buffer of what a film holds beside radiance."""
     channels = sum(len(entry.channels) for entry in passes if entry in FILM_PASSES)
-    return {"pass values": 4 * channels * pixels, "pass counts": 8 * pixels} if channels else {}
+    if not channels:
+        return {}
+    sizes = {"pass values": 4 * channels * pixels, "pass counts": 8 * pixels}
+    return sizes | ({"pass paths": 16 * band_pixels} if _show_seen_light(passes) else {})
+
+
+def _show_seen_light(passes: tuple[RenderPass, ...]) -> bool:
+    return any(entry.name in _OF_SEEN_LIGHT for entry in passes)
 
 
 class Film:
@@ -42,26 +64,36 @@ class Film:
     counts where there are passes."""
 
     def __init__(
-        self, context: Context, library: ProgramLibrary, width: int, height: int, passes: tuple[RenderPass, ...]
+        self,
+        context: Context,
+        library: ProgramLibrary,
+        width: int,
+        height: int,
+        band_pixels: int,
+        passes: tuple[RenderPass, ...],
     ) -> None:
-        """passes: those wanted; the film keeps the ones that iterations find."""
+        """band_pixels: of the largest band; passes: those wanted, of which the film keeps the ones that iterations
+        find."""
         self._pass_program = library.compute("film/passes.comp")
+        self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(passes) else None
         self._accumulate = library.compute("film/accumulate.comp")
         self.width, self.height = width, height
         self.passes = tuple(entry for entry in passes if entry in FILM_PASSES)
         remedy = "lower the resolution"
         self._radiance = GrowingBuffer(context, "film", remedy)
         self._radiance.require(16 * width * height)
-        sizes = passes_memory(width * height, self.passes)
-        self._values, self._counts = (GrowingBuffer(context, name, remedy) for name in ("pass values", "pass counts"))
-        for buffer in (self._values, self._counts):
+        sizes = passes_memory(width * height, band_pixels, self.passes)
+        names = "pass values", "pass counts", "pass paths"
+        self._values, self._counts, self._paths = (GrowingBuffer(context, name, remedy) for name in names)
+        for buffer in (self._values, self._counts, self._paths):
             buffer.require(sizes.get(buffer.name, 0))
 
     @property
     def memory_bytes(self) -> dict[str, int]:
         """Bytes on the device by buffer."""
-        buffers = (self._radiance, self._values, self._counts) if self.passes else (self._radiance,)
-        return {buffer.name: buffer.size for buffer in buffers}
+        kept = (self._values, self._counts) if self.passes else ()
+        paths = (self._paths,) if self._seen_light is not None else ()
+        return {buffer.name: buffer.size for buffer in (self._radiance, *kept, *paths)}
 
     def add_passes(
         self,
@@ -84,17 +116,45 @@ class Film:
                 "CameraPaths": importons.paths.buffer,
                 "PassValues": self._values.buffer,
                 "PassCounts": self._counts.buffer,
+                "PassPaths": self._paths.buffer,
                 "Hits": importons.hits.buffer,
                 "Attributes": context.geometry.attributes.buffer,
+                "Radiances": importons.radiances.buffer,
+                "ShadingInstances": context.resolve.shading_instances,
+                "Materials": context.materials.buffers["Materials"],
             },
-            {
-                "first_pixel": band.first_pixel,
-                "iteration": iteration.number_in_film,
-                "segment": segment,
-                "pixels": self.width * self.height,
-                "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
-            },
+            self._parameters(context, band, iteration, segment),
         )
+
+    def add_seen_light(
+        self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int
+    ) -> None:
+        """Add the light that the camera paths of a band met in a segment whose surfaces add_passes has had."""
+        if self._seen_light is None or not iteration.enters_film:
+            return
+        importons.living.run(
+            self._seen_light,
+            {
+                "PassValues": self._values.buffer,
+                "PassPaths": self._paths.buffer,
+                "Radiances": importons.radiances.buffer,
+            },
+            self._parameters(context, band, iteration, segment),
+        )
+
+    def _parameters(self, context: StageContext, band: Band, iteration: Iteration, segment: int) -> dict[str, float]:
+        mist = context.scene.world.mist
+        return {
+            "first_pixel": band.first_pixel,
+            "iteration": iteration.number_in_film,
+            "segment": segment,
+            "pixels": self.width * self.height,
+            "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
+            "keeps_paths": self._seen_light is not None,
+            "mist_start": mist.start,
+            "mist_inverse_depth": 1.0 / mist.depth if mist.depth > 0.0 else 0.0,
+            "mist_exponent": mist.exponent,
+        }
 
     def accumulate(
         self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band, iteration: Iteration
@@ -145,5 +205,5 @@ class Film:
 
     def release(self) -> None:
         """Give the buffers back."""
-        for buffer in (self._radiance, self._values, self._counts):
+        for buffer in (self._radiance, self._values, self._counts, self._paths):
             buffer.release()

@@ -41,7 +41,7 @@ class StageSet:
         self.direct_light = DirectLight(context, library, pixels)
         self.final_gather = FinalGather(context, library, pixels)
         self.shadow_catcher = ShadowCatcher(context, library, pixels, scene)
-        self.film = Film(context, library, width, height, passes_named(settings.passes))
+        self.film = Film(context, library, width, height, pixels, passes_named(settings.passes))
         self.caustic_radii = CausticRadii(context, library, width * height)
 
     def fits(self, scene: Scene) -> bool:

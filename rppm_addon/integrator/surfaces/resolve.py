@@ -75,6 +75,11 @@ class Resolve:
         """Bytes on the device by buffer."""
         return {self._order.name: self._order.size, **self._surface_attributes.memory_bytes}
 
+    @property
+    def shading_instances(self) -> moderngl.Buffer:
+        """SHADING_INSTANCE of each instance."""
+        return self._surface_attributes.buffers["ShadingInstances"]
+
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
         """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
         What the camera tells nodes follows by look_from.

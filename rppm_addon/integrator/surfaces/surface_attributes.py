@@ -9,6 +9,7 @@ import numpy as np
 from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
@@ -42,6 +43,8 @@ SHADING_INSTANCE = Record(
     unused3="float",
 )
 """An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell."""
+
+StorageBlock("ShadingInstances", "ShadingInstance shading_instances[];")
 
 _PARTICLE = ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity")
 

@@ -14,7 +14,7 @@ from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
 from ...scene.errors import RppmError
 from ...scene.scene import Scene
-from ..renderer import log, read_combined
+from ..renderer import exposed_passes, log, read_combined
 from .frames import FrameWriter
 from .sessions import SessionStatus
 from .sharpness import Sharpness, at_level
@@ -41,7 +41,7 @@ def shown_picture(film: Film, scene: Scene) -> np.ndarray:
     value as gray."""
     if len(film.passes) != 1:
         return read_combined(film, scene.exposure)
-    (values,) = film.read_passes().values()
+    (values,) = exposed_passes(film.read_passes(), scene.exposure).values()
     planes = np.atleast_3d(values)
     shown = np.zeros((*planes.shape[:2], 4), np.float32)
     shown[..., : planes.shape[2]] = planes

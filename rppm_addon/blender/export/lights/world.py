@@ -8,17 +8,27 @@ import numpy as np
 from mathutils import Vector
 
 from ....materials.sky.sun import sun_disc
-from ....scene import Light, LightKind, Link, NodeGraph, ShaderNode, World
+from ....scene import Light, LightKind, Link, Mist, NodeGraph, ShaderNode, World
 from ....scene.sky import Sky
 from ..context import ExportContext
 from ..nodes.graphs import GraphExporter
 from ..nodes.links import node_tree
+
+_EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}
+"""Of mist, by its falloff."""
 
 
 def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple[World, list[Light]]:
     """The environment, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
         return World(), []
+    environment, suns = _environment(world, context)
+    mist = world.mist_settings
+    environment.mist = Mist(mist.start, mist.depth, _EXPONENTS[mist.falloff])
+    return environment, suns
+
+
+def _environment(world: bpy.types.World, context: ExportContext) -> tuple[World, list[Light]]:
     tree = node_tree(world)
     if tree is None:
         return World(radiance=_finite(np.array(world.color, np.float64))), []

@@ -79,19 +79,19 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
     """The surface and the interior of a material; what has no counterpart is reported and left out."""
     tree = node_tree(material)
     if tree is None:
-        return Material(material.name, plain_surface(tuple(material.diffuse_color[:3])))
+        return Material(material.name, plain_surface(tuple(material.diffuse_color[:3])), pass_index=material.pass_index)
     owner = f'Material "{material.name}"'
     output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
     if output is None:
         context.report.warn(f"{owner}: it has no Material Output node and is black")
-        return Material(material.name)
+        return Material(material.name, pass_index=material.pass_index)
     exporter = GraphExporter(owner, context, material.pass_index)
     graph = exporter.graph
     if exporter.is_linked(output.inputs["Displacement"], ()):
         _bump(exporter, material, output)
     graph.surface = exporter.surface(output)
     shadow = getattr(material, "use_transparent_shadow", True)
-    exported = Material(material.name, graph, transparent_shadow=shadow)
+    exported = Material(material.name, graph, transparent_shadow=shadow, pass_index=material.pass_index)
     if exporter.is_linked(output.inputs["Volume"], ()):
         exported.interior = _interior(owner, context, output)
         if not exporter.is_linked(output.inputs["Surface"], ()):
