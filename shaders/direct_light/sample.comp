@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shadow rays from the camera paths' vertices to a sampled light.
+// Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;
 
@@ -69,6 +69,71 @@ bool lit_from_behind(Closure closure) {
     return transmits;
 }
 
+// Light that arrives along a direction if nothing is in the way.
+struct Arriving { vec3 radiance; vec3 direction; float distance; uint triangle; };
+
+const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, NO_TRIANGLE);
+
+// Of light objects, where smooth lobes that reflect little reflect them. A path would go there as seldom.
+Arriving arriving_reflected(Closure closure, vec3 throughput, vec3 wo, bool gathers, uvec4 choices) {
+    float alpha = smoothest_lit(false);
+    bool looks = false;
+    for (int k = 0; k < CLOSURE_LOBES; ++k) looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
+    Arriving arriving = NOTHING_ARRIVES;
+    if (!looks) return arriving;
+    vec4 shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, false);
+    float total = sum(shares);
+    if (gathers) total += sum(camera_path_shares(closure, throughput, wo, parameters.specular_alpha, true));
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u));
+    float weights = 0.0, u = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).x;
+    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (!looks_for_reflected_lights(lobe, shares, total, k, wo, alpha)) continue;
+        LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, u_lobe, 0.0, true);
+        if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
+            continue;
+        PassedLights passed = passed_lights(closure.position, sampled.direction, INFINITY_DISTANCE, RAY_GLOSSY, 0.0, u);
+        vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
+                       * reflected_share(lobe, dot(wo, normalize(wo + sampled.direction)));
+        vec3 radiance = reflected * passed.chosen * passed.weights;
+        float weight = largest(radiance);
+        if (!(weight > 0.0)) continue;
+        weights += weight;
+        u = passed.u * weights;
+        bool taken = u < weight;
+        u = taken ? u / weight : (u - weight) / max(weights - weight, 1e-30);
+        if (taken) arriving = Arriving(radiance / weight, sampled.direction, passed.distance, NO_TRIANGLE);
+    }
+    arriving.radiance *= weights;
+    return arriving;
+}
+
+// Of a light that is chosen by what it may give at the point.
+Arriving arriving_from_light(Closure closure, vec3 throughput, vec3 wo, bool gathered, bool gathers, uvec4 choices) {
+    if (!can_be_lit(closure, gathered)) return NOTHING_ARRIVES;
+    vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices),
+                  scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    // An even environment is left to the gathering ray.
+    float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
+    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure)),
+                                         environment_irradiance, u.x, u.y);
+    if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
+    Light light = lights[choice.light];
+    LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
+    if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return NOTHING_ARRIVES;
+    float side = dot(geometric, sampled.direction);
+    if (side == 0.0) return NOTHING_ARRIVES;
+    // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
+    float light_pdf = sampled.pdf * light.selection_probability;
+    if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
+    vec3 scattered = evaluate_closure(closure, throughput, gathered, gathers, wo, sampled.direction,
+                                      side > 0.0, light.flags, light.kind == LIGHT_WORLD, light_pdf);
+    return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
+                    sampled.triangle);
+}
+
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
@@ -78,40 +143,35 @@ void main() {
     Ray ray = rays[index];
     Closure closure = closures[index];
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
-    bool gathered = (camera_paths[index].flags & PATH_GATHERED) != 0u;
-    if (!can_be_lit(closure, gathered)) return;
+    uint flags = camera_paths[index].flags;
+    bool gathered = (flags & PATH_GATHERED) != 0u;
+    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
+                && path_gathers(flags, closure.distance, parameters.gathers_again_below);
+    vec3 throughput = camera_paths[index].throughput * segment_transmittance(flags, closure);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
-    vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices),
-                  scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
+    Arriving arriving = arriving_from_light(closure, throughput, -ray.direction, gathered, gathers, choices);
+    Arriving reflected = NOTHING_ARRIVES;
+    if (!gathered) reflected = arriving_reflected(closure, throughput, -ray.direction, gathers, choices);
+    // One ray for both: by what they would add.
+    float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);
+    if (!(weight + reflected_weight > 0.0)) return;
+    if (reflected_weight > 0.0) {
+        float total = weight + reflected_weight;
+        float u = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).y;
+        bool takes_reflected = u * total < reflected_weight;
+        if (takes_reflected) arriving = reflected;
+        arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
+    }
+    contributions[index] = vec4(arriving.radiance, gathered ? 1.0 : 0.0);
+    light_triangles[index] = arriving.triangle;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
-                && path_gathers(camera_paths[index].flags, closure.distance, parameters.gathers_again_below);
-    // An even environment is left to the gathering ray.
-    float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure)),
-                                         environment_irradiance, u.x, u.y);
-    if (!(choice.probability > 0.0)) return;
-    Light light = lights[choice.light];
-    LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
-    if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return;
-    float side = dot(geometric, sampled.direction);
-    if (side == 0.0) return;
-    vec3 throughput = camera_paths[index].throughput * segment_transmittance(camera_paths[index].flags, closure);
-    // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
-    float light_pdf = sampled.pdf * light.selection_probability;
-    if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
-    vec3 scattered = evaluate_closure(closure, throughput, gathered, gathers, -ray.direction, sampled.direction,
-                                      side > 0.0, light.flags, light.kind == LIGHT_WORLD, light_pdf);
-    vec3 radiance = throughput * scattered * sampled.weight / choice.probability;
-    if (!(largest(radiance) > 0.0)) return;
-    contributions[index] = vec4(radiance, gathered ? 1.0 : 0.0);
-    light_triangles[index] = sampled.triangle;
-    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
-    Ray shadow = Ray(origin, closure.triangle, sampled.direction, INFINITY_DISTANCE);
-    if (sampled.distance < INFINITY_DISTANCE) {
+    vec3 origin = offset_from_surface(closure.position,
+                                      dot(geometric, arriving.direction) > 0.0 ? geometric : -geometric);
+    Ray shadow = Ray(origin, closure.triangle, arriving.direction, INFINITY_DISTANCE);
+    if (arriving.distance < INFINITY_DISTANCE) {
         // From the moved origin to the light, and just short of it: its own surface must not hide it.
-        vec3 to_light = closure.position + sampled.distance * sampled.direction - origin;
+        vec3 to_light = closure.position + arriving.distance * arriving.direction - origin;
         float distance = length(to_light);
         shadow.direction = to_light / distance;
         shadow.maximum_distance = distance * (1.0 - 1e-4);

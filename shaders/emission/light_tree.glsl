@@ -129,33 +129,50 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
     return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
 }
 
-vec3 passed_if_visible(uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray,
-                       float scatter_pdf) {
+// Radiance of all, and of one of them, chosen by the random number u, over its probability; how far off that is.
+struct PassedLights { vec3 radiance; vec3 chosen; float distance; float weights; float u; };
+
+void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray,
+                float scatter_pdf) {
     Light light = lights[number];
-    if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return vec3(0.0);
-    float pdf;
-    vec3 passed = passed_light(light, origin, direction, maximum_distance, pdf);
-    return passed * scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
+    if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return;
+    float distance, pdf;
+    vec3 radiance = passed_light(light, origin, direction, maximum_distance, distance, pdf);
+    radiance *= scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
+    passed.radiance += radiance;
+    float weight = largest(radiance);
+    if (!(weight > 0.0)) return;
+    passed.weights += weight;
+    float u = passed.u * passed.weights;
+    passed.u = u < weight ? u / weight : (u - weight) / max(passed.weights - weight, 1e-30);
+    if (u >= weight) return;
+    passed.chosen = radiance / weight;
+    passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
-// Radiance of the light objects that a ray passes; they hide nothing.
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf) {
-    vec3 radiance = vec3(0.0);
+// The light objects that a ray passes; they hide nothing.
+PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf,
+                           float u) {
+    PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0.0, 0.0, u);
     if (maximum_distance >= INFINITY_DISTANCE)
         for (uint sun = 0u; sun < parameters.sun_count; ++sun)
-            radiance += passed_if_visible(light_nodes[parameters.first_sun + sun].member, origin, direction,
-                                          maximum_distance, ray, scatter_pdf);
-    if (parameters.light_tree_leaves == 0u) return radiance;
+            pass_light(passed, light_nodes[parameters.first_sun + sun].member, origin, direction, maximum_distance,
+                       ray, scatter_pdf);
+    if (parameters.light_tree_leaves == 0u) return passed;
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint node = 1u;
     do {
         LightNode at = light_nodes[node];
         bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, maximum_distance);
         if (met && node < parameters.light_tree_leaves) { node *= 2u; continue; }
-        if (met) radiance += passed_if_visible(at.member, origin, direction, maximum_distance, ray, scatter_pdf);
+        if (met) pass_light(passed, at.member, origin, direction, maximum_distance, ray, scatter_pdf);
         // The node beside it, or beside the nearest one above that has one.
         node += 1u;
         node >>= uint(findLSB(node));
     } while (node > 1u);
-    return radiance;
+    return passed;
+}
+
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf) {
+    return passed_lights(origin, direction, maximum_distance, ray, scatter_pdf, 0.0).radiance;
 }

@@ -342,8 +342,8 @@ vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_
 }
 
 // The same of a light that may have nodes.
-vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float pdf) {
-    float distance;
+vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance,
+                  out float pdf) {
     vec3 radiance = passed_plain_light(light, origin, direction, maximum_distance, distance, pdf);
     vec3 from_center = origin + distance * direction - light.position;
     return radiance * distance_factor(light, distance) * emitted_factor(light, from_center, -direction);

@@ -142,14 +142,15 @@ Event diffuse_event(CameraPath path, Closure closure, float u, vec2 u_direction,
     event.direction = sample_cosine_hemisphere(event.normal, u_direction);
     event.weight = event.transmitted ? closure.translucent : closure.diffuse;
     event.pdf = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
-    event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_DIFFUSE;
+    event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND)) | PATH_DIFFUSE;
     return event;
 }
 
 Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shares) {
     bool shadow_rays_pass = (closure.flags & CLOSURE_SHADOWLESS) != 0u;
     return Event(direction, closure.transparent, -direction, shares.x, true,
-                 shadow_rays_pass ? path.scatter_pdf : 0.0, path.flags | (shadow_rays_pass ? 0u : PATH_CAUSTIC));
+                 shadow_rays_pass ? path.scatter_pdf : 0.0,
+                 shadow_rays_pass ? path.flags : (path.flags & ~PATH_LIGHTS_FOUND) | PATH_CAUSTIC);
 }
 
 // u: behind the share of what is no lobe.
@@ -167,8 +168,12 @@ Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec3 u_
     event.direction = sampled.direction;
     event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     event.transmitted = sampled.transmitted;
-    event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR)) | PATH_CAUSTIC
-                | (sampled.transmitted ? PATH_TRANSMITTED : 0u) | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u);
+    bool lights_found = parameters.next_event != 0u && !sampled.transmitted
+                     && looks_for_reflected_lights(lobe, shares, total, chosen, viewer,
+                                                   min(SMOOTHEST_LIT, parameters.specular_alpha));
+    event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND))
+                | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
+                | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u);
     return event;
 }
 
@@ -240,7 +245,7 @@ void main() {
         return;
     }
     vec3 lights_passed = vec3(0.0);
-    if (!gathered)
+    if (!gathered && (path.flags & PATH_LIGHTS_FOUND) == 0u)
         lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE,
                                       camera_ray_kind(path.flags), path.scatter_pdf);
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);

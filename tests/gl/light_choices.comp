@@ -19,8 +19,8 @@ void main() {
         vec3 origin = 4.0 * (vec3(next_random(random), next_random2(random)) - 0.5), direction = sample_sphere(next_random2(random));
         vec3 all = vec3(0.0);
         for (uint light = 0u; light < parameters.light_count; ++light) {
-            float pdf;
-            all += passed_light(lights[light], origin, direction, parameters.reach, pdf);
+            float distance, pdf;
+            all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
         results[index] = vec4(visible_light(origin, direction, parameters.reach, RAYS_WITH_VISIBILITY, 0.0).xy, all.xy);
         return;

@@ -17,13 +17,13 @@ void main() {
     RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
     float u_choice = next_random(random);
     LightSample sampled = sample_whole_light(lights[0], parameters.point, u_choice, next_random2(random));
-    float pdf = 0.0;
+    float distance = 0.0, pdf = 0.0;
     vec3 seen = vec3(0.0);
     if (sampled.triangle != NO_TRIANGLE) {
         seen = vec3(parameters.emitted);
         pdf = emissive_triangle_pdf(parameters.point, sampled.triangle);
     } else if (sampled.distance > 0.0)
-        seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, pdf);
+        seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, distance, pdf);
     results[3u * index] = vec4(sampled.direction, sampled.distance);
     results[3u * index + 1u] = vec4(sampled.weight, sampled.pdf);
     results[3u * index + 2u] = vec4(seen, pdf);

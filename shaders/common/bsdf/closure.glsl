@@ -118,6 +118,14 @@ float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
 // Roulette sets in once the path's throughput has fallen; total: of all shares by which it may go on.
 float path_survival(float total) { return min(1.0, 4.0 * total); }
 
+// Whether a smooth lobe reflects so seldom that a shadow ray looks for light objects where its reflection leads, since
+// paths that go there would find them seldom and then very bright. alpha: up to which lobes are smooth.
+bool looks_for_reflected_lights(MicrofacetLobe lobe, vec4 shares, float total, int k, vec3 viewer, float alpha) {
+    if (!lobe_is_specular(lobe, alpha) || lobe_is_sheen(lobe.kind) || !(shares[1 + k] > 0.0)) return false;
+    float reflected = reflected_share(lobe, lobe_cosine(lobe, viewer));
+    return reflected > 0.0 && shares[1 + k] * reflected < 0.5 * total;
+}
+
 // Probability of choosing lobe k, survival included.
 float lobe_probability(vec4 shares, float total, int k) {
     return shares[1 + k] * path_survival(total) / max(total, 1e-20);
