@@ -109,11 +109,9 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
 
     DeepCubemap.trace = take
     try:
-        trace_photons(
-            mapper.device_scene.context,
-            mapper.stages.photons,
-            Iteration(iteration, mapper.scene.settings.seed, mapper.scene.photon_count),
-        )
+        this = Iteration(iteration, mapper.scene.settings.seed, mapper.scene.photon_count)
+        for _ in trace_photons(mapper.device_scene.context, mapper.stages.photons, this):
+            pass
     finally:
         DeepCubemap.trace = plain
     return taken

@@ -17,7 +17,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
     photons, importons, camera_hits = stages.photons, stages.importons, stages.camera_hits
     estimator, film = stages.density_estimator, stages.film
-    trace_photons(context, photons, iteration)
+    yield from trace_photons(context, photons, iteration)
     radii = store_photons(context, stages, learning, iteration)
     photons_taken = []
     yield
@@ -52,14 +52,15 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     yield
 
 
-def trace_photons(context: StageContext, photons: Photons, iteration: Iteration) -> None:
-    """DirectPhotonHits and TracePhotons."""
+def trace_photons(context: StageContext, photons: Photons, iteration: Iteration) -> Iterator[None]:
+    """DirectPhotonHits and TracePhotons, in steps."""
     photons.emit(context, iteration)
     for segment in range(photons.segments):
         if segment > 0 and not photons.trace(context):
             break
         photons.resolve(context, iteration, segment)
         photons.scatter(context, iteration, segment)
+        yield
 
 
 def store_photons(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Radii:

@@ -75,7 +75,7 @@ class RenderSettings:
         unit="s",
         zero="no limit",
     )
-    """Stop with the iteration that ends nearest to so many seconds."""
+    """Stop with the iteration that ends nearest to so many seconds, and at most 5 % later but for the first one."""
     photons: int = setting(
         0,
         "Photons",

@@ -3,7 +3,7 @@
 
 import logging
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..scene.passes import DEEP_CUBEMAP, PASSES
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
+from .time_limit import TimeLimit
 
 log = logging.getLogger(__name__)
 
@@ -78,13 +79,17 @@ class SlicedRender:
         """Iterations that were there before this render."""
         self.iterations = 0
         """Those in the film that are complete."""
+        self._limit = TimeLimit(scene.settings.time_limit)
+        self._before: RenderResult | None = None
+        """What there was before an iteration that may be given up: such a one leaves the film unfinished."""
+        self._late_warnings: list[str] = []
         self.getting_ready = False
         """Whether iterations are run that do not enter the film."""
         self.between_iterations = False
         """Whether the photons and the film are those of a complete iteration, or of none."""
 
     def slices(self) -> Iterator[None]:
-        """Render the settings' iterations, or as many as end nearest to the time limit, but one.
+        """Render the settings' iterations, or as many as the time limit allows (TimeLimit), but one.
 
         Raises the errors of scene/errors.py.
         """
@@ -97,23 +102,46 @@ class SlicedRender:
             self._inspections = {DEEP_CUBEMAP.name: mapper.inspect_deep_cubemap()[..., :3]}
         yield from self._begin()
         self._report()
-        while self.iterations < settings.iterations:
+        while self.iterations < settings.iterations and self._limit.allows_another(self._elapsed):
             yield
-            self.between_iterations = False
-            began = self._elapsed
-            yield from mapper.steps()
-            self._context.finish()
-            seconds_each = self._elapsed - began
-            self.iterations += 1
-            self.between_iterations = True
+            if not (yield from self._iterate()):
+                break
             self._report()
             self._take_snapshots()
             if time.perf_counter() - self._kept >= self._continuation.interval:
                 self.keep()
-            # Another one would end farther from the limit than this one has.
-            if 0.0 < settings.time_limit <= self._elapsed + 0.5 * seconds_each:
-                self._take_snapshots(settings.time_limit)
-                return
+        if self.iterations < settings.iterations:
+            self._take_snapshots(settings.time_limit)
+
+    def _iterate(self) -> Generator[None, None, bool]:
+        """One more iteration; returns whether it has come to its end before time was up."""
+        began = self._elapsed
+        cuttable = self._limit.may_cut(began)
+        if cuttable:
+            self.keep()
+            self._before = self.result(stopped=False)
+        self.between_iterations = False
+        for _ in self._mapper.steps():
+            yield
+            if cuttable and self._limit.has_passed(self._elapsed):
+                return False
+        self._context.finish()
+        seconds = self._elapsed - began
+        self.iterations += 1
+        self.between_iterations = True
+        self._before = None
+        if self._limit.is_first_too_long(self._elapsed):
+            self._late_warnings = [
+                f"the first sample ended after {self._elapsed:.1f} s, past the time limit of {self._limit.limit:g} s: "
+                "there would be no picture without it; fewer photons or pixels make samples shorter"
+            ]
+            log.warning("%s", self._late_warnings[0])
+        self._limit.add(seconds, *(self._photons_of(self.iterations + later) for later in (0, 1)))
+        return True
+
+    def _photons_of(self, number: int) -> int:
+        """Photons of one of the film's iterations, counted from 1."""
+        return self._mapper.photons_emitted(number) - self._mapper.photons_emitted(number - 1)
 
     def _begin(self) -> Iterator[None]:
         """Come to the iteration that the film goes on with."""
@@ -164,13 +192,19 @@ class SlicedRender:
 
     def frame(self) -> Frame:
         """The picture so far."""
+        if self._before is not None:
+            return self._before.frame
         return read_frame(self._mapper.film, self._scene.exposure, self._inspections)
 
     def result(self, stopped: bool) -> RenderResult:
         """The picture and the figures; ``stopped`` says whether slices() was left before its end."""
         if self.iterations == 0:
             return empty_result(self._scene, self._context.information.label)
-        mapper, seconds, warnings = self._mapper, self._elapsed, list(self._scene.warnings)
+        if self._before is not None:
+            statistics = self._before.statistics
+            statistics.seconds, statistics.stage_seconds = self._elapsed, self._mapper.timers.seconds
+            return RenderResult(self._before.frame, statistics, stopped)
+        mapper, seconds, warnings = self._mapper, self._elapsed, [*self._scene.warnings, *self._late_warnings]
         balance = {}
         if self.between_iterations and self.iterations > self._found:
             balance = mapper.flux_balance()
