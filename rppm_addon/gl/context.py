@@ -54,8 +54,9 @@ class DeviceInformation:
 class Context:
     """An offscreen context of OpenGL 4.3 core: EGL on Linux, WGL on Windows."""
 
-    def __init__(self, gl: Any, information: DeviceInformation) -> None:
+    def __init__(self, gl: Any, information: DeviceInformation, device: str | None = None) -> None:
         self.moderngl = gl
+        self._device = device
         self.information = information
         self.limits = information.limits
 
@@ -96,13 +97,17 @@ class Context:
             limits={name: info[name] for name in _LIMITS if name in info},
             driver_folder=str(mesa or ""),
         )
-        context = cls(gl, information)
+        context = cls(gl, information, device)
         if not context.has_program_binaries:
             information.missing.append("program binaries (programs are compiled at every start)")
         if context.is_software:
             information.missing.append("a GPU (Mesa renders on the processor)")
         log.info("device %s, %s %s", information.name, information.driver, information.driver_folder)
         return context
+
+    def another(self) -> "Context":
+        """Open another context of the same device, for the calling thread. Raises DeviceError."""
+        return Context.create(self._device)
 
     @property
     def is_software(self) -> bool:

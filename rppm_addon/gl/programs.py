@@ -8,6 +8,7 @@ from typing import Any
 
 import moderngl
 
+from .background_compiler import BackgroundCompiler, EmptyDispatch, is_of_use
 from .binary_cache import BinaryCache
 from .constants import Constants
 from .context import Context
@@ -32,6 +33,8 @@ class _Program:
     def __init__(self, context: Context, sources: list[Source]) -> None:
         self.context = context
         self.before_first_run: Callable[[], None] | None = None
+        self.before_dispatch: Callable[[], None] | None = None
+        """Called once, when all is bound."""
         self.name = " + ".join(source.files[0] for source in sources)
         self.blocks: dict[str, int] = {}
         self.record = None
@@ -61,6 +64,9 @@ class _Program:
         if self._parameters is not None:
             self._parameters.write(self.record.pack(dict(parameters or {})))
             self._parameters.bind_to_uniform_block(0)
+        if self.before_dispatch is not None:
+            self.before_dispatch()
+            self.before_dispatch = None
 
     def release(self) -> None:
         """Free what it has on the device."""
@@ -73,11 +79,17 @@ class _Program:
 class ComputeProgram(_Program):
     """A compute shader."""
 
-    def __init__(self, context: Context, cache: BinaryCache, source: Source) -> None:
+    def __init__(
+        self, context: Context, cache: BinaryCache, source: Source, background: "Background | None" = None
+    ) -> None:
+        """background: who may compile the program until it is run."""
         super().__init__(context, [source])
         self.local_size = source.local_size
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         if not cache.load(self._program.glo, source.text):
+            if background is not None:
+                background.compiler.submit(source)
+                self.before_dispatch = lambda: background.finish(source, self._program.glo)
             self._program.release()
             try:
                 self._program = context.moderngl.compute_shader(source.text)
@@ -183,12 +195,31 @@ def _stage_suffix(message: str) -> str:
     return ".vert"
 
 
+class Background:
+    """What a library has to compile programs with while it waits for none of them."""
+
+    def __init__(self, context: Context) -> None:
+        self.compiler = BackgroundCompiler(context.another)
+        self._dispatch = EmptyDispatch(context)
+
+    def finish(self, source: Source, program: int) -> None:
+        """Have the code of a program that is bound and about to be run."""
+        self.compiler.claim(source)
+        self._dispatch.run(program)
+
+    def release(self) -> None:
+        """Begin no other program."""
+        self.compiler.stop()
+        self._dispatch.release()
+
+
 class ProgramLibrary:
     """Compiled programs, each made once per set of defines."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
         self._cache = BinaryCache(context)
+        self._background = Background(context) if is_of_use(context) else None
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
         self.made = 0
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
@@ -232,7 +263,7 @@ class ProgramLibrary:
             self.on_start()
 
     def _compute(self, path: str, defines: dict, inserts: dict) -> ComputeProgram:
-        return ComputeProgram(self.context, self._cache, expand(path, defines, inserts))
+        return ComputeProgram(self.context, self._cache, expand(path, defines, inserts), self._background)
 
     def _draw(self, vertex: str, fragment: str, geometry: str | None, defines: dict) -> DrawProgram:
         geometry_source = expand(geometry, defines) if geometry else None
@@ -242,6 +273,8 @@ class ProgramLibrary:
 
     def release(self) -> None:
         """Free what it has on the device."""
+        if self._background is not None:
+            self._background.release()
         for program in self._programs.values():
             program.release()
         self._programs.clear()

@@ -57,9 +57,9 @@ class ProgressivePhotonMapper:
         """
         start = time.perf_counter()
         self._begin(scene)
-        self.device_scene.update(scene, center_tolerance)
-        if self.stages is None:
+        if self.stages is None:  # before the scene, so that their programs are compiled meanwhile
             self.stages = StageSet(self.context, self._library, scene)
+        self.device_scene.update(scene, center_tolerance)
         context = self.device_scene.context
         footprints = first_footprints(context, self.stages)
         self.learning = Learning(context, footprints)

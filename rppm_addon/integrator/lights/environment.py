@@ -6,6 +6,7 @@ import numpy as np
 
 from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
+from ...gl.textures import TextureKind
 from ...materials.emitted import Emits, emits, reachable
 from ...materials.tables import MaterialTables
 from ...scene.images import Image
@@ -39,6 +40,9 @@ def distribution_of(brightness: np.ndarray) -> np.ndarray:
     cumulated = np.cumsum(rows) / rows.sum()
     cumulated[-1] = 1.0
     return np.concatenate([cumulated, cells.ravel()]).astype(np.float32)
+
+
+_MAP = TextureKind((0, 1), "f4", repeats=(True, False))
 
 
 class Environment:
@@ -89,10 +93,7 @@ class Environment:
     def _texture(self, pixels: np.ndarray) -> moderngl.Texture:
         rgba = np.ones((*pixels.shape[:2], 4), np.float32)
         rgba[..., :3] = pixels
-        texture = self._context.moderngl.texture(pixels.shape[1::-1], 4, rgba.tobytes(), dtype="f4")
-        texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-        texture.repeat_x, texture.repeat_y = True, False
-        return texture
+        return _MAP.make(self._context.moderngl, pixels.shape[1::-1], rgba.tobytes())
 
     def use(self) -> None:
         """Bind the maps to texture units 0 and 1, where environment.glsl reads them."""

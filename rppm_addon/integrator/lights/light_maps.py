@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 
 from ...gl.context import Context
+from ...gl.textures import TextureKind
 from ...materials.emitted import LightVariation, light_variation
 from ...materials.evaluation import LightSurface, LightSurfaceKind, MapShape
 from ...materials.tables import MaterialTables
@@ -39,6 +40,9 @@ class LightNodes:
     """Of a cone: the tangent of half of what the map shows."""
     place: tuple[float, float, float, float] = field(default=(0.0, 0.0, 0.0, 0.0))
     """Among the maps: left, bottom, width, height from 0 to 1."""
+
+
+_TEXTURE = TextureKind((2,), "f2", repeats=(True, True))
 
 
 class LightMaps:
@@ -79,8 +83,7 @@ class LightMaps:
             texels[y : y + map_height + 2, x : x + map_width + 2, :3] = _bordered(normalized, nodes.shape)
             nodes.place = (x + 1) / width, (y + 1) / height, map_width / width, map_height / height
         self.release()
-        self._texture = self._context.moderngl.texture((width, height), 4, texels.tobytes(), dtype="f2")
-        self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        self._texture = _TEXTURE.make(self._context.moderngl, (width, height), texels.tobytes())
 
     def use(self) -> None:
         """Bind the maps to texture unit 2, where light_maps.glsl reads them."""
