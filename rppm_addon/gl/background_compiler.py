@@ -13,6 +13,8 @@ import threading
 import time
 from collections.abc import Callable
 
+import moderngl
+
 from .context import Context
 from .sources import Source
 from .textures import TextureKind
@@ -38,10 +40,13 @@ class EmptyDispatch:
         self._bind = context.function("glBindBuffer", None, unsigned, unsigned)
         self._dispatch = context.function("glDispatchComputeIndirect", None, ctypes.c_ssize_t)
         self._finish = context.function("glFinish", None)
-        self._no_groups = context.moderngl.buffer(bytes(12))
+        self._context = context
+        self._no_groups: moderngl.Buffer | None = None
 
     def run(self, program: int) -> None:
-        """Do it with a GL program."""
+        """Do it with a GL program, the context being current."""
+        if self._no_groups is None:
+            self._no_groups = self._context.moderngl.buffer(bytes(12))
         self._use(program)
         self._bind(_DISPATCH_INDIRECT_BUFFER, self._no_groups.glo)
         self._dispatch(0)
@@ -49,7 +54,8 @@ class EmptyDispatch:
 
     def release(self) -> None:
         """Free what it has on the device."""
-        self._no_groups.release()
+        if self._no_groups is not None:
+            self._no_groups.release()
 
 
 def is_of_use(context: Context) -> bool:
