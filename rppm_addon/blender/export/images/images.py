@@ -14,6 +14,8 @@ from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 Warn = Callable[[str], None]
 """Tells the user what is done about the node that shows an image."""
 
+_PART = 1 << 16
+"""Numbers that are looked at while they lie in a cache."""
 _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"}
 
 
@@ -151,14 +153,23 @@ def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
         pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
         return Image(image.name, pixels, "LINEAR")
     encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
-    pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
-    if is_associated(image):
-        # Cycles takes colors in files of bytes for straight, whatever the user says.
+    pixels = _bytes(pixels)
+    if is_associated(image) and pixels[..., 3].min() < 255:
+        # Cycles takes colours in files of bytes for straight, whatever the user says.
         products = pixels[..., :3].astype(np.uint16) * pixels[..., 3:]
         if image.alpha_mode == "PREMUL" and image.source != "GENERATED" and image.packed_file is None:
             products = (products + 127) // 255 * pixels[..., 3:]
         pixels[..., :3] = products // 255
     return Image(image.name, pixels, encoding)
+
+
+def _bytes(pixels: np.ndarray) -> np.ndarray:
+    """Bytes that Blender has given as numbers from 0 to 1."""
+    flat, result = pixels.reshape(-1), np.empty(pixels.size, np.uint8)
+    for start in range(0, len(flat), _PART):
+        part = flat[start : start + _PART] * np.float32(255.0)
+        result[start : start + _PART] = np.rint(part, out=part)
+    return result.reshape(pixels.shape)
 
 
 def is_associated(image: bpy.types.Image | None) -> bool:
@@ -188,7 +199,10 @@ def read_pixels(image: bpy.types.Image) -> np.ndarray | None:
         return None
     if not image.has_data:
         return None
-    stored = np.nan_to_num(flat.reshape(height, width, channels), copy=False, nan=0.0, posinf=65504.0, neginf=0.0)
+    # Bytes are finite.
+    if image.is_float and not (np.isfinite(flat.min()) and np.isfinite(flat.max())):
+        flat = np.nan_to_num(flat, copy=False, nan=0.0, posinf=65504.0, neginf=0.0)
+    stored = flat.reshape(height, width, channels)
     if channels == 4:
         return stored
     pixels = np.ones((height, width, 4), np.float32)

@@ -3,6 +3,7 @@
 
 import contextlib
 import dataclasses
+import heapq
 from collections.abc import Iterator
 
 import bpy
@@ -28,6 +29,8 @@ class MeshTable:
         self._places: dict[int, int | None] = {}
         self._owners: dict[int, set[int]] = {}
         self._seen: set[int] = set()
+        self._free: list[int] = []
+        """Places of empty meshes, as a heap."""
         self._tried: dict[int, set[str]] = {}
         self._keys: dict[int, int] = {}
         self._before: dict[int, Mesh] = {}
@@ -70,6 +73,7 @@ class MeshTable:
         self._seen.discard(key)
         if place is not None:
             self.meshes[place] = NO_MESH
+            heapq.heappush(self._free, place)
             self._tried.pop(place)
             self._keys.pop(place)
 
@@ -105,7 +109,7 @@ class MeshTable:
             exported = None if evaluated is None else export_mesh(evaluated, source.name, self._report, before)
             if exported is None:
                 return None
-            place = next((i for i, known in enumerate(self.meshes) if known is NO_MESH), len(self.meshes))
+            place = heapq.heappop(self._free) if self._free else len(self.meshes)
             self.meshes[place : place + 1] = [exported]
             self._tried[place] = set()
             self._complete(place, evaluated, attributes, before)
