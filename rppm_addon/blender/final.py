@@ -11,6 +11,7 @@ import numpy as np
 from ..scene import Scene
 from ..scene.errors import RppmError, SceneError
 from ..scene.passes import COMBINED
+from ..scene.quantities import clock_text, count_text
 from ..session.observers import RenderObserver, current_observer
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
@@ -126,6 +127,7 @@ def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
         statistics.source_watts,
         statistics.source_photons,
         statistics.density_estimation,
+        statistics.first_photon_hits,
         tuple(statistics.warnings),
     )
 
@@ -226,8 +228,7 @@ def status_text(progress: "Progress", scene: Scene) -> str:
     """One line on how far the render is; farm managers read its ``Sample n/m``."""
     if progress.iteration == 0:
         return f"Sample 0/{progress.iterations} | Building the deep cubemap of {scene.triangle_count} triangles"
-    text = f"Sample {progress.iteration}/{progress.iterations} | {progress.photons / 1e6:.2f} million photons"
+    text = f"Sample {progress.iteration}/{progress.iterations} | {count_text(progress.photons)} photons"
     if 0.0 < progress.fraction < 1.0:
-        remaining = progress.elapsed_seconds * (1.0 / progress.fraction - 1.0)
-        text += f" | Remaining {int(remaining // 60):02d}:{remaining % 60:04.1f}"
+        text += f" | Remaining {clock_text(progress.elapsed_seconds * (1.0 / progress.fraction - 1.0))}"
     return text

@@ -50,7 +50,7 @@ class RPPM_OT_start_renderer(bpy.types.Operator):
     """Start the renderer process, anew if it runs, and see which graphics device it finds"""
 
     bl_idname = "rppm.start_renderer"
-    bl_label = "Check the Device"
+    bl_label = "Restart the Renderer"
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:

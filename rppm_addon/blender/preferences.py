@@ -11,7 +11,7 @@ import bpy
 from ..scene.quantities import bytes_text
 from ..session.process.client import ProcessState
 from . import renderer_process
-from .panels.base import paragraph, reading
+from .panels.base import letters_across, paragraph, reading
 
 if TYPE_CHECKING:
     from ..gl.context import DeviceInformation
@@ -61,7 +61,7 @@ class RppmPreferences(bpy.types.AddonPreferences):
         layout = self.layout
         problems = missing()
         for problem in problems:
-            paragraph(layout, problem, context, icon="ERROR")
+            paragraph(layout, problem, letters_across(context), icon="ERROR")
         if problems:
             return
         process = renderer_process.renderer_process()
@@ -70,7 +70,7 @@ class RppmPreferences(bpy.types.AddonPreferences):
         row.label(text=_TEXTS[state], icon="ERROR" if state is ProcessState.FAILED else "NONE")
         row.operator("rppm.start_renderer", text="Check the Device" if state is ProcessState.STOPPED else "Restart")
         if process.error:
-            paragraph(layout, process.error, context, icon="INFO")
+            paragraph(layout, process.error, letters_across(context), icon="INFO")
         device = process.device  # the process may end meanwhile
         if device is not None:
             self._draw_device(device)

@@ -11,7 +11,7 @@ from bpy.app.handlers import persistent
 
 from ..scene import Scene
 from ..session.process import remote_rendering
-from ..session.process.client import RendererProcess
+from ..session.process.client import ProcessState, RendererProcess
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
 from ..session.results import RenderResult
@@ -31,6 +31,12 @@ def renderer_process() -> RendererProcess:
             folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
             _process = RendererProcess([python_program(), *bpy.app.python_args], folders, log_path())
         return _process
+
+
+def failure() -> str:
+    """Why the process does not run although it was needed, one line; empty while all is well."""
+    process = _process
+    return process.error if process is not None and process.state is ProcessState.FAILED else ""
 
 
 def is_used() -> bool:

@@ -50,6 +50,8 @@ class RenderReport:
     """Photons of the last iteration by light source."""
     density_estimation: str = ""
     """The route that was taken, a name of DensityEstimation; empty before the first iteration."""
+    first_photon_hits: str = ""
+    """The route of the last iteration, a name of FirstPhotonHits; empty before the first."""
     warnings: tuple[str, ...] = ()
     warning_count: int = 0
     """All of them, where ``warnings`` was cut short."""
@@ -94,6 +96,7 @@ def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
         source_watts=status.source_watts,
         source_photons=status.source_photons,
         density_estimation=status.density_estimation,
+        first_photon_hits=status.first_photon_hits,
         warnings=tuple(status.warnings),
     )
 
@@ -108,6 +111,8 @@ class SceneReports:
     latest: RenderReport | None = None
     error: str = ""
     """Why the last final render gave no picture."""
+    viewport_error: str = ""
+    """Why viewports cannot show the scene as it is now."""
 
 
 _EMPTY = SceneReports()
@@ -135,6 +140,12 @@ def record_error(scene_uid: int, text: str) -> None:
     """Keep why a final render failed until one succeeds."""
     with _lock:
         _keep(scene_uid, replace(_reports.get(scene_uid, _EMPTY), error=text))
+
+
+def record_viewport_error(scene_uid: int, text: str) -> None:
+    """Keep why viewports cannot show a scene; "" once they can."""
+    with _lock:
+        _keep(scene_uid, replace(_reports.get(scene_uid, _EMPTY), viewport_error=text))
 
 
 def _keep(scene_uid: int, kept: SceneReports) -> None:

@@ -10,13 +10,15 @@ from bpy.app.handlers import persistent
 
 from ..scene import Camera, RenderSettings, Scene
 from ..scene.errors import RppmError
+from ..scene.quantities import rate_text
 from ..scene.sharing import share
 from ..session.process.client import ProcessState
 from ..session.process.sessions import SessionKind, SessionStatus
 from . import panels, reports
 from .export import SceneSync, export_exposure, export_settings, export_view
 from .frame_texture import FrameTexture
-from .renderer_process import renderer_process
+from .panels.base import length_text, letters_across
+from .renderer_process import failure, renderer_process
 
 logger = logging.getLogger(__name__)
 
@@ -41,6 +43,7 @@ class Viewport:
         self._changed_at = 0.0
         self._seen: tuple = ()
         self._error = ""
+        self._error_shown = ""
         self._recorded: SessionStatus | None = None
         self._read_out_at = 0.0
         self._regions: dict[int, tuple[float, float, float, float]] = {}
@@ -68,7 +71,7 @@ class Viewport:
             try:
                 self._follow(context, depsgraph)
             except RppmError as error:
-                self.engine.update_stats("RPPM", str(error))
+                self.engine.update_stats("", str(error))
         frame = self._session.newest()
         if frame is not None:
             x, y, width, height = self._regions.get(frame.generation, (0.0, 0.0, 1.0, 1.0))
@@ -112,15 +115,25 @@ class Viewport:
     def _tell(self, context: bpy.types.Context) -> None:
         process = renderer_process()
         status = self._session.status
-        error = self._error or status.error or (process.error if process.state is ProcessState.FAILED else "")
-        if error:
-            self.engine.update_stats("RPPM", error)
-        elif process.state is ProcessState.STARTING:
-            self.engine.update_stats("RPPM", "Starting the renderer")
+        starting = process.state is ProcessState.STARTING
+        error = self._error or ("" if starting else failure() or status.error)
+        if process.state is ProcessState.FAILED:
+            text = "The renderer has stopped: Restart is in the header"
+        elif error:
+            text = error
+        elif starting:
+            text = "Starting the renderer"
         elif not status.iterations:
-            self.engine.update_stats("RPPM", "Compiling shaders and building the scene")
+            text = "Compiling shaders and building the scene"
         else:
-            self.engine.update_stats("", status_text(status, context.scene.rppm.preview_pause))
+            radius = length_text(context.scene, status.radius_metres)
+            letters = letters_across(context)
+            text = status_text(status, context.scene.rppm.preview_pause, radius, letters)
+        self.engine.update_stats("", text)
+        if error != self._error_shown:
+            self._error_shown = error
+            reports.record_viewport_error(context.scene.session_uid, error)
+            panels.redraw()
         self._record(context, status)
 
     def _record(self, context: bpy.types.Context, status: SessionStatus) -> None:
@@ -175,18 +188,19 @@ def _region_of(camera: Camera) -> tuple[float, float, float, float]:
     return x_min / width, y_min / height, (x_max - x_min) / width, (y_max - y_min) / height
 
 
-def status_text(status: SessionStatus, paused: bool) -> str:
-    """One line over the viewport."""
-    text = f"Sample {status.iteration}/{status.iterations} | Radius {_meters(status.radius_meters)}"
-    if paused:
-        return f"{text} | Paused"
-    if status.settled:
-        return f"{text} | Finished"
-    return f"{text} | {status.photons_per_second / 1e6:.2f} million photons a second"
+def status_text(status: SessionStatus, paused: bool, radius: str, letters: int) -> str:
+    """One line over the viewport, of which that is left out for which ``letters`` are too few.
 
-
-def _meters(length: float) -> str:
-    return f"{length * 1e3:.3g} mm" if length < 1.0 else f"{length:.3g} m"
+    radius: that of the sample, with its unit.
+    """
+    if paused or status.settled:
+        state = "Paused" if paused else "Finished"
+    else:
+        state = f"{rate_text(status.photons_per_second)} photons/s"
+    parts = [f"Sample {status.iteration}/{status.iterations}", state, f"Radius {radius}"]
+    while len(parts) > 1 and len(" | ".join(parts)) > letters:
+        parts.pop()
+    return " | ".join(parts)
 
 
 _viewports: dict[int, Viewport] = {}

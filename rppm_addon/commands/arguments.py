@@ -70,7 +70,7 @@ def _add_render(commands: _Commands, scene: argparse.ArgumentParser, common: arg
         "--samples",
         type=_positive_integer,
         metavar="N",
-        help="iterations of the photon mapper",
+        help="samples: each sends photons and looks at every pixel once",
     )
     limit.add_argument("--seconds", type=_positive_number, metavar="S", help="render so long instead")
     limit.add_argument(

@@ -46,6 +46,8 @@ class NodeKind:
     """What the node needs besides: "table", where its table starts in material_data; "image", the number of its
     image; "attribute", the number of its mesh attribute."""
     surface: bool = False
+    fallbacks: dict[str, str] = field(default_factory=dict)
+    """What is rendered in place of the node where an option has a value, or "" for any: users are told."""
     function_option: str = ""
     """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
     passed: drivers take long to fold a choice among many at every call."""
@@ -65,6 +67,11 @@ class NodeKind:
             else:
                 literals.append(str(values.index(value)))
         return function, literals
+
+    def fallback(self, options: dict[str, Any]) -> str:
+        """What is rendered in place of a node with these options; "" where it is rendered as what it is."""
+        values = ("", *(options.get(name, values[0]) for name, values in self.options.items()))
+        return next((self.fallbacks[value] for value in values if value in self.fallbacks), "")
 
     @property
     def is_shader(self) -> bool:

@@ -28,6 +28,13 @@ def seconds_text(seconds: float) -> str:
     return f"{hours}:{minutes % 60:02d}:{whole % 60:02d} h" if hours else f"{minutes}:{whole % 60:02d} min"
 
 
+def clock_text(seconds: float) -> str:
+    """A time that is left, to whole seconds: 00:04, 12:30, 1:02:05."""
+    whole = round(seconds)
+    minutes, hours = whole // 60 % 60, whole // 3600
+    return f"{hours}:{minutes:02d}:{whole % 60:02d}" if hours else f"{minutes:02d}:{whole % 60:02d}"
+
+
 def rate_text(rate: float) -> str:
     """Something a second, without its name: 0.25, 12.3, 950, 65.5 k."""
     return count_text(rate) if rate >= 100.0 else f"{rate:.3g}"

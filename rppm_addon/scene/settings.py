@@ -60,8 +60,7 @@ class RenderSettings:
     iterations: int = setting(
         128,
         "Samples",
-        "Iterations of the photon mapper: each sends photons and looks at every pixel once, and makes the picture "
-        "sharper and less noisy",
+        "Each sample sends photons and looks at every pixel once, and makes the picture sharper and less noisy",
         property_name="samples",
         minimum=1,
         soft_maximum=4096,

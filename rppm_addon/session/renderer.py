@@ -220,6 +220,7 @@ class SlicedRender:
             triangles=mapper.triangle_count,
             radius_meters=mapper.splat_radii[0],
             density_estimation=mapper.density_estimation.name,
+            first_photon_hits=mapper.first_photon_hits.name,
             stage_seconds=mapper.timers.seconds,
             memory_bytes=mapper.memory_bytes,
             flux_watts=balance,

@@ -51,6 +51,8 @@ class RenderStatistics:
     radius_meters: float
     density_estimation: str = ""
     """The route that was taken, a name of DensityEstimation."""
+    first_photon_hits: str = ""
+    """The route of the last iteration, a name of FirstPhotonHits."""
     stage_seconds: dict[str, float] = field(default_factory=dict)
     memory_bytes: dict[str, int] = field(default_factory=dict)
     flux_watts: dict[str, float] = field(default_factory=dict)

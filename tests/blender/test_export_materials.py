@@ -308,6 +308,29 @@ def test_unknown_shaders_become_diffuse(scene, node):
     assert any('Material "Material": node "Odd"' in text and "diffuse" in text for text in warnings)
 
 
+@pytest.mark.parametrize(
+    ("node", "options", "inputs", "standing_in"),
+    [
+        ("ShaderNodeBsdfToon", {"component": "GLOSSY"}, {}, "a glossy surface"),
+        ("ShaderNodeBsdfToon", {}, {}, "a diffuse surface"),
+        ("ShaderNodeBsdfHair", {"component": "Transmission"}, {}, "a translucent surface"),
+        ("ShaderNodeSubsurfaceScattering", {}, {}, "a diffuse surface"),
+        ("ShaderNodeBsdfAnisotropic", {"distribution": "ASHIKHMIN_SHIRLEY"}, {}, "GGX"),
+        ("ShaderNodeBsdfAnisotropic", {"distribution": "BECKMANN"}, {}, ""),
+        ("ShaderNodeBsdfPrincipled", {}, {"Subsurface Weight": 0.3}, "diffuse reflection"),
+        ("ShaderNodeBsdfPrincipled", {}, {}, ""),
+    ],
+)
+def test_each_fallback_is_named(scene, node, options, inputs, standing_in):
+    material, shader = surface(node, "Odd", **inputs)
+    for name, value in options.items():
+        setattr(shader, name, value)
+    _, warnings = single_shader(scene, material)
+    assert len(warnings) == bool(standing_in)
+    assert all(f'Material "Material": node "Odd" ({shader.type})' in text for text in warnings)
+    assert all(standing_in in text and text.endswith("stands in") for text in warnings)
+
+
 def test_an_unknown_value_leaves_that_of_the_socket(scene):
     material, diffuse = surface("ShaderNodeBsdfDiffuse", Color=OCHRE)
     script = add_node(material.node_tree, "ShaderNodeShaderToRGB", "Strange")

@@ -9,17 +9,28 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_object, new_material, set_world
 from drawing import RecordingLayout, context_of, drawn, drawn_panels
 
-from rppm_addon.blender import panels, reports
+from rppm_addon.blender import panels, renderer_process, reports
 from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.blender.panels import presets, viewport_header
 from rppm_addon.blender.panels.base import RppmPanel
+from rppm_addon.blender.panels.switches import SUGGESTIONS
 from rppm_addon.blender.reports import RenderKind, RenderReport
 from rppm_addon.integrator.density_estimation.radii import shrinkage
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.integrator.memory import expected_memory
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.quantities import bytes_text
+from rppm_addon.session.process.client import ProcessState
 
+OF_SWITCH = {
+    "time_limit": "RPPM_PT_sampling_final",
+    "photons": "RPPM_PT_sampling_final",
+    "preview_photons": "RPPM_PT_sampling_viewport",
+    "radius_minimum": "RPPM_PT_radius",
+    "radius_maximum": "RPPM_PT_radius",
+    "cubemap_resolution": "RPPM_PT_deep_cubemap",
+}
+"""The panel that shows a setting with its switch."""
 PANELS = [cls for cls in panels.CLASSES if issubclass(cls, RppmPanel)]
 
 
@@ -42,6 +53,12 @@ def report(kind=RenderKind.FINAL, **values):
 def test_panels_show_every_setting(scene):
     records = drawn_panels(PANELS, context_of(scene))
     shown = {name for record in records.values() for name in record.properties}
+    for name, value in SUGGESTIONS.items():  # shown where they are other than 0
+        switch_and_value = 1 + (getattr(scene.rppm, name) != 0)
+        assert name in shown and records[OF_SWITCH[name]].properties.count(name) == switch_and_value
+        setattr(scene.rppm, name, value)
+        again = drawn(next(cls for cls in PANELS if cls.__name__ == OF_SWITCH[name]), context_of(scene))
+        assert again.properties.count(name) == 2
     properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
     assert shown >= properties | {"film_transparent", "film_exposure", "use_pass_z", "use_pass_normal"}
     # Nothing has been rendered: no statistics and no warnings.
@@ -148,12 +165,12 @@ def test_the_radius_is_that_of_equations_2_and_3(scene):
     ratio = np.prod([np.sqrt((k + 0.5) / (k + 1)) for k in range(1, 40)])
     labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
     assert f"{first:.2f} pixels" in labels
-    assert f"{first * ratio:.2f} pixels ({ratio:.0%}) after 40 samples" in labels
-    assert f"{shrinkage(10, 0.5):.0%} after 10 samples" in labels
+    assert f"{first * ratio:.2f} pixels ({ratio:.0%})" in labels
+    assert f"{shrinkage(10, 0.5):.0%} after 10" in labels
     scene.unit_settings.system = "METRIC"
     reports.record(scene.session_uid, report(RenderKind.VIEWPORT))
     labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
-    assert labels[-2:] == ["Last Viewport", "1.2 cm in sample 8"]
+    assert labels[-2:] == ["Rendered", "1.2 cm in sample 8"]
 
 
 def test_expected_memory(scene):
@@ -167,7 +184,7 @@ def test_expected_memory(scene):
     layer.use_pass_z = layer.use_pass_normal = True  # as those of the report
     expected = expected_memory(16, 32, 5000, 3)
     labels = drawn(panel, context_of(scene)).labels
-    assert labels[-1] == bytes_text(expected.total_bytes) and "known once it was rendered" in labels
+    assert labels[-1] == bytes_text(expected.total_bytes) and "once rendered" in labels
     reports.record(scene.session_uid, report())
     beside = (200 << 20) - expected_memory(64, 32, 1000, 8).total_bytes
     labels = drawn(panel, context_of(scene)).labels
@@ -181,22 +198,26 @@ def test_automatic_photons_are_told(scene):
     render.resolution_x, render.resolution_y, render.resolution_percentage = 400, 300, 50
     render.use_border = True
     render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.0, 0.5, 0.0, 1.0
-    assert "15.0 k photons" in drawn(panel, context_of(scene)).labels
+    assert "Automatic: 15.0 k" in drawn(panel, context_of(scene)).labels
     scene.rppm.photons = 5000
-    assert not drawn(panel, context_of(scene)).labels
+    assert drawn(panel, context_of(scene)).labels == ["No limit"]
 
 
 def test_rates_and_the_last_renders(scene):
-    viewport = report(RenderKind.VIEWPORT, iterations=4, photons=1000, density_estimation="GRID")
+    viewport = report(
+        RenderKind.VIEWPORT, iterations=4, photons=1000, density_estimation="GRID", first_photon_hits="TRACED"
+    )
     reports.record(scene.session_uid, viewport)
     for number in range(1, 4):
         reports.record(scene.session_uid, report(photons=8000 * number, warnings=("a", "b")))
     status = drawn(panels.performance.RPPM_PT_status, context_of(scene)).labels
     assert status.index("Viewport") < status.index("Final")
-    assert "1 samples, 250 photons" in status and "2 samples, 6.00 k photons" in status
+    assert status.count("1 samples/s") == status.count("250 photons/s") == 1
+    assert status.count("2 samples/s") == status.count("6.00 k photons/s") == 1
     assert status.count("3.00 k a sample") == 1 and status.count("250 a sample") == 1
     assert "8 of 8" in status and "200.0 MiB" in status
-    assert status.count("Density Estimation") == status.count("Photon Grid") == 1
+    assert status.count("Density") == status.count("Photon Grid") == 1
+    assert status.count("First Hits") == status.count("Traced") == 1
     table = drawn(panels.performance.RPPM_PT_last_renders, context_of(scene)).labels
     start = table.index("Photons")
     assert table[start : start + 4] == ["Photons", "24.0 k", "16.0 k", "8.00 k"]
@@ -273,8 +294,53 @@ def test_the_pause_button_shows_in_rendered_viewports(scene):
     def shown(engine, shading):
         header = SimpleNamespace(layout=RecordingLayout())
         space = SimpleNamespace(type="VIEW_3D", shading=SimpleNamespace(type=shading))
-        viewport_header.draw_pause(header, context_of(scene, engine=engine, space_data=space))
-        return header.layout.record.properties
+        viewport_header.draw_header(header, context_of(scene, engine=engine, space_data=space))
+        return header.layout.record
 
-    assert shown("RPPM", "RENDERED") == ["preview_pause"]
-    assert shown("RPPM", "SOLID") == shown("CYCLES", "RENDERED") == []
+    assert shown("RPPM", "RENDERED").properties == ["preview_pause"]
+    assert shown("RPPM", "SOLID").properties == shown("CYCLES", "RENDERED").properties == []
+    # Warnings of the viewport, not of a final render, are behind a button; an error is too.
+    reports.record(scene.session_uid, report(RenderKind.FINAL, warnings=("a",)))
+    assert shown("RPPM", "RENDERED").popovers == []
+    reports.record(scene.session_uid, report(RenderKind.VIEWPORT, warnings=('Material "M": is odd', "b")))
+    assert shown("RPPM", "RENDERED").popovers == ["RPPM_PT_viewport_warnings"] and not shown("RPPM", "SOLID").popovers
+    listed = drawn(panels.warnings.RPPM_PT_viewport_warnings, context_of(scene))
+    assert listed.labels == ["M (1)", "is odd", "b"] and len(listed.operators) == 1
+    reports.forget()
+    reports.record_viewport_error(scene.session_uid, "no lights")
+    assert shown("RPPM", "RENDERED").popovers == ["RPPM_PT_viewport_warnings"]
+    assert drawn(panels.warnings.RPPM_PT_viewport_warnings, context_of(scene)).labels == ["no lights"]
+
+
+def test_a_renderer_that_has_stopped_can_be_started_where_it_is_missed(scene, monkeypatch):
+    process = renderer_process.renderer_process()
+    monkeypatch.setattr(process, "state", ProcessState.FAILED)
+    monkeypatch.setattr(process, "error", "The renderer process was ended by SIGKILL")
+    reports.record_error(scene.session_uid, process.error)
+    space = SimpleNamespace(type="VIEW_3D", shading=SimpleNamespace(type="RENDERED"))
+    header = SimpleNamespace(layout=RecordingLayout())
+    context = context_of(scene, space_data=space)
+    viewport_header.draw_header(header, context)
+    status = drawn(panels.performance.RPPM_PT_status, context)
+    popover = drawn(panels.warnings.RPPM_PT_viewport_warnings, context)
+    for record in (header.layout.record, status, popover):
+        assert [button._identifier for button in record.operators] == ["rppm.start_renderer"]
+    assert "SIGKILL" in " ".join(status.labels) and "SIGKILL" in " ".join(popover.labels)
+    assert " ".join(status.labels).count("SIGKILL") == 1
+    assert not panels.warnings.RPPM_PT_warnings.poll(context)
+    monkeypatch.setattr(process, "state", ProcessState.RUNNING)
+    reports.forget()
+    assert not panels.performance.RPPM_PT_status.poll(context)
+
+
+def test_switches_of_settings_that_may_be_automatic(scene):
+    assert not scene.rppm_switches.photons and scene.rppm_switches.preview_photons
+    for name, value in SUGGESTIONS.items():
+        setattr(scene.rppm_switches, name, False)
+        assert getattr(scene.rppm, name) == 0
+        setattr(scene.rppm_switches, name, True)
+        assert getattr(scene.rppm, name) == pytest.approx(value)
+    scene.rppm.photons = 777
+    scene.rppm_switches.photons = True
+    assert scene.rppm.photons == 777
+    export_settings(scene).validate()

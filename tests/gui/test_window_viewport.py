@@ -27,7 +27,7 @@ def viewport(open_blender):
     """A window whose viewport is about to be rendered, from the camera."""
     blender = open_blender("small.blend")
     arrange(blender)
-    for name in ("iterations", "preview_samples"):
+    for name in ("samples", "preview_samples"):
         blender.step("assign", path=f"scene.rppm.{name}", value=ITERATIONS)
     for name in ("photons", "preview_photons"):
         blender.step("assign", path=f"scene.rppm.{name}", value=PHOTONS)

@@ -60,7 +60,11 @@ def test_what_happens_again_and_again_ends_in_failure(start, fault, text):
     assert re.search(text, error)
     assert process.restarts == MOST_RESTARTS == 2
     assert session.status.error == error and session.status.settled
-    assert viewport(process).status.error == error
+    preview = process.open(SessionKind.PREVIEW)
+    assert preview.events.get(timeout=1.0)[0] == "failed" and process.state is ProcessState.FAILED
+    process.error = "forgotten"
+    viewport(process)  # which a user asked for: the process is tried again
+    assert failed(process) == error and process.restarts == MOST_RESTARTS
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 
 import pytest
 
-from rppm_addon.scene.quantities import bytes_text, count_text, rate_text, seconds_text
+from rppm_addon.scene.quantities import bytes_text, clock_text, count_text, rate_text, seconds_text
 
 
 @pytest.mark.parametrize(
@@ -31,3 +31,8 @@ def test_durations(seconds, text):
 @pytest.mark.parametrize(("rate", "text"), [(0.25, "0.25"), (12.34, "12.3"), (950.0, "950"), (65536.0, "65.5 k")])
 def test_rates(rate, text):
     assert rate_text(rate) == text
+
+
+@pytest.mark.parametrize(("seconds", "text"), [(0.2, "00:00"), (4.2, "00:04"), (749.6, "12:30"), (3725.4, "1:02:05")])
+def test_times_left(seconds, text):
+    assert clock_text(seconds) == text

@@ -15,6 +15,7 @@ from . import (
     sampling,
     shading,
     simplify,
+    switches,
     view_layer,
     viewport_header,
     viewport_shading,
@@ -42,6 +43,7 @@ CLASSES = (
 
 def register() -> None:
     """Add the panels, and let Blender's own show."""
+    switches.register()
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     presets.register()
@@ -56,11 +58,16 @@ def unregister() -> None:
     presets.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+    switches.unregister()
 
 
 def redraw() -> None:
-    """Have the editors that show readings drawn again, as when a viewport has reported. Main thread only."""
+    """Have all drawn again that shows readings, as when a viewport has reported. Main thread only."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type in {"PROPERTIES", "PREFERENCES"}:
                 area.tag_redraw()
+            elif area.type == "VIEW_3D":
+                for region in area.regions:
+                    if region.type == "HEADER":
+                        region.tag_redraw()

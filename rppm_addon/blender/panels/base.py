@@ -19,6 +19,8 @@ class RppmPanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "render"
+    is_decorated = False
+    """Whether what can be animated has its dot, as in Blender's own panels of objects' data."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -27,7 +29,7 @@ class RppmPanel:
     def column(self) -> bpy.types.UILayout:
         """A column laid out as Blender's own panels are."""
         self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
+        self.layout.use_property_decorate = self.is_decorated
         return self.layout.column()
 
 
@@ -41,6 +43,17 @@ def rendered_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
     return (width, height) if region is None else (region[2] - region[0], region[3] - region[1])
 
 
+def length_text(scene: bpy.types.Scene, meters: float) -> str:
+    """A length in the scene's units, with three digits."""
+    return bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", meters, precision=3).strip()
+
+
+def letters_across(context: bpy.types.Context) -> int:
+    """How many letters one line of the region takes beside what Blender leaves free or puts there."""
+    scale = context.preferences.system.ui_scale
+    return max(20, int(context.region.width / (_CHARACTER_WIDTH * scale)) - 8)
+
+
 def reading(layout: bpy.types.UILayout, name: str, text: str) -> None:
     """A line with a figure that is computed, laid out as a property is."""
     split = layout.split(factor=0.4)
@@ -50,10 +63,13 @@ def reading(layout: bpy.types.UILayout, name: str, text: str) -> None:
     split.label(text=text)
 
 
-def paragraph(layout: bpy.types.UILayout, text: str, context: bpy.types.Context, icon: str = "NONE") -> None:
-    """Text on as many lines as the region's width takes."""
-    scale = context.preferences.system.ui_scale
-    letters = max(20, int(context.region.width / (_CHARACTER_WIDTH * scale)) - 8)
+def restart_button(layout: bpy.types.UILayout) -> None:
+    """What starts a renderer that has stopped."""
+    layout.operator("rppm.start_renderer", text="Restart", icon="FILE_REFRESH")
+
+
+def paragraph(layout: bpy.types.UILayout, text: str, letters: int, icon: str = "NONE") -> None:
+    """Text on as many lines as it takes with so many letters each."""
     column = layout.column(align=True)
     for number, line in enumerate(textwrap.wrap(text, letters)):
         column.label(text=line, icon=icon if number == 0 else "BLANK1" if icon != "NONE" else "NONE")

@@ -9,6 +9,7 @@ from .nodes import RppmNodePanel
 
 class RppmLightPanel(RppmPanel):
     bl_context = "data"
+    is_decorated = True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -70,6 +71,7 @@ class RPPM_PT_panorama(RppmPanel, bpy.types.Panel):
 
     bl_label = "Panorama"
     bl_context = "data"
+    is_decorated = True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the render tab on memory, rates and the last renders."""
+"""Panels of the render tab on memory, how renders get on, and diagnostics."""
 
 import bpy
 
 from ...scene.quantities import bytes_text, count_text, rate_text, seconds_text
 from ..export.settings import export_settings
 from ..readings import memory_reading
+from ..renderer_process import failure
 from ..reports import RenderReport, reports_of
-from .base import RppmPanel, reading, rendered_size
+from .base import RppmPanel, length_text, letters_across, paragraph, reading, rendered_size, restart_button
+from .switches import draw_setting
 
 
 class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
@@ -23,24 +25,31 @@ class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
         memory = memory_reading(settings, *rendered_size(scene.render), last)
         photons = memory.by_settings.ppm.get("photons", 0)
         reading(column, "Photons", bytes_text(photons))
-        reading(column, "Picture and Paths", bytes_text(memory.by_settings.total_bytes - photons))
+        reading(column, "Picture", bytes_text(memory.by_settings.total_bytes - photons))
         if memory.scene_bytes is None:
-            reading(column, "Scene", "known once it was rendered")
+            reading(column, "Scene", "once rendered")
         else:
             reading(column, "Scene", bytes_text(memory.scene_bytes))
-        reading(column, "Expected Memory", bytes_text(memory.total_bytes))
+        reading(column, "Expected", bytes_text(memory.total_bytes))
+
+
+class RPPM_PT_diagnostics(RppmPanel, bpy.types.Panel):
+    bl_label = "Diagnostics"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """All is in the panels inside."""
 
 
 class RPPM_PT_deep_cubemap(RppmPanel, bpy.types.Panel):
     bl_label = "Deep Cubemap"
-    bl_parent_id = "RPPM_PT_performance"
+    bl_parent_id = "RPPM_PT_diagnostics"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
         column = self.column()
-        column.prop(settings, "cubemap_resolution", text="Resolution")
-        column.prop(settings, "cubemap_center_object", text="Center")
+        draw_setting(column, context.scene, "cubemap_resolution", "Resolution")
+        column.prop(context.scene.rppm, "cubemap_center_object", text="Center")
 
 
 class RPPM_PT_status(RppmPanel, bpy.types.Panel):
@@ -48,10 +57,19 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and reports_of(context.scene.session_uid).latest is not None
+        if not super().poll(context):
+            return False
+        reports = reports_of(context.scene.session_uid)
+        return reports.latest is not None or bool(failure() or reports.error or reports.viewport_error)
 
     def draw(self, context: bpy.types.Context) -> None:
-        reports = reports_of(context.scene.session_uid)
+        reports, letters = reports_of(context.scene.session_uid), letters_across(context)
+        if failure():
+            paragraph(self.layout, f"The renderer has stopped: {failure()}", letters, icon="ERROR")
+            restart_button(self.layout)
+        for title, error in (("Viewport", reports.viewport_error), ("Last render", reports.error)):
+            if error and error != failure():
+                paragraph(self.layout, f"{title}: {error}", letters, icon="ERROR")
         for report in (reports.viewport, reports.finals[0] if reports.finals else None):
             if report is not None:
                 self.layout.label(text=report.kind.value)
@@ -61,22 +79,25 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
     reading(column, "Samples", f"{report.iterations} of {report.settings.iterations}")
     reading(column, "Photons", f"{count_text(report.photons_per_iteration)} a sample")
-    radius = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_meters, precision=4)
-    reading(column, "Largest Radius", radius)
+    reading(column, "Radius", length_text(scene, report.radius_metres))
     reading(column, "Memory", bytes_text(report.memory_bytes))
-    rates = f"{rate_text(report.iterations_per_second)} samples, {rate_text(report.photons_per_second)} photons"
-    reading(column, "Per Second", rates)
-    reading(column, "Time", f"{seconds_text(report.seconds)}, {seconds_text(report.build_seconds)} of it building")
-    if report.density_estimation:
-        routes = scene.rppm.bl_rna.properties["density_estimation"].enum_items
-        reading(column, "Density Estimation", routes[report.density_estimation].name)
+    reading(column, "Speed", f"{rate_text(report.iterations_per_second)} samples/s")
+    reading(column, "", f"{rate_text(report.photons_per_second)} photons/s")
+    reading(column, "Time", seconds_text(report.seconds))
+    reading(column, "Building", seconds_text(report.build_seconds))
+    for title, name, taken in (
+        ("Density", "density_estimation", report.density_estimation),
+        ("First Hits", "first_photon_hits", report.first_photon_hits),
+    ):
+        if taken:
+            reading(column, title, scene.rppm.bl_rna.properties[name].enum_items[taken].name)
     if report.device:
         reading(column, "Device", report.device)
 
 
 class RPPM_PT_last_renders(RppmPanel, bpy.types.Panel):
     bl_label = "Last Renders"
-    bl_parent_id = "RPPM_PT_performance"
+    bl_parent_id = "RPPM_PT_diagnostics"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
@@ -109,4 +130,4 @@ _COMPARED = (
 
 
 STATUS = (RPPM_PT_status,)
-CLASSES = (RPPM_PT_performance, RPPM_PT_deep_cubemap, RPPM_PT_last_renders)
+CLASSES = (RPPM_PT_performance, RPPM_PT_diagnostics, RPPM_PT_deep_cubemap, RPPM_PT_last_renders)

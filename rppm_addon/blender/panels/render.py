@@ -7,7 +7,8 @@ from ..export.camera.camera import frame_size
 from ..export.settings import export_settings
 from ..readings import radius_reading
 from ..reports import reports_of
-from .base import RppmPanel, reading
+from .base import RppmPanel, length_text, reading
+from .switches import draw_setting
 
 
 class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
@@ -18,7 +19,7 @@ class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
         column = self.column()
         column.prop(settings, "max_camera_bounces", text="Camera")
         column.prop(settings, "max_photon_bounces", text="Photon")
-        column.prop(settings, "specular_roughness")
+        column.prop(settings, "specular_roughness", text="Specular")
 
 
 class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
@@ -28,22 +29,20 @@ class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         scene = context.scene
         column = self.column()
-        column.prop(scene.rppm, "radius_scale")
-        column.prop(scene.rppm, "use_adaptive_radius")
-        column.prop(scene.rppm, "radius_minimum", text="Minimum")
-        column.prop(scene.rppm, "radius_maximum", text="Maximum")
+        column.prop(scene.rppm, "radius_scale", text="Initial")
+        column.prop(scene.rppm, "use_adaptive_radius", text="Adaptive")
+        draw_setting(column, scene, "radius_minimum", "Minimum")
+        draw_setting(column, scene, "radius_maximum", "Maximum")
         column.prop(scene.rppm, "alpha")
         column.separator()
         final = radius_reading(export_settings(scene), *frame_size(scene.render))
-        reading(column, "First Sample", f"{final.first:.2f} pixels")
-        text = f"{final.last:.2f} pixels ({final.shrinkage:.0%}) after {scene.rppm.samples} samples"
-        reading(column, "Final Render", text)
+        reading(column, "First", f"{final.first:.2f} pixels")
+        reading(column, "Last", f"{final.last:.2f} pixels ({final.shrinkage:.0%})")
         viewport = radius_reading(export_settings(scene, viewport=True), *frame_size(scene.render))
-        reading(column, "Viewport", f"{viewport.shrinkage:.0%} after {scene.rppm.preview_samples} samples")
+        reading(column, "Viewport", f"{viewport.shrinkage:.0%} after {scene.rppm.preview_samples}")
         report = reports_of(scene.session_uid).latest
         if report is not None:
-            length = bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", report.radius_meters, precision=4)
-            reading(column, f"Last {report.kind.value}", f"{length} in sample {report.iterations}")
+            reading(column, "Rendered", f"{length_text(scene, report.radius_metres)} in sample {report.iterations}")
 
 
 class RPPM_PT_animation(RppmPanel, bpy.types.Panel):
@@ -51,7 +50,7 @@ class RPPM_PT_animation(RppmPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        self.column().prop(context.scene.rppm, "samples_per_frame")
+        self.column().prop(context.scene.rppm, "samples_per_frame", text="Samples")
 
 
 class RPPM_PT_film(RppmPanel, bpy.types.Panel):

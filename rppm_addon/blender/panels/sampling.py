@@ -5,9 +5,10 @@ import bpy
 
 from ...scene.quantities import count_text
 from ..export.settings import export_settings
-from .base import RppmPanel, reading, rendered_size
+from .base import RppmPanel, rendered_size
 from .cycles_settings import RPPM_OT_copy_from_cycles, RPPM_OT_copy_to_cycles
 from .presets import RPPM_PT_presets
+from .switches import draw_setting
 
 
 class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
@@ -23,8 +24,8 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
         column.prop(settings, "use_final_gather")
         if RPPM_OT_copy_from_cycles.poll(context):
             row = column.row(align=True)
-            row.operator(RPPM_OT_copy_from_cycles.bl_idname)
-            row.operator(RPPM_OT_copy_to_cycles.bl_idname)
+            row.operator(RPPM_OT_copy_from_cycles.bl_idname, text="From Cycles")
+            row.operator(RPPM_OT_copy_to_cycles.bl_idname, text="To Cycles")
 
 
 class RPPM_PT_sampling_viewport(RppmPanel, bpy.types.Panel):
@@ -35,7 +36,7 @@ class RPPM_PT_sampling_viewport(RppmPanel, bpy.types.Panel):
         settings = context.scene.rppm
         column = self.column()
         column.prop(settings, "preview_samples", text="Samples")
-        column.prop(settings, "preview_photons", text="Photons")
+        draw_setting(column, context.scene, "preview_photons", "Photons")
         column.prop(settings, "preview_pause", text="Pause")
 
 
@@ -47,11 +48,9 @@ class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
         settings = context.scene.rppm
         column = self.column()
         column.prop(settings, "samples")
-        column.prop(settings, "photons")
-        if settings.photons == 0:
-            photons = export_settings(context.scene).photons_for(*rendered_size(context.scene.render))
-            reading(column, "Automatic", f"{count_text(photons)} photons")
-        column.prop(settings, "time_limit")
+        photons = export_settings(context.scene).photons_for(*rendered_size(context.scene.render))
+        draw_setting(column, context.scene, "photons", "Photons", f"Automatic: {count_text(photons)}")
+        draw_setting(column, context.scene, "time_limit", "Time Limit")
 
 
 class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
@@ -65,8 +64,8 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "use_animated_seed", text="", icon="TIME")
-        column.prop(settings, "density_estimation")
-        column.prop(settings, "first_photon_hits")
+        column.prop(settings, "density_estimation", text="Density")
+        column.prop(settings, "first_photon_hits", text="First Hits")
         column.prop(settings, "use_splat_roulette")
 
 

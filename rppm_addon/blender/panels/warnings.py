@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel that lists what the last render warned of."""
+"""What the last render warned of: a panel of the render tab, and a popover of the viewport's header."""
 
 import bpy
 
-from ..reports import reports_of
+from ..renderer_process import failure
+from ..reports import RenderReport, reports_of
 from ..subjects import Subject, SubjectKind, subjects
-from .base import RppmPanel, paragraph
+from .base import ENGINE, RppmPanel, letters_across, paragraph, restart_button
 
 SUBJECTS_SHOWN = 20
 TEXTS_SHOWN = 4
@@ -20,35 +21,57 @@ class RPPM_PT_warnings(RppmPanel, bpy.types.Panel):
     def poll(cls, context: bpy.types.Context) -> bool:
         if not super().poll(context):
             return False
-        reports = reports_of(context.scene.session_uid)
-        return bool(reports.error or (reports.latest is not None and reports.latest.warnings))
+        latest = reports_of(context.scene.session_uid).latest
+        return latest is not None and latest.warning_count > 0
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        report = reports_of(context.scene.session_uid).latest
-        self.layout.label(text=f"{0 if report is None else report.warning_count} ")
+        self.layout.label(text=f"{reports_of(context.scene.session_uid).latest.warning_count} ")
 
     def draw(self, context: bpy.types.Context) -> None:
-        reports = reports_of(context.scene.session_uid)
-        if reports.error:
-            paragraph(self.layout, reports.error, context, icon="ERROR")
-        if reports.latest is None:
-            return
-        found = subjects(reports.latest.warnings)
-        for subject in found[:SUBJECTS_SHOWN]:
-            self._draw_subject(subject, context)
-        listed = sum(min(len(subject.texts), TEXTS_SHOWN) for subject in found[:SUBJECTS_SHOWN])
-        if listed < reports.latest.warning_count:
-            self.layout.label(text=f"{reports.latest.warning_count - listed} more are in the log", icon="INFO")
-
-    def _draw_subject(self, subject: Subject, context: bpy.types.Context) -> None:
-        box = self.layout.box()
-        if subject.kind is not None:
-            row = box.row()
-            row.label(text=f"{subject.name} ({len(subject.texts)})", icon=_ICONS[subject.kind])
-            button = row.operator("rppm.select_subject", text="", icon="RESTRICT_SELECT_OFF")
-            button.kind, button.name, button.node = subject.kind.name, subject.name, subject.node
-        for text in subject.texts[:TEXTS_SHOWN]:
-            paragraph(box, text, context)
+        _draw_warnings(self.layout, reports_of(context.scene.session_uid).latest, letters_across(context))
 
 
-CLASSES = (RPPM_PT_warnings,)
+class RPPM_PT_viewport_warnings(bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "HEADER"
+    bl_label = "Warnings"
+    bl_ui_units_x = 16
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.engine == ENGINE
+
+    def draw(self, context: bpy.types.Context) -> None:
+        reports, layout = reports_of(context.scene.session_uid), self.layout
+        if failure():
+            restart_button(layout)
+        error = failure() or reports.viewport_error
+        if error:
+            paragraph(layout, error, LETTERS_OF_POPOVER, icon="ERROR")
+        if reports.viewport is not None:
+            _draw_warnings(layout, reports.viewport, LETTERS_OF_POPOVER)
+
+
+LETTERS_OF_POPOVER = 44
+
+
+def _draw_warnings(layout: bpy.types.UILayout, report: RenderReport, letters: int) -> None:
+    found = subjects(report.warnings)
+    for subject in found[:SUBJECTS_SHOWN]:
+        _draw_subject(layout.box(), subject, letters)
+    listed = sum(min(len(subject.texts), TEXTS_SHOWN) for subject in found[:SUBJECTS_SHOWN])
+    if listed < report.warning_count:
+        layout.label(text=f"{report.warning_count - listed} more are in the log", icon="INFO")
+
+
+def _draw_subject(box: bpy.types.UILayout, subject: Subject, letters: int) -> None:
+    if subject.kind is not None:
+        row = box.row()
+        row.label(text=f"{subject.name} ({len(subject.texts)})", icon=_ICONS[subject.kind])
+        button = row.operator("rppm.select_subject", text="", icon="RESTRICT_SELECT_OFF")
+        button.kind, button.name, button.node = subject.kind.name, subject.name, subject.node
+    for text in subject.texts[:TEXTS_SHOWN]:
+        paragraph(box, text, letters)
+
+
+CLASSES = (RPPM_PT_warnings, RPPM_PT_viewport_warnings)

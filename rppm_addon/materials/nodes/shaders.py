@@ -9,8 +9,10 @@ conductor of the metallic node, the F82 curve that meets its own at normal incid
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, SHADER, VECTOR, NodeKind
 
 
-def _shader(output: str, inputs: dict | None = None, options: dict | None = None) -> NodeKind:
-    return NodeKind("shaders.glsl", inputs or {}, {output: SHADER}, options or {})
+def _shader(
+    output: str, inputs: dict | None = None, options: dict | None = None, fallbacks: dict[str, str] | None = None
+) -> NodeKind:
+    return NodeKind("shaders.glsl", inputs or {}, {output: SHADER}, options or {}, fallbacks=fallbacks or {})
 
 
 _NORMAL = {"normal": (VECTOR, "normal")}
@@ -36,6 +38,7 @@ KINDS = {
         "bsdf",
         _GRAY | {"roughness": (FLOAT, 0.5)} | _ANISOTROPY,
         {"distribution": ("BECKMANN", "GGX", "ASHIKHMIN_SHIRLEY", "MULTI_GGX")},
+        {"ASHIKHMIN_SHIRLEY": "a glossy surface with the distribution GGX"},
     ),
     "bsdf_glass": _shader(
         "bsdf",
@@ -61,6 +64,7 @@ KINDS = {
             "anisotropy": (FLOAT, 0.0),
         }
         | _NORMAL,
+        fallbacks={"": "a diffuse surface"},
     ),
     "bsdf_metallic": _shader(
         "bsdf",
@@ -76,12 +80,16 @@ KINDS = {
         {"distribution": ("BECKMANN", "GGX", "MULTI_GGX"), "fresnel_type": ("PHYSICAL_CONDUCTOR", "F82")},
     ),
     "bsdf_toon": _shader(
-        "bsdf", _GRAY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL, {"component": ("DIFFUSE", "GLOSSY")}
+        "bsdf",
+        _GREY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL,
+        {"component": ("DIFFUSE", "GLOSSY")},
+        {"DIFFUSE": "a diffuse surface", "GLOSSY": "a glossy surface"},
     ),
     "bsdf_hair": _shader(
         "bsdf",
         _GRAY | {"offset": (FLOAT, 0.0), "roughnessu": (FLOAT, 0.1), "roughnessv": (FLOAT, 1.0)} | _TANGENT,
         {"component": ("Reflection", "Transmission")},
+        {"Reflection": "a glossy surface, stretched across the fiber", "Transmission": "a translucent surface"},
     ),
     "bsdf_principled": _shader(
         "bsdf",

@@ -34,7 +34,7 @@ class ProcessState(enum.Enum):
     STARTING = "STARTING"
     RUNNING = "RUNNING"
     FAILED = "FAILED"
-    """It ended too often or cannot run here; ``error`` says why, restart() tries again."""
+    """It ended too often or cannot run here; ``error`` says why. restart() and new sessions but previews try again."""
 
 
 @dataclass(frozen=True)
@@ -87,27 +87,29 @@ class RendererProcess:
         self._restarting = False
 
     def open(self, kind: SessionKind) -> ViewportSession | RenderSession:
-        """A new session; starts the process if there is none."""
+        """A new session; starts the process if there is none.
+
+        After a failure a viewport or a final render, which users ask for, tries again; previews come by themselves.
+        """
         with self.changed:
             self._numbers += 1
             made = ViewportSession if kind is SessionKind.VIEWPORT else RenderSession
             session = self.sessions[self._numbers] = made(self, self._numbers, kind)
             if self.state is ProcessState.RUNNING:
                 session.introduce()
-            elif self.state is ProcessState.STOPPED:
-                self._start()
-            elif self.state is ProcessState.FAILED:
+            elif self.state is ProcessState.FAILED and kind is SessionKind.PREVIEW:
                 session.fail(self.error)
+            elif self.state in {ProcessState.STOPPED, ProcessState.FAILED}:
+                self._start()
             return session
 
     def restart(self) -> None:
         """End the process if there is one, and start a new one that takes over the open sessions."""
         with self.changed:
-            self.restarts = 0
-            self.error = ""
             if self._keeper is None:
                 self._start()
             else:
+                self.restarts, self.error = 0, ""
                 self._restarting = True
                 self.state = ProcessState.STARTING
                 self.changed.notify_all()
@@ -157,7 +159,7 @@ class RendererProcess:
         self.sessions.clear()
 
     def _start(self) -> None:
-        self.state = ProcessState.STARTING
+        self.state, self.restarts, self.error = ProcessState.STARTING, 0, ""
         # A daemon: a Blender that ends without unregistering must not wait for it.
         self._keeper = threading.Thread(target=self._keep, name="RPPM process", daemon=True)
         self._keeper.start()

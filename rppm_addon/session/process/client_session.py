@@ -127,6 +127,7 @@ class ViewportSession(Session):
         """As Session has it."""
         super().introduce()
         self._reader = None
+        self.status = dataclasses.replace(self.status, error="", settled=False)
         if self._paused:
             self.process.post("pause", session=self.number, paused=True)
 

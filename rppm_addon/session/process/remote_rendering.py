@@ -10,7 +10,7 @@ from ...scene import errors
 from ...scene.scene import Scene
 from ..render_job import POLL_SECONDS, RenderJob
 from ..results import Frame, Progress, RenderResult, RenderStatistics, empty_result
-from .client import RendererProcess
+from .client import ProcessState, RendererProcess
 from .client_session import RenderSession
 from .protocol import ProtocolError
 from .sessions import SessionKind
@@ -36,6 +36,8 @@ class RemoteRenderer:
         """
         with self._lock:
             session, self._idle = self._idle, None
+        if session is not None and self.process.state is ProcessState.FAILED:
+            session.close()  # a new one has the process started anew
         if session is None or not session.is_open:
             session = self.process.open(self._kind)
         result = None

@@ -29,6 +29,8 @@ class SessionStatus:
     memory_bytes: int = 0
     density_estimation: str = ""
     """As RenderStatistics has it."""
+    first_photon_hits: str = ""
+    """As RenderStatistics has it."""
     iterations_per_second: float = 0.0
     photons_per_second: float = 0.0
     source_watts: dict[str, float] = field(default_factory=dict)

@@ -136,6 +136,7 @@ class Viewing:
                     radius_meters=mapper.splat_radii[0],
                     memory_bytes=sum(mapper.memory_bytes.values()),
                     density_estimation=mapper.density_estimation.name,
+                    first_photon_hits=mapper.first_photon_hits.name,
                     iterations_per_second=mapper.iteration / (now - built),
                     photons_per_second=mapper.photons_emitted(mapper.iteration) / (now - built),
                     source_watts=mapper.source_watts,

@@ -38,6 +38,7 @@ lit(
     shader("BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="ASHIKHMIN_SHIRLEY"),
     mean=0.04,
     block=0.15,
+    warns=True,
     reason="GGX stands in",
 )
 lit(
@@ -68,8 +69,8 @@ lit("Sheen", "ASHIKHMIN", shader("BsdfSheen", COLOR | {"Roughness": 0.4}, distri
 lit("Emission", "plain", shader("Emission", COLOR | {"Strength": 2.0}), effort=3)
 lit("Holdout", "plain", shader("Holdout"))
 lit("Metallic", "plain", shader("BsdfMetallic", {"Roughness": 0.3}))
-lit("Toon", "plain", shader("BsdfToon", COLOR), mean=0.05, block=1.8, reason="a diffuse surface stands in")
-lit("Subsurface Scattering", "small radius", shader("SubsurfaceScattering", {"Scale": 0.02}))
+lit("Toon", "plain", shader("BsdfToon", COLOR), mean=0.05, block=1.8, warns=True, reason="a diffuse surface stands in")
+lit("Subsurface Scattering", "small radius", shader("SubsurfaceScattering", {"Scale": 0.02}), warns=True)
 lit(
     "Ray Portal",
     "plain",
@@ -96,6 +97,7 @@ lit(
     shader("BsdfHair"),
     mean=0.15,
     block=1.2,
+    warns=True,
     effort=2,
     reason="made for strands; stretched reflections stand in",
 )
@@ -126,7 +128,7 @@ PRINCIPLED = {
 KNOWN = {
     "emission": {"effort": 3},
     "thin film": {"mean": 0.1, "block": 0.1, "reason": "over metal the film's hue differs; to be looked into"},
-    "subsurface": {"mean": 0.04, "block": 0.15, "reason": "a diffuse surface stands in"},
+    "subsurface": {"mean": 0.04, "block": 0.15, "warns": True, "reason": "a diffuse surface stands in"},
 }
 for _name, _inputs in PRINCIPLED.items():
     lit(

@@ -206,6 +206,8 @@ class GraphExporter:
         declared = KINDS[kind]
         inputs = self._inputs(declared, node, path) | members.pop("inputs", {})
         options = self._options(declared, node) | members.pop("options", {})
+        if fallback := declared.fallback(options):
+            self.warn(node, f"is not rendered as such; {fallback} stands in")
         return self.graph.add(kind, output, name=node.name, options=options, **members, **inputs)
 
     def _inputs(self, kind: NodeKind, node: bpy.types.Node, path: Path) -> dict[str, object]:

@@ -19,6 +19,9 @@ from .links import Path
 
 @handles("BSDF_PRINCIPLED")
 def _principled(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    under = next((socket for socket in node.inputs if socket.identifier == "Subsurface Weight"), None)
+    if under is not None and (exporter.is_linked(under, path) or exporter.value(under, path) != 0.0):
+        exporter.warn(node, "has subsurface scattering, for which diffuse reflection stands in")
     wall = next((socket for socket in node.inputs if socket.identifier == "Thin Wall"), None)
     value = False if wall is None else exporter.value(wall, path)  # sockets of Blender 5.2 on
     if not isinstance(value, Link):
