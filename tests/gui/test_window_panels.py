@@ -4,6 +4,7 @@
 import time
 
 import numpy as np
+from viewport_window import renderer_pid
 
 
 def shot(blender, name, kind="PROPERTIES"):
@@ -75,3 +76,45 @@ def test_the_viewport_reports_and_pauses(open_blender):
     blender.step("assign", path="scene.rppm.preview_pause", value=False)
     blender.wait_until("readings", 60.0, lambda found: found["iterations"] > before)
     blender.quit()
+
+
+def test_a_renderer_that_dies_again_and_again(open_blender):
+    """Users are told, have a button, and need it not: what asks for pictures tries again by itself."""
+    blender = open_blender("small.blend", 1280, 900)
+    blender.step("assign", path="scene.rppm.preview_samples", value=100000)
+    blender.step("assign", path="bpy.context.preferences.view.render_display_type", value="NONE")
+    blender.step("properties_tab", name="RENDER")
+    blender.step("shading", kind="RENDERED")
+    # Sooner a renderer may not have rendered at all.
+    blender.wait_until("readings", 180.0, lambda found: found and found["iterations"] >= 2)
+    kill_until_it_stops(blender)
+    shot(blender, "stopped_panel")
+    blender.screenshot("stopped")
+    assert blender.step("press_button", operator="rppm.start_renderer") == ["FINISHED"]
+    blender.wait_until("renderer_state", 90.0, lambda found: found[0] == "RUNNING")
+    kill_until_it_stops(blender)
+    blender.step("shading", kind="SOLID")
+    time.sleep(0.5)
+    blender.step("shading", kind="RENDERED")
+    blender.wait_until("renderer_state", 90.0, lambda found: found[0] == "RUNNING")
+    kill_until_it_stops(blender)
+    blender.point_at("VIEW_3D")
+    blender.press("F12")
+    blender.wait_until("render_counts", 180.0, lambda counts: counts["completed"] == 1)
+    blender.screenshot("rendered_again")
+    blender.quit()
+
+
+def kill_until_it_stops(blender):
+    """Kill the renderer as often as it is started."""
+    while True:
+        state, *_ = blender.wait_until("renderer_state", 90.0, lambda found: found[0] in {"RUNNING", "FAILED"})
+        if state == "FAILED":
+            return
+        killed = renderer_pid(blender)
+        blender.machine.kill(killed)
+        end = time.monotonic() + 30.0
+        while killed in blender.machine.processes():
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        time.sleep(0.2)  # the state follows

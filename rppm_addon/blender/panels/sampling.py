@@ -20,7 +20,7 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
         column = self.column()
-        column.prop(settings, "direct_light")
+        column.prop(settings, "direct_light", text="Direct")
         column.prop(settings, "use_final_gather")
         if RPPM_OT_copy_from_cycles.poll(context):
             row = column.row(align=True)
