@@ -15,7 +15,7 @@ from ..scene.sharing import share
 from ..session.process.client import ProcessState
 from ..session.process.sessions import SessionKind, SessionStatus
 from . import panels, reports
-from .export import SceneSync, export_exposure, export_settings, export_view
+from .export import ExportProgress, SceneSync, export_exposure, export_settings, export_view
 from .frame_texture import FrameTexture
 from .panels.base import length_text, letters_across
 from .renderer_process import failure, renderer_process
@@ -26,6 +26,10 @@ POLL_SECONDS = 1.0 / 30.0
 """How often the newest frames are asked for."""
 READ_OUT_SECONDS = 1.0
 """Between two drawings of the panels' read-outs, which take Blender's time as well."""
+SLICE_SECONDS = 0.03
+"""Of an export that would take long, between which Blender goes on."""
+PROGRESS_SECONDS = 0.25
+"""Between two drawings of how far an export is."""
 NAVIGATION_SECONDS = 0.4
 """Changes that follow each other faster are one movement."""
 
@@ -39,6 +43,9 @@ class Viewport:
         self._scene: Scene | None = None
         self._session = renderer_process().open(SessionKind.VIEWPORT)
         self._texture = FrameTexture()
+        self._exporting: ExportProgress | None = None
+        """How far an export in slices is; None when there is none."""
+        self._progress_shown_at = 0.0
         self._generation = 0
         self._changed_at = 0.0
         self._seen: tuple = ()
@@ -52,13 +59,24 @@ class Viewport:
     def update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Take what the depsgraph says has changed."""
         space = context.space_data
+
+        def shown(source: bpy.types.Object) -> bool:
+            return source.visible_in_viewport_get(space)
+
         try:
             camera = export_view(context, depsgraph)
-            scene = self._sync.update(depsgraph, camera, lambda source: source.visible_in_viewport_get(space))
+            self._exporting = self._sync.prepare(depsgraph, SLICE_SECONDS, shown)
+            if self._exporting is not None:
+                self.engine.tag_update()
+                poll_soon()
+                return
+            scene = self._sync.update(depsgraph, camera, shown)
         except RppmError as error:
+            self._exporting = None
             self._fail(str(error))
             return
         except Exception as error:
+            self._exporting = None
             logger.exception("the viewport's export failed")
             self._fail(f"RPPM failed unexpectedly ({type(error).__name__}: {error}); see the system console")
             return
@@ -121,6 +139,8 @@ class Viewport:
             text = "The renderer has stopped: Restart is in the header"
         elif error:
             text = error
+        elif self._exporting is not None:
+            text = f"Exporting {self._exporting.objects} of {self._exporting.of}"
         elif starting:
             text = "Starting the renderer"
         elif not status.iterations:
@@ -161,7 +181,13 @@ class Viewport:
     def poll(self) -> None:
         """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""
         _ = self.engine.is_preview  # any property tells; its __del__ is not called while it is held here
-        if self._state() != self._seen:
+        if self._exporting is not None:
+            self.engine.tag_update()  # Blender calls update() again, with a depsgraph that is up to date
+            now = time.monotonic()
+            if now - self._progress_shown_at >= PROGRESS_SECONDS:
+                self._progress_shown_at = now
+                self.engine.tag_redraw()
+        elif self._state() != self._seen:
             self.engine.tag_redraw()
 
     def close(self) -> None:

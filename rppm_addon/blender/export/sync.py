@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A Scene that follows a depsgraph which lives on: only what has changed is exported again."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -20,6 +21,8 @@ from .settings import export_cubemap_center, export_exposure, export_settings
 
 _MOST_UNUSED = 64
 """Images of frames gone by are kept up to so many."""
+_FEW_NEW = 64
+"""Objects that an update exports without being prepared for."""
 _SHAPELESS = {"CAMERA", "ARMATURE", "LATTICE", "EMPTY", "SPEAKER", "LIGHT_PROBE"}
 """Objects that are not seen."""
 
@@ -80,6 +83,14 @@ _TOLD_BY_THEIR_USERS = (
 """Blocks with which Blender also names the objects or materials that they change."""
 
 
+@dataclass(frozen=True)
+class ExportProgress:
+    """How far an export in parts is."""
+
+    objects: int
+    of: int
+
+
 class SceneSync:
     """The scene of one depsgraph, of a viewport or of renders."""
 
@@ -98,6 +109,8 @@ class SceneSync:
         self._images = self._context.images
         self._objects = ObjectExporter(self._context)
         self._placed: Placed | None = None
+        self._prepared = 0
+        """Instances whose meshes and materials are exported for the next update."""
         self._world: tuple[World, list[Light]] | None = None
         self._world_may_change = False
         self._most_images = 0
@@ -111,22 +124,15 @@ class SceneSync:
 
         shown: which original objects the viewport shows. Raises the errors of scene/errors.py.
         """
-        edits = read_edits(depsgraph)
+        edits, asked = self._take_edits(depsgraph)
         source = depsgraph.scene_eval
-        if edits.images or 0 < self._most_images < len(self._images.images):
-            self._begin()
-        self._context.read_from(depsgraph)
-        self._advance(source, depsgraph, edits)
-        # Not any(): each is to be exported.
-        asked = [self._objects.materials.renew(material) for material in edits.materials]
-        if edits.world or self._world is None:
+        if self._world is None:
             reads = self._context.untracked_reads
             with self._report.about("world"):
                 self._world = export_world(source.world, self._context)
             self._world_may_change = self._context.untracked_reads > reads
-        self._objects.meshes.forget(edits.shapes)
-        if self._placed is None or edits.others or any(asked) or not self._patch(depsgraph, edits):
-            unchanged, moved = ({}, {}) if any(asked) else self._known(edits)
+        if self._placed is None or edits.others or asked or not self._patch(depsgraph, edits):
+            unchanged, moved = ({}, {}) if asked else self._known(edits)
             self._placed = self._objects.export(depsgraph, shown, unchanged, moved)
         world, suns = self._world
         settings = export_settings(source, depsgraph.view_layer, self._viewport)
@@ -148,6 +154,46 @@ class SceneSync:
             self._most_images = len(new.images) + _MOST_UNUSED
         self.scene = share(self.scene, new)
         return self.scene
+
+    def prepare(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        seconds: float,
+        shown: Callable[[bpy.types.Object], bool] | None = None,
+    ) -> ExportProgress | None:
+        """Do a part of the work of an update that has many new objects to export, in about so many seconds.
+
+        Returns how far it is, or None when all that is left is update(), which is to follow at once. Between two calls
+        anything may change: nothing of Blender is held, and what changes is exported again.
+        """
+        end = time.monotonic() + seconds
+        if self._placed is not None:
+            count = len(depsgraph.object_instances)
+            if count <= len(self._placed.instances) + len(self._placed.lights) + _FEW_NEW:
+                return None
+            self._placed = None  # what comes now is named once only, before update()
+        with collector_paused():
+            edits, _ = self._take_edits(depsgraph)
+            place = self._objects.prepare(depsgraph, shown, self._prepared, lambda: time.monotonic() >= end)
+        self._prepared = place or 0
+        if place is None and not edits.images:  # with which an update begins anew
+            return None
+        return ExportProgress(self._prepared, len(depsgraph.object_instances))
+
+    def _take_edits(self, depsgraph: bpy.types.Depsgraph) -> tuple[Edits, bool]:
+        """What has changed, of which shapes are forgotten and materials exported again; and whether those ask for
+        other attributes of meshes."""
+        edits = read_edits(depsgraph)
+        if edits.images or 0 < self._most_images < len(self._images.images):
+            self._begin()
+        self._context.read_from(depsgraph)
+        self._advance(depsgraph.scene_eval, depsgraph, edits)
+        # Not any(): each is to be exported.
+        asked = [self._objects.materials.renew(material) for material in edits.materials]
+        self._objects.meshes.forget(edits.shapes)
+        if edits.world:
+            self._world = None
+        return edits, any(asked)
 
     def _advance(self, source: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, edits: Edits) -> None:
         """Add what the depsgraph does not tell: of another frame image sequences show other images, and materials may

@@ -36,3 +36,18 @@ for frame, length in (2, 0.0), (3, 1.0), (4, 0.0):
     scene.rppm.keyframe_insert("radius_minimum", frame=frame)
     scene.rppm.keyframe_insert("radius_maximum", frame=frame)
 save("broken")
+
+# Many meshes, each of its own, that take a while to export.
+bpy.ops.wm.open_mainfile(filepath="/mnt/small.blend")
+across, corners = 40, 12
+grid = [(x / corners, y / corners, 0.0) for y in range(corners + 1) for x in range(corners + 1)]
+row = corners + 1
+faces = [(i, i + 1, i + row + 1, i + row) for i in range(row * corners) if i % row < corners]
+for number in range(across * across):
+    mesh = bpy.data.meshes.new("Tile")
+    mesh.from_pydata(grid, [], faces)
+    thing = bpy.data.objects.new("Tile", mesh)
+    thing.location = (0.1 * (number % across), 0.1 * (number // across), -3.0)
+    thing.scale = (0.08, 0.08, 0.08)
+    bpy.context.scene.collection.objects.link(thing)
+save("many")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Steps in the 3D viewport, and what they measure: pixels on the screen, gaps between timers, time in the engine."""
 
+import importlib
 import time
 import zlib
 
@@ -255,3 +256,28 @@ def _timed(function, calls: list[float]):
 def engine_times() -> dict[str, list[float]]:
     """Milliseconds of each call since time_engine()."""
     return {name: list(calls) for name, calls in _calls.items()}
+
+
+# Exports in slices.
+
+_slices: list[list[int] | None] = []
+
+
+def count_slices() -> None:
+    """From now on note each slice of a viewport's export."""
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
+    module = importlib.import_module(engine.__module__.rpartition(".")[0] + ".export.sync")
+    prepare = module.SceneSync.prepare
+    _slices.clear()
+
+    def counted(self, *arguments):
+        progress = prepare(self, *arguments)
+        _slices.append(None if progress is None else [progress.objects, progress.of])
+        return progress
+
+    module.SceneSync.prepare = counted
+
+
+def slices() -> list[list[int] | None]:
+    """Since count_slices(), how many instances of how many each slice had come to; None for what ends an export."""
+    return list(_slices)

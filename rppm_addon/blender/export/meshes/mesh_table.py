@@ -85,7 +85,9 @@ class MeshTable:
         mesh: None lets Blender make one of the object. owner: the session_uid of the object that brings the mesh.
         """
         key = (source if mesh is None else mesh).as_pointer()
-        if key in self._places and key not in self._seen and owner not in self._owners[key]:
+        # What multiplies an object may bring the mesh that the object itself had before.
+        bringers = owner, source.original.session_uid
+        if key in self._places and key not in self._seen and self._owners[key].isdisjoint(bringers):
             self._drop(key)
         if key not in self._places:
             self._report.progress(f"Exporting {source.name}")

@@ -128,6 +128,39 @@ class ObjectPass:
         self._tell_missing()
         return self._result
 
+    def prepare(self, start: int, is_over: Callable[[], bool]) -> int | None:
+        """Have the reader learn the meshes and materials of instances from a number on, at least one's.
+
+        Returns the number to go on with once ``is_over`` says so, None when all are known.
+        """
+        learned: set[tuple[int, int]] = set()
+        first = True
+        for number, instance in enumerate(self._depsgraph.object_instances):
+            if number < start:
+                continue
+            source = instance.object
+            if source.type != "MESH" or not instance.show_self:
+                continue
+            data = source.data
+            key = source.as_pointer(), 0 if data is None else data.as_pointer()
+            if key in learned:
+                continue
+            learned.add(key)
+            if not first and is_over():
+                return number
+            first = False
+            owner = instance.parent if instance.is_instance else source
+            self._learn_of(source, owner)
+        return None
+
+    def _learn_of(self, source: bpy.types.Object, owner: bpy.types.Object) -> None:
+        """owner: what multiplies the object, or itself."""
+        visibility, original = visibility_of(source), owner.original
+        if not visibility or not (self._shown is None or self._shown(original)) or len(source.data.polygons) == 0:
+            return
+        shading = self._reader.shading(source, visibility)
+        self._reader.mesh_index(source, source.data, shading, original.session_uid)
+
     def _export_alone(
         self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
     ) -> None:

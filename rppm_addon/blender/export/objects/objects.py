@@ -44,6 +44,21 @@ class ObjectExporter:
         self.meshes.end_pass()
         return placed
 
+    def prepare(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        shown: Callable[[bpy.types.Object], bool] | None,
+        start: int,
+        is_over: Callable[[], bool],
+    ) -> int | None:
+        """Export meshes and materials of instances from a number on, for an export to find them; nothing of Blender is
+        held. Returns the number to go on with once ``is_over`` says so, None when all are known.
+        """
+        self.meshes.begin_pass()
+        self._reader.begin_pass()
+        with self._report.about("objects"):
+            return ObjectPass(self._reader, depsgraph, shown, {}, {}, identify=False).prepare(start, is_over)
+
     def instances(
         self, depsgraph: bpy.types.Depsgraph, sources: list[bpy.types.Object], before: list[Instance | None]
     ) -> list[Instance | None]:

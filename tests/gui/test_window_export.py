@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a window does while a large file is exported for a rendered viewport: it goes on."""
+
+import os
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+from viewport_window import report, summary
+
+SCENES = Path(os.environ.get("SCENES", Path(__file__).resolve().parents[3] / "shared" / "scenes"))
+"""Scenes of other makers, which are no part of the repository."""
+ENGINES = ("RPPM", "CYCLES")
+
+
+def test_many_objects_are_exported_in_slices(open_blender):
+    blender = open_blender("many.blend")
+    blender.shrink("VIEW_3D", 480, 270)
+    blender.point_at("VIEW_3D")
+    blender.step("count_slices")
+    blender.step("tick")
+    blender.step("free_view")
+    blender.step("shading", kind="RENDERED")
+    slices = blender.wait_until("slices", 120.0, lambda found: found and found[-1] is None)
+    report(blender, gaps=summary(blender.step("gaps")), slices=len(slices))
+    done = [slice_[0] for slice_ in slices if slice_ is not None]
+    assert slices[-1] is None and len(done) >= 3
+    assert done == sorted(done) and all(slice_[1] >= 1600 for slice_ in slices if slice_ is not None)
+    shown = blender.step("evaluate", text="sum(o.visible_get() for o in scene.objects if o.type == 'MESH')")
+    assert shown >= 1600
+    # What is there is not exported again.
+    before = len(slices)
+    blender.step("move_object", name="Tile", offset=[0.0, 0.0, 0.1])
+    blender.step("turn", degrees=5.0)
+    time.sleep(1.0)
+    assert all(slice_ is None for slice_ in blender.step("slices")[before:])
+    blender.screenshot("many")
+    blender.quit()
+
+
+@pytest.mark.parametrize("name", ["bathroom", "bmw27"])
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_longest_gap_while_a_scene_is_switched_to_rendered(open_blender, session_folder, name, engine):
+    """Measured, for both engines; nothing but that there is a picture is asked for."""
+    source = SCENES / f"{name}.blend"
+    if not source.is_file():
+        pytest.skip(f"{source} is not there")
+    shutil.copyfile(source, session_folder / source.name)
+    blender = open_blender(source.name)
+    blender.step("assign", 60.0, path="scene.render.engine", value=engine)
+    blender.shrink("VIEW_3D", 480, 270)
+    blender.point_at("VIEW_3D")
+    blender.step("time_engine")
+    measured = {}
+    for occasion in ("first", "again"):
+        blender.step("shading", 60.0, kind="SOLID")
+        time.sleep(2.0)
+        blender.step("tick")
+        started = blender.step("clock")
+        blender.step("shading", 60.0, kind="RENDERED")
+        time.sleep(8.0)
+        gaps = blender.step("gaps", 60.0)
+        measured[occasion] = {"longest": sorted(gaps)[-5:], "over_100": sum(gap for gap in gaps if gap > 100.0)}
+        assert blender.step("clock") > started
+    blender.screenshot(f"{name}_{engine}")
+    calls = {name: sorted(times)[-3:] for name, times in blender.step("engine_times").items()}
+    report(blender, **measured, slowest_calls_of_rppm=calls)
+    blender.quit()
