@@ -13,6 +13,7 @@ from . import (
     renderer_thread,
     reports,
 )
+from .export.images import kept_images
 
 
 def register() -> None:
@@ -24,12 +25,14 @@ def register() -> None:
     preferences.register()
     renderer_process.register()
     following.register()
+    kept_images.register()
     broken_frames.register()
 
 
 def unregister() -> None:
     """Undo register, end the renderer process and release the graphics device."""
     broken_frames.unregister()
+    kept_images.unregister()
     following.unregister()
     renderer_process.unregister()
     preferences.unregister()

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Image textures on colors, and what happens where an image is missing."""
 
+import os
+
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, shaders, source, to_surface
 from test_export_lights import cycles_radiance
 
+from rppm_addon.blender.export.images import kept_images
 from rppm_addon.blender.export.images.color_spaces import scene_linear, to_srgb
 from rppm_addon.blender.export.images.images import MISSING
 
@@ -91,6 +94,41 @@ def test_saved_and_packed_images_agree(scene, tmp_path):
     assert len(exported.images) == 2
     np.testing.assert_array_equal(exported.images[0].pixels, exported.images[1].pixels)
     np.testing.assert_allclose(exported.images[0].pixels, PIXELS * 255.0, atol=0.51)
+
+
+def test_files_are_read_again_when_they_may_have_changed(scene, tmp_path, monkeypatch):
+    """In a window, where pixels are kept."""
+    monkeypatch.setattr(kept_images, "_is_keeping", True)
+    path = str(tmp_path / "kept.png")
+
+    def save(pixels):
+        made = new_image("Made", pixels)
+        made.filepath_raw, made.file_format = path, "PNG"
+        made.save()
+        bpy.data.images.remove(made)
+
+    save(PIXELS)
+    image = bpy.data.images.load(path)
+    material = textured(image)
+    add_mesh(scene).data.materials.append(material)
+    first = export(scene).images[0]
+    assert export(scene).images[0] is first
+    flipped = PIXELS[::-1].copy()
+    save(flipped)
+    os.utime(path, ns=(1, 1))
+    image.reload()
+    second = export(scene).images[0]
+    np.testing.assert_allclose(second.pixels, flipped * 255.0, atol=0.51)
+    image.pixels.foreach_set(PIXELS.astype(np.float32).reshape(-1))
+    third = export(scene).images[0]
+    np.testing.assert_allclose(third.pixels, PIXELS * 255.0, atol=0.51)
+    image.reload()
+    image.colorspace_settings.name = "Non-Color"
+    assert export(scene).images[0].encoding == "LINEAR"
+    assert export(scene).images[0] is export(scene).images[0]
+    kept_images.unregister()
+    kept_images.register()
+    assert not kept_images._kept
 
 
 def test_an_image_used_twice_is_exported_once(scene):

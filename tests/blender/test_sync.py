@@ -334,3 +334,68 @@ def test_what_is_multiplied_keeps_to_what_multiplies_it(synced):
     names = sorted((i.object_name, i.matrix[2, 3], scene.materials[i.materials[0]].name) for i in brought)
     assert names == [("Cube", 3.0, "Red"), ("Cube", 4.0, "Red"), ("Twin", 3.0, "Blue"), ("Twin", 4.0, "Blue")]
     assert len({instance.random for instance in brought}) == 4
+
+
+def add_same_place():
+    """Exchange a mesh, the memory of which may be used for the next one."""
+    bpy.data.meshes.remove(bpy.data.meshes["Other"])
+    _add("New", _box("New", 0.7))
+
+
+@pytest.mark.parametrize("edit", [*EDITS, add_same_place])
+def test_what_changes_while_an_export_is_in_slices(synced, edit):
+    """A slice has time for one mesh; the edit comes amid them, and again before the end."""
+    if edit is instance_collection:
+        edit()
+        bpy.context.view_layer.update()
+    sync, graph = SceneSync(), bpy.context.evaluated_depsgraph_get()
+    first = sync.prepare(graph, 0.0)
+    assert first is not None and 0 < first.objects < first.of
+    prepared = []
+
+    def follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        prepared.append(sync.prepare(depsgraph, 0.0))
+
+    bpy.app.handlers.depsgraph_update_post.append(follow)
+    bpy.app.handlers.frame_change_post.append(follow)
+    if edit is not instance_collection:
+        edit()
+        bpy.context.view_layer.update()
+    assert edit is instance_collection or prepared
+    bpy.app.handlers.depsgraph_update_post.remove(follow)
+    bpy.app.handlers.frame_change_post.remove(follow)
+    graph = bpy.context.evaluated_depsgraph_get()
+    slices = 0
+    while sync.prepare(graph, 0.0) is not None:
+        slices += 1
+        assert slices < 20
+    assert same(sync.update(graph, CAMERA), fresh())
+
+
+def test_what_was_prepared_is_not_exported_again(synced, monkeypatch):
+    bpy.context.view_layer.update()
+    sync, graph = SceneSync(), bpy.context.evaluated_depsgraph_get()
+    assert not len(graph.updates)
+    while sync.prepare(graph, 0.0) is not None:
+        pass
+    monkeypatch.setattr("rppm_addon.blender.export.meshes.mesh_table.export_mesh", None)
+    assert same(sync.update(graph, CAMERA), synced.scene)
+
+
+def test_many_new_objects_are_prepared_for(synced, monkeypatch):
+    graph = bpy.context.evaluated_depsgraph_get()
+    assert synced.prepare(graph, 0.0) is None
+    monkeypatch.setattr("rppm_addon.blender.export.sync._FEW_NEW", 2)
+    handlers = list(bpy.app.handlers.depsgraph_update_post)
+    bpy.app.handlers.depsgraph_update_post.clear()
+    for number in range(4):
+        _add(f"New {number}", _box(f"New {number}", 0.3))
+    bpy.context.view_layer.update()
+    bpy.app.handlers.depsgraph_update_post.extend(handlers)
+    graph = bpy.context.evaluated_depsgraph_get()
+    slices = 0
+    while synced.prepare(graph, 0.0) is not None:
+        slices += 1
+        assert slices < 20
+    assert slices >= 4
+    assert same(synced.update(graph, CAMERA), fresh())

@@ -174,7 +174,8 @@ class SceneSync:
             self._placed = None  # what comes now is named once only, before update()
         with collector_paused():
             edits, _ = self._take_edits(depsgraph)
-            place = self._objects.prepare(depsgraph, shown, self._prepared, lambda: time.monotonic() >= end)
+            changed = self._prepared == 0 or len(depsgraph.updates) > 0
+            place = self._objects.prepare(depsgraph, shown, self._prepared, lambda: time.monotonic() >= end, changed)
         self._prepared = place or 0
         if place is None and not edits.images:  # with which an update begins anew
             return None

@@ -10,6 +10,7 @@ import numpy as np
 
 from ....scene import Image
 from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
+from .kept_images import keep, kept
 
 Warn = Callable[[str], None]
 """Tells the user what is done about the node that shows an image."""
@@ -74,19 +75,30 @@ class ImageTable:
         warn: Warn,
     ) -> int:
         if key not in self._indices:
-            loaded = load()
-            pixels = None if loaded is None else read_pixels(loaded)
-            if loaded is not None and loaded != image:
-                bpy.data.images.remove(loaded)
-            if pixels is None:
+            exported = kept(image) or _export(image, load)
+            if exported is None:
                 self._indices[key] = MISSING
             else:
                 self._indices[key] = len(self.images)
-                self.images.append(_encoded(image, pixels))
+                self.images.append(exported)
         if self._indices[key] == MISSING:
             place = image.filepath or "no file"
             warn(f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
         return self._indices[key]
+
+
+def _export(image: bpy.types.Image, load: Callable[[], bpy.types.Image | None]) -> Image | None:
+    """What ``load`` gives of an image; None when it has no pixels."""
+    loaded = load()
+    pixels = None if loaded is None else read_pixels(loaded)
+    if loaded is not None and loaded != image:
+        bpy.data.images.remove(loaded)
+    if pixels is None:
+        return None
+    exported = _encoded(image, pixels)
+    if loaded == image:
+        keep(image, exported)
+    return exported
 
 
 MISSING = -1

@@ -50,12 +50,16 @@ class ObjectExporter:
         shown: Callable[[bpy.types.Object], bool] | None,
         start: int,
         is_over: Callable[[], bool],
+        changed: bool,
     ) -> int | None:
         """Export meshes and materials of instances from a number on, for an export to find them; nothing of Blender is
         held. Returns the number to go on with once ``is_over`` says so, None when all are known.
+
+        changed: whether the depsgraph may be another than at the last call.
         """
-        self.meshes.begin_pass()
-        self._reader.begin_pass()
+        if changed:
+            self.meshes.begin_pass()
+            self._reader.begin_pass()
         with self._report.about("objects"):
             return ObjectPass(self._reader, depsgraph, shown, {}, {}, identify=False).prepare(start, is_over)
 
