@@ -3,8 +3,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-
-from .drawing import COLORS, label_of, logarithmic, plain
+from benchmark_drawing import COLORS, label_of, logarithmic, plain
 
 _COLUMNS = 4
 

@@ -146,7 +146,7 @@ class Viewport:
         elif not status.iterations:
             text = "Compiling shaders and building the scene"
         else:
-            radius = length_text(context.scene, status.radius_metres)
+            radius = length_text(context.scene, status.radius_meters)
             letters = letters_across(context)
             text = status_text(status, context.scene.rppm.preview_pause, radius, letters)
         self.engine.update_stats("", text)

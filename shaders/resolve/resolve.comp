@@ -75,7 +75,8 @@ void main() {
 
     uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
-                                            parameters.segment + variant, index);
+                                            parameters.segment + (parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u),
+                                            index);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing,
                                              next_random(random));
     builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;

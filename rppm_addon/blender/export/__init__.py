@@ -16,7 +16,7 @@ from .lights.world import export_world
 from .motion import MotionExporter, is_blurred
 from .objects.objects import ObjectExporter
 from .report import ExportStopped, Report
-from .settings import export_cubemap_centre, export_exposure, export_settings, preview_settings
+from .settings import export_cubemap_center, export_exposure, export_settings, preview_settings
 from .sync import ExportProgress, SceneSync
 
 __all__ = [

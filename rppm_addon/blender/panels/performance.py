@@ -79,7 +79,7 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
     reading(column, "Samples", f"{report.iterations} of {report.settings.iterations}")
     reading(column, "Photons", f"{count_text(report.photons_per_iteration)} a sample")
-    reading(column, "Radius", length_text(scene, report.radius_metres))
+    reading(column, "Radius", length_text(scene, report.radius_meters))
     reading(column, "Memory", bytes_text(report.memory_bytes))
     reading(column, "Speed", f"{rate_text(report.iterations_per_second)} samples/s")
     reading(column, "", f"{rate_text(report.photons_per_second)} photons/s")

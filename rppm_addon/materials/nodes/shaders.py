@@ -81,7 +81,7 @@ KINDS = {
     ),
     "bsdf_toon": _shader(
         "bsdf",
-        _GREY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL,
+        _GRAY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL,
         {"component": ("DIFFUSE", "GLOSSY")},
         {"DIFFUSE": "a diffuse surface", "GLOSSY": "a glossy surface"},
     ),

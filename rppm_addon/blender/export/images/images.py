@@ -167,7 +167,7 @@ def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
     encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
     pixels = _bytes(pixels)
     if is_associated(image) and pixels[..., 3].min() < 255:
-        # Cycles takes colours in files of bytes for straight, whatever the user says.
+        # Cycles takes colors in files of bytes for straight, whatever the user says.
         products = pixels[..., :3].astype(np.uint16) * pixels[..., 3:]
         if image.alpha_mode == "PREMUL" and image.source != "GENERATED" and image.packed_file is None:
             products = (products + 127) // 255 * pixels[..., 3:]
