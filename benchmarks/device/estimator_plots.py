@@ -3,7 +3,8 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from benchmark_drawing import COLORS, label_of, logarithmic, plain
+
+from .drawing import COLORS, label_of, logarithmic, plain
 
 _COLUMNS = 4
 

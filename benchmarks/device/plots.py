@@ -6,7 +6,9 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from benchmark_drawing import COLORS, STYLE, label_of, logarithmic
+
+from . import estimator_plots
+from .drawing import COLORS, STYLE, label_of, logarithmic
 
 _KIND_COLORS = {"camera": "#1f6fb4", "diffuse bounce": "#e07b00", "photon": "#2f9e44"}
 _PLACE_COLORS = {

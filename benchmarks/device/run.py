@@ -17,15 +17,12 @@ from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.scene.errors import RppmError
 
-from benchmark_catalog import FIGURES, MEASUREMENTS, is_possible, scenes_of  # noqa: E402
-from benchmark_figures import ROUTES, make_cubemap  # noqa: E402
-from benchmark_machine import Clock, describe, slug  # noqa: E402
-from benchmark_scenes import NAMES, SceneStore, Subject, subjects  # noqa: E402
-from benchmark_tables import write_tables  # noqa: E402
-
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.scene.errors import RppmError  # noqa: E402
+from .. import ROOT
+from ..machine import Clock, describe, slug
+from .catalog import FIGURES, MEASUREMENTS, is_possible, scenes_of
+from .figures import ROUTES, make_cubemap
+from .scenes import NAMES, SceneStore, Subject, subjects
+from .tables import write_tables
 
 log = logging.getLogger("benchmark")
 

@@ -50,7 +50,8 @@ class Viewport:
         self._changed_at = 0.0
         self._seen: tuple = ()
         self._error = ""
-        self._error_shown = ""
+        self._error_shown: str | None = None
+        """What panels were told; None makes them forget what the viewport before told them."""
         self._recorded: SessionStatus | None = None
         self._read_out_at = 0.0
         self._regions: dict[int, tuple[float, float, float, float]] = {}

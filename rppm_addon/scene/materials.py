@@ -15,4 +15,4 @@ class Material:
     interior: NodeGraph | None = None
     """What the surface encloses: the "emission" of this graph is the absorption coefficient in 1/m."""
     transparent_shadow: bool = True
-    """Whether light of light objects and meshes passes where the surface is transparent; that of the world always does."""
+    """Whether light of light objects and meshes passes where the surface is transparent; the world's always does."""

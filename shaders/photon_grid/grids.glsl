@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The grids that photons are sorted into. Caustic photons (PHOTON_AFTER_ROUGH_BOUNCE not set) lie in each of CAUSTIC_GRIDS, whose
-// cells are ever smaller, since importons differ in their narrow radius; the others in one of two, since importons
-// whose paths go on by a gathering ray take no indirect ones. Sides and numbers of buckets: photon_grid.py.
-// Needs the members caustic_sides, wide_side, caustic_buckets and wide_buckets of the parameters.
+// The grids that photons are sorted into. Caustic photons (PHOTON_AFTER_ROUGH_BOUNCE not set) lie in each of
+// CAUSTIC_GRIDS, whose cells are ever smaller, since importons differ in their narrow radius; the others in one of two,
+// since importons whose paths go on by a gathering ray take no indirect ones. Sides and numbers of buckets:
+// photon_grid.py. Needs the members caustic_sides, wide_side, caustic_buckets and wide_buckets of the parameters.
 #include "photon_grid/cells.glsl"
 
 #include <PhotonGrids>

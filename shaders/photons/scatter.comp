@@ -170,7 +170,8 @@ void main() {
             if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
             vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
             rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
-            if (parameters.has_adjoint_queries != 0u) store_adjoint_query(index, closure, scattering, photon.direction, path_flags);
+            if (parameters.has_adjoint_queries != 0u)
+                store_adjoint_query(index, closure, scattering, photon.direction, path_flags);
             else photon_paths[index].flags = path_flags;
         }
     }

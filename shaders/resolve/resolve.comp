@@ -75,8 +75,7 @@ void main() {
 
     uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
-                                            parameters.segment + (parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u),
-                                            index);
+                                            parameters.segment + variant, index);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing,
                                              next_random(random));
     builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;

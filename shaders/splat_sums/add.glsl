@@ -22,6 +22,7 @@ void add_splat(uint importon, uint photon, vec3 radiance) {
     add_quanta(place + 2u, radiance.g * parameters.quanta);
     add_quanta(place + 4u, radiance.b * parameters.quanta);
     if (parameters.counting == 0u) return;
-    if ((photons[photon].flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(photon_counts[diffused_place(importon)], 1u);
+    if ((photons[photon].flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u)
+        atomicAdd(photon_counts[diffused_place(importon)], 1u);
     else if (!by_ray) atomicAdd(photon_counts[caustic_place(importon)], 1u);
 }

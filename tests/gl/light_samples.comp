@@ -21,7 +21,7 @@ void main() {
     vec3 seen = vec3(0.0);
     if (sampled.triangle != NO_TRIANGLE) {
         seen = vec3(parameters.emitted);
-        density = emissive_triangle_pdf(parameters.point, sampled.triangle);
+        pdf = emissive_triangle_pdf(parameters.point, sampled.triangle);
     } else if (sampled.distance > 0.0)
         seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, distance, pdf);
     results[3u * index] = vec4(sampled.direction, sampled.distance);

@@ -35,6 +35,6 @@ void main() {
     // The direction's pdf, by the means of functions of it.
     vec3 at = sampled.direction;
     results[5u * index + 3u] = largest(sampled.weight) > 0.0 ? vec4(1.0, at.x, at.y * at.y, at.z * at.x) : vec4(0.0);
-    float density = largest(evaluated) > 0.0 ? lobe_pdf(lobe, n, wo, wi) * 4.0 * PI : 0.0;
-    results[5u * index + 4u] = density * vec4(1.0, wi.x, wi.y * wi.y, wi.z * wi.x);
+    float pdf = largest(evaluated) > 0.0 ? lobe_pdf(lobe, n, wo, wi) * 4.0 * PI : 0.0;
+    results[5u * index + 4u] = pdf * vec4(1.0, wi.x, wi.y * wi.y, wi.z * wi.x);
 }

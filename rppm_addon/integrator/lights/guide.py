@@ -50,7 +50,7 @@ def cells_of(kind: int, photons: int) -> tuple[int, int, int, int]:
 
 
 def contribution_probability(left: np.ndarray, contributed: np.ndarray) -> np.ndarray:
-    """Share of each cell's photons that are of use, from tallies of any shape of powers of two.
+    """Share of each cell's photons that contribute, from tallies of any shape of powers of two.
 
     A cell with few photons is taken for the coarser cell that it lies in, that for the next coarser, and so on.
     """
@@ -66,8 +66,8 @@ def contribution_probability(left: np.ndarray, contributed: np.ndarray) -> np.nd
 
 
 def probabilities(estimate: np.ndarray) -> np.ndarray:
-    """What to choose cells by, (n,) summing to 1: the square root of the probability to contribute gives the sum of photons the least
-    variance, and a share is defensive."""
+    """What to choose cells by, (n,) summing to 1: the root of the probability to contribute gives the sum of
+    photons the least variance, and a share is defensive."""
     weight = np.sqrt(estimate)
     return (1.0 - _DEFENSIVE) * weight / weight.sum() + _DEFENSIVE / weight.size
 
@@ -135,8 +135,8 @@ class Guide:
     def learn(self) -> tuple[np.ndarray, np.ndarray]:
         """Choose cells by the tallies from now on.
 
-        Returns each light's mean root of the probability to contribute, (n,), and the shares of its photons that should have been
-        of use before and will be from now on, (n, 2).
+        Returns each light's mean root of the probability to contribute, (n,), and the fractions of its photons that
+        should have contributed before and will from now on, (n, 2).
         """
         before = self._probabilities
         weights, estimates = self._choose_by_tallies(self.read_tallies())

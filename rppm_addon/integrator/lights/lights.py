@@ -164,9 +164,9 @@ class Lights:
     ) -> None:
         """Lay out all lights and share the photons of an iteration among them.
 
-        photons: of that iteration, no more than the scene's. keep_world, keep_light_objects: the world, or all light objects,
-        are those of the last call. keep_learned: the lights are those of the last call at another time, and what was
-        learned of them holds.
+        photons: of that iteration, no more than the scene's. keep_world, keep_light_objects: the world, or
+        all light objects, are those of the last call. keep_learned: the lights are those of the last call at another
+        time, and what was learned of them holds.
         Raises SceneError when all lights have a photon share of 0.
         """
         self.times_built += 1

@@ -7,8 +7,9 @@ little behind the first of them. A photon tests those of its texel. A hit before
 where a texel is empty there is none; what its texel does not settle is traced. So both routes give the same hits, bit
 for bit.
 
-Point lights and spots have six views, the faces of a cube, or one where their cone is narrow; suns have one, from so far off that their
-light is nearly parallel there. The margin by which texels are widened holds small lights' extent and suns' disks.
+Point lights and spots have six views, the faces of a cube, or one where their cone is narrow; suns have one, from
+so far off that their light is nearly parallel there. The margin by which texels are widened holds small lights'
+extent and suns' disks.
 """
 
 import math

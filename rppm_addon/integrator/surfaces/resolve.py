@@ -135,8 +135,8 @@ class Resolve:
         """Fill the closures of living paths; inactive rays and misses give closures without a triangle.
 
         The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
-        are of no kind. has_adjoint_queries: the same hits are seen once more, from where photons go; what chance decides is
-        decided anew.
+        are of no kind. has_adjoint_queries: the same hits are seen once more, from where photons go; what chance
+        decides is decided anew.
         """
         buffers = {
             **self._buffers,

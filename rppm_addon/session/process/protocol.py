@@ -62,7 +62,7 @@ def write_message(stream: BinaryIO, kind: str, **content: object) -> None:
 
 
 def read_message(stream: BinaryIO) -> dict | None:
-    """The next message, or None when the pipe has ended, be it amid a message. Raises ProtocolError for malformed data."""
+    """The next message, or None when the pipe has ended, be it amid a message. Raises ProtocolError if malformed."""
     header = stream.read(_LENGTH.size)
     if len(header) < _LENGTH.size:
         return None
