@@ -16,3 +16,5 @@ class Material:
     """What the surface encloses: the "emission" of this graph is the absorption coefficient in 1/m."""
     transparent_shadow: bool = True
     """Whether light of light objects and meshes passes where the surface is transparent; the world's always does."""
+    pass_index: int = 0
+    """Of the pass Material Index."""
