@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
-#include "emission/light_tree.glsl"
+#include "lights/light_tree.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 2) readonly buffer CameraPaths;

@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "gbuffer/projections.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
-#include "emission/light_tree.glsl"
+#include "lights/light_tree.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer CameraPaths;

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { FirstHitsParameters parameters; };
 #include "common/invocation.glsl"
 #include "common/intersection.glsl"
-#include "emission/light_table.glsl"
+#include "lights/light_table.glsl"
 #define TEXELS_ACCESS readonly
 #include "light_gbuffer/views.glsl"
 #include "living_paths/kept.glsl"

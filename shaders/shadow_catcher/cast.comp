@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
 layout(std140, binding = 0) uniform Parameters { ShadowCatcherParameters parameters; };
-#include "emission/lights.glsl"
+#include "lights/lights.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 3) writeonly buffer ShadowRays;

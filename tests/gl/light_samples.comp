@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 layout(std140, binding = 0) uniform Parameters { LightSamplesParameters parameters; };
-#include "emission/lights.glsl"
+#include "lights/lights.glsl"
 layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
 
 void main() {

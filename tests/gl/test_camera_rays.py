@@ -31,7 +31,7 @@ def traced_rays(context, library, camera, iteration=1, seed=0):
     width, height = camera.resolution
     view = gl.buffer(camera_view(camera, 0, height, (0.0, 0.0)).tobytes())
     rays, paths = gl.buffer(reserve=RAY.size * width * height), gl.buffer(reserve=CAMERA_PATH.size * width * height)
-    library.compute("gbuffer/rays.comp").run(
+    library.compute("primary_rays/rays.comp").run(
         width * height,
         {"Camera": view, "Rays": rays, "CameraPaths": paths},
         {"first_pixel": 0, "seed": seed, "iteration": iteration},

@@ -38,10 +38,10 @@ class Emitters:
     """
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        self._mark = library.compute("emission/mark.comp")
-        self._find = library.compute("emission/emitters.comp")
-        self._tint_photons = library.compute("emission/tint_photons.comp")
-        self._tint_contributions = library.compute("emission/tint_contributions.comp")
+        self._mark = library.compute("lights/mark.comp")
+        self._find = library.compute("lights/emitters.comp")
+        self._tint_photons = library.compute("lights/tint_photons.comp")
+        self._tint_contributions = library.compute("lights/tint_contributions.comp")
         self.triangles = GrowingBuffer(context, "emissive triangles")
         self._rays = GrowingBuffer(context, "rays to emitters")
         self._hits = GrowingBuffer(context, "places on emitters")

@@ -82,7 +82,7 @@ class Guide:
     """Cells of all lights: what is known of them, and what an iteration adds."""
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        self._program = library.compute("emission/learn.comp")
+        self._program = library.compute("lights/learn.comp")
         self._starts = GrowingBuffer(context, "emission guide")
         self._tallies = GrowingBuffer(context, "emission tallies")
         self._photon_cells = GrowingBuffer(context, "photon cells", "lower the photons per iteration")
@@ -93,7 +93,7 @@ class Guide:
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of emission/emit.comp."""
+        """Storage blocks of photon_emission/emit.comp."""
         return {"Guide": self._starts.buffer, "PhotonCells": self._photon_cells.buffer}
 
     @property

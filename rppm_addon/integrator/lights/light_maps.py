@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the nodes of lights give by place or direction, as maps for shaders/emission/light_maps.glsl."""
+"""What the nodes of lights give by place or direction, as maps for shaders/lights/light_maps.glsl."""
 
 import math
 from dataclasses import dataclass, field

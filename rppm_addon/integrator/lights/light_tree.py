@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A tree of the lights, down which shadow rays choose theirs by what it may give at a point
-(shaders/emission/light_tree.glsl).
+(shaders/lights/light_tree.glsl).
 
 After Conty Estevez and Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting (HPG 2018). The tree is a
 complete binary one over the lights in Morton order: children of node i are 2 i and 2 i + 1, and any number of

@@ -49,7 +49,7 @@ LIGHT_PARAMETERS = {
     "seed": "uint",
     "iteration": "uint",
 }
-"""Parameters of every program that includes shaders/emission/lights.glsl. ``mesh_selection`` and
+"""Parameters of every program that includes shaders/lights/lights.glsl. ``mesh_selection`` and
 ``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
 weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
 give, W/m^2."""
@@ -73,7 +73,7 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
 
 
 class Lights:
-    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
+    """The lights of a scene: buffers for the shaders that include lights/lights.glsl."""
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         self._lights = GrowingBuffer(context, "lights")
@@ -100,7 +100,7 @@ class Lights:
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of emission/lights.glsl."""
+        """Storage blocks of lights/lights.glsl."""
         return {
             "Lights": self._lights.buffer,
             "EmissiveTriangles": self.emitters.triangles.buffer,
@@ -110,7 +110,7 @@ class Lights:
 
     @property
     def tree_buffers(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of emission/light_tree.glsl."""
+        """Storage blocks of lights/light_tree.glsl."""
         return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
 
     @property
@@ -143,7 +143,7 @@ class Lights:
         return sums
 
     def use_maps(self) -> None:
-        """Bind the textures of programs that include emission/lights.glsl."""
+        """Bind the textures of programs that include lights/lights.glsl."""
         self.environment.use()
         self.light_maps.use()
 

@@ -16,8 +16,8 @@ class PhotonEmission:
     """Programs that place and direct photons, and end those that a soft light does not send to where they hit."""
 
     def __init__(self, library: ProgramLibrary) -> None:
-        self._emit = library.compute("emission/emit.comp")
-        self._falloff = library.compute("emission/falloff.comp")
+        self._emit = library.compute("photon_emission/emit.comp")
+        self._falloff = library.compute("photon_emission/falloff.comp")
 
     def emit(
         self,

@@ -23,7 +23,7 @@ class PrimaryRays:
     memory_bytes = 0
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        self._rays = library.compute("gbuffer/rays.comp")
+        self._rays = library.compute("primary_rays/rays.comp")
         self._camera = GrowingBuffer(context, "camera")
         self._camera.require(CAMERA_VIEW.size)
         self.camera = self._camera.buffer

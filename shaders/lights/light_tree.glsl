@@ -3,7 +3,7 @@
 // passes (rppm_addon/integrator/lights/light_tree.py).
 
 #include <LightNode>
-#include "emission/lights.glsl"
+#include "lights/lights.glsl"
 layout(std430, binding = 13) readonly buffer LightNodes { LightNode light_nodes[]; };
 
 // Random numbers of 24 bits last for so many levels.

@@ -2,9 +2,9 @@
 // Light sources: samples of them from a point, and what a ray sees of them.
 // Needs the members scene_center, scene_radius and mesh_selection of the parameters.
 
-#include "emission/light_table.glsl"
-#include "emission/environment.glsl"
-#include "emission/light_maps.glsl"
+#include "lights/light_table.glsl"
+#include "lights/environment.glsl"
+#include "lights/light_maps.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
 layout(std430, binding = 5) readonly buffer EmissiveTriangles;
@@ -69,7 +69,7 @@ void triangle_corners(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
     v2 = triangle_vertices[3u * triangle + 2u].xyz;
 }
 
-// What varies is asked for later, where a place has been sampled (emission/emitters.comp).
+// What varies is asked for later, where a place has been sampled (lights/emitters.comp).
 vec3 sampled_radiance(EmissiveTriangle emissive) { return emissive.uneven > 0.0 ? vec3(1.0) : emissive.radiance; }
 
 struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float pdf; };

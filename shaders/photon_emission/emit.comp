@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 #include "common/low_discrepancy.glsl"
 #include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
-#include "emission/photons.glsl"
+#include "photon_emission/photons.glsl"
 layout(std430, binding = 0) writeonly buffer Rays;
 layout(std430, binding = 1) writeonly buffer PhotonPaths;
 layout(std430, binding = 8) writeonly buffer PhotonCells;

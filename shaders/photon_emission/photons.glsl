@@ -2,9 +2,9 @@
 // Photons that leave the lights. Flux is that of the whole light over the pdf of the choice;
 // the caller shares it out.
 
-#include "emission/lights.glsl"
-#include "emission/aim.glsl"
-#include "emission/guide.glsl"
+#include "lights/lights.glsl"
+#include "photon_emission/aim.glsl"
+#include "lights/guide.glsl"
 
 struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
 
