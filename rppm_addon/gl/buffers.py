@@ -7,29 +7,53 @@ import numpy as np
 from ..scene.errors import DeviceError
 from .context import Context
 
-_SMALLEST = 64
+SMALLEST = 64
+"""Bytes that every buffer has at least."""
+REMEDY = "simplify the scene"
 
 
 class GrowingBuffer:
-    """A named storage buffer that is kept between frames and made anew only to grow."""
+    """A named storage buffer that is kept between frames and made anew only to grow.
 
-    def __init__(self, context: Context, name: str, remedy: str = "simplify the scene") -> None:
+    item_size, header_size: bytes of one of its items, and of what lies before them.
+    """
+
+    def __init__(
+        self, context: Context, name: str, remedy: str = REMEDY, item_size: int = 1, header_size: int = 0
+    ) -> None:
         self.name = name
-        self._context = context
         self.remedy = remedy
-        self.buffer: moderngl.Buffer = context.moderngl.buffer(reserve=_SMALLEST)
+        self.item_size, self._header_size = item_size, header_size
+        self._context = context
+        self._buffer: moderngl.Buffer | None = None
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        """To be bound; a few bytes while nothing was required."""
+        if self._buffer is None:
+            self._buffer = self._context.moderngl.buffer(reserve=SMALLEST)
+        return self._buffer
 
     @property
     def size(self) -> int:
-        """Bytes."""
-        return self.buffer.size
+        """Bytes; 0 while it was neither required nor bound."""
+        return 0 if self._buffer is None else self._buffer.size
+
+    @property
+    def capacity(self) -> int:
+        """Items that there is room for."""
+        return max(self.size - self._header_size, 0) // self.item_size
+
+    def require_items(self, count: int) -> bool:
+        """Make sure of so many items; returns and raises as require does."""
+        return self.require(self._header_size + self.item_size * count)
 
     def require(self, size: int) -> bool:
         """Make sure of so many bytes; True when the buffer was made anew and its contents are gone.
 
         Raises DeviceError, with the numbers and the remedy, past the device's limit.
         """
-        if size <= self.buffer.size:
+        if size <= self.size:
             return False
         limit = self._context.storage_block_limit
         if size > limit:
@@ -38,16 +62,15 @@ class GrowingBuffer:
                 f"allows {limit / 2**20:.0f} MiB in one buffer; {self.remedy}"
             )
         available = self._context.available_memory
-        if available is not None and size > available + self.buffer.size:
+        if available is not None and size > available + self.size:
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB but the device {self._context.information.name} "
                 f"has {available / 2**20:.0f} MiB left; {self.remedy}"
             )
-        self.buffer.release()
+        self.release()
         try:
-            self.buffer = self._context.moderngl.buffer(reserve=size)
+            self._buffer = self._context.moderngl.buffer(reserve=max(size, SMALLEST))
         except moderngl.Error as error:
-            self.buffer = self._context.moderngl.buffer(reserve=_SMALLEST)
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}"
             ) from error
@@ -75,4 +98,6 @@ class GrowingBuffer:
 
     def release(self) -> None:
         """Free the buffer."""
-        self.buffer.release()
+        if self._buffer is not None:
+            self._buffer.release()
+            self._buffer = None

@@ -97,3 +97,11 @@ class Record:
             value = values[member.name]
             record[member.name] = np.asarray(value).T if member.kind == "mat4" else value
         return record.tobytes()
+
+
+def stride(item: Record | str) -> int:
+    """Bytes from one item of an array to the next: of a record, or of a kind such as "vec4" (std430)."""
+    if isinstance(item, Record):
+        return item.size
+    _, _, alignment, size = _KINDS[item]
+    return -(-size // alignment) * alignment

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sets of storage buffers, each declared once: by name, record and count.
+
+A subclass of BufferSet declares them as members of its class::
+
+    class Importons(BufferSet):
+        remedy = "lower the resolution"
+        rays = StorageBuffer("camera rays", RAY, band_pixels)
+
+and from that follow their allocation, what they take (``memory_bytes``), what they will take (``expected_bytes``), and
+their release. ``self.rays`` is a GrowingBuffer.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, ClassVar, Generic, Protocol, TypeVar, overload
+
+import moderngl
+
+from .buffers import REMEDY, SMALLEST, GrowingBuffer
+from .context import Context
+from .programs import ProgramLibrary
+from .records import Record, stride
+
+Count = Callable[[Any], int]
+"""Items by the sizes that a set was made for."""
+
+
+class Resource(Protocol):
+    """What lies on the device."""
+
+    def release(self) -> object:
+        """Give it back."""
+
+
+Owned = TypeVar("Owned", bound=Resource)
+Made = TypeVar("Made", bound=Resource)
+Set = TypeVar("Set", bound="BufferSet")
+
+
+class Declared(Generic[Made]):
+    """A member of a set's class for which each set has one of its own, made with the set."""
+
+    @overload
+    def __get__(self, instance: None, owner: type) -> "Declared[Made]": ...
+
+    @overload
+    def __get__(self, instance: "BufferSet", owner: type) -> Made: ...
+
+    def __get__(self, instance: "BufferSet | None", owner: type) -> "Declared[Made] | Made":
+        # What a set has made stands among its own attributes, which Python looks up first.
+        if instance is None:
+            return self
+        raise AttributeError(f"{owner.__name__} is to call BufferSet.__init__ before it uses what it declares")
+
+    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> Made:
+        """The set's own one, for these sizes. Raises DeviceError when the device has no room for it."""
+        raise NotImplementedError
+
+    def expected_bytes(self, sizes: object) -> dict[str, int]:
+        """By name, the bytes that follow from the sizes."""
+        raise NotImplementedError
+
+
+class StorageBuffer(Declared[GrowingBuffer]):
+    """A buffer of ``count`` items behind a header: ``item`` and ``header`` are records, or kinds such as "vec4".
+
+    Without a count its length follows from the scene, and whoever fills it requires it; where the count is 0 there is
+    none. remedy: the set's if none is given.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        item: Record | str,
+        count: Count | int | None = None,
+        header: Record | str | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        self._name, self._remedy, self._count = name, remedy, count
+        self._item_size, self._header_size = stride(item), stride(header) if header else 0
+
+    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> GrowingBuffer:
+        """Declared.make."""
+        buffer = GrowingBuffer(context, self._name, self._remedy or remedy, self._item_size, self._header_size)
+        if count := self._count_for(sizes):
+            buffer.require_items(count)
+        return buffer
+
+    def expected_bytes(self, sizes: object) -> dict[str, int]:
+        """Declared.expected_bytes."""
+        count = self._count_for(sizes)
+        return {self._name: max(self._header_size + self._item_size * count, SMALLEST)} if count else {}
+
+    def _count_for(self, sizes: object) -> int:
+        return self._count(sizes) if callable(self._count) else self._count or 0
+
+
+class Part(Declared[Set]):
+    """A set within a set, made for the same sizes."""
+
+    def __init__(self, kind: type[Set]) -> None:
+        self._kind = kind
+
+    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> Set:
+        """Declared.make."""
+        return self._kind(context, library, sizes)
+
+    def expected_bytes(self, sizes: object) -> dict[str, int]:
+        """Declared.expected_bytes."""
+        return self._kind.expected_bytes(sizes)
+
+
+class BufferSet:
+    """Owner of what it declares and of what else it is told to own."""
+
+    remedy: ClassVar[str] = REMEDY
+    """What helps where the device has no room for a buffer."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        """sizes: what the counts follow from. Raises DeviceError when the device has no room."""
+        self._owned: list[tuple[Resource, str]] = []
+        for name, declared in _declarations(type(self)).items():
+            vars(self)[name] = self.own(declared.make(context, library, sizes, self.remedy))
+
+    def own(self, resource: Owned, name: str = "") -> Owned:
+        """Release it with the set; returns it. name: by which a texture is reported."""
+        self._owned.append((resource, name))
+        return resource
+
+    def disown(self, resource: Resource) -> None:
+        """Release it now."""
+        self._owned = [entry for entry in self._owned if entry[0] is not resource]
+        resource.release()
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer; those without any are left out."""
+        return sum_by_name(_bytes_of(resource, name) for resource, name in self._owned)
+
+    @classmethod
+    def expected_bytes(cls, sizes: object) -> dict[str, int]:
+        """By name, the bytes that follow from the sizes, known before anything is allocated."""
+        return sum_by_name(declared.expected_bytes(sizes) for declared in _declarations(cls).values())
+
+    def release(self) -> None:
+        """Give all of it back."""
+        for resource, _ in self._owned:
+            resource.release()
+        self._owned = []
+
+
+def sum_by_name(parts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    """Those of one name together."""
+    sums: dict[str, int] = {}
+    for part in parts:
+        for name, size in part.items():
+            sums[name] = sums.get(name, 0) + size
+    return sums
+
+
+def _declarations(kind: type[BufferSet]) -> dict[str, Declared]:
+    """Those of a class, after those of the classes that it is made from."""
+    members = (item for base in reversed(kind.__mro__) for item in vars(base).items())
+    return {name: member for name, member in members if isinstance(member, Declared)}
+
+
+def _bytes_of(resource: Resource, name: str) -> dict[str, int]:
+    if isinstance(resource, BufferSet):
+        return resource.memory_bytes
+    if isinstance(resource, GrowingBuffer):
+        return {resource.name: resource.size} if resource.size else {}
+    if isinstance(resource, moderngl.Texture):
+        # dtype ends with the bytes of a component.
+        return {name: resource.width * resource.height * resource.components * int(resource.dtype[-1])}
+    return {}

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sets of buffers: what is declared once is made, reported, forecast and given back."""
+
+from dataclasses import dataclass
+
+import moderngl
+import pytest
+
+from rppm_addon.gl.buffer_sets import BufferSet, Part, StorageBuffer
+from rppm_addon.gl.buffers import SMALLEST
+from rppm_addon.integrator.common.records import RAY
+from rppm_addon.scene.errors import DeviceError
+
+
+@dataclass(frozen=True)
+class Sizes:
+    rocks: int
+    sticks: int = 0
+
+
+class Inner(BufferSet):
+    remedy = "carry fewer"
+    rocks = StorageBuffer("rocks", RAY, lambda sizes: sizes.rocks)
+
+
+class Outer(BufferSet):
+    inner = Part(Inner)
+    sticks = StorageBuffer("sticks", "uint", lambda sizes: sizes.sticks, header="uvec4")
+    found = StorageBuffer("found", "vec3")
+    few = StorageBuffer("few", "uint", 2)
+
+
+class Derived(Outer):
+    more = StorageBuffer("more", "vec4", lambda sizes: 2 * sizes.rocks)
+
+
+def test_what_is_expected_is_what_is_made(context, library):
+    sizes = Sizes(100, 50)
+    expected = {"rocks": 100 * RAY.size, "sticks": 16 + 4 * 50, "few": SMALLEST, "more": 200 * 16}
+    assert Derived.expected_bytes(sizes) == expected
+    made = Derived(context, library, sizes)
+    assert made.memory_bytes == expected
+    assert made.sticks.capacity == 50 and made.inner.rocks.capacity == 100
+    made.release()
+
+
+def test_of_what_nothing_is_asked_nothing_is_made(context, library):
+    made = Outer(context, library, Sizes(8))
+    assert Outer.expected_bytes(Sizes(8)).keys() == made.memory_bytes.keys() == {"rocks", "few"}
+    made.found.require_items(5)
+    assert made.memory_bytes["found"] == 5 * 16
+    assert made.sticks.buffer.size == SMALLEST  # to be bound it has to be something
+    made.release()
+
+
+def test_sets_have_buffers_of_their_own(context, library):
+    first, second = (Inner(context, library, Sizes(count)) for count in (10, 20))
+    assert first.rocks is not second.rocks and (first.rocks.capacity, second.rocks.capacity) == (10, 20)
+    for each in (first, second):
+        each.release()
+
+
+def test_textures_are_reported_and_all_is_given_back(context, library):
+    made = Outer(context, library, Sizes(8))
+    texture = made.own(context.moderngl.texture((8, 4), 2, dtype="f4"), "pictures")
+    depth = made.own(context.moderngl.depth_texture((8, 4)), "pictures")
+    framebuffer = made.own(context.moderngl.framebuffer([texture], depth))
+    assert made.memory_bytes["pictures"] == 8 * 4 * 12
+    made.disown(framebuffer)
+    made.disown(texture)
+    assert made.memory_bytes["pictures"] == 8 * 4 * 4 and isinstance(texture.mglo, moderngl.InvalidObject)
+    buffer = made.inner.rocks.buffer
+    made.release()
+    assert isinstance(buffer.mglo, moderngl.InvalidObject) and isinstance(depth.mglo, moderngl.InvalidObject)
+    assert made.memory_bytes == {}
+
+
+def test_the_remedy_is_the_set_s(context, library):
+    with pytest.raises(DeviceError, match="rocks needs .* carry fewer"):
+        Inner(context, library, Sizes(context.storage_block_limit // RAY.size + 1))
+    with pytest.raises(AttributeError, match=r"BufferSet.__init__"):
+        _ = object.__new__(Inner).rocks
