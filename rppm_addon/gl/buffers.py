@@ -26,6 +26,7 @@ class GrowingBuffer:
         self.item_size, self._header_size = item_size, header_size
         self._context = context
         self._buffer: moderngl.Buffer | None = None
+        self._is_required = False
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -36,8 +37,8 @@ class GrowingBuffer:
 
     @property
     def size(self) -> int:
-        """Bytes; 0 while it was neither required nor bound."""
-        return 0 if self._buffer is None else self._buffer.size
+        """Bytes; 0 while nothing was required."""
+        return self.buffer.size if self._is_required else 0
 
     @property
     def capacity(self) -> int:
@@ -70,6 +71,7 @@ class GrowingBuffer:
         self.release()
         try:
             self._buffer = self._context.moderngl.buffer(reserve=max(size, SMALLEST))
+            self._is_required = True
         except moderngl.Error as error:
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}"
@@ -100,4 +102,4 @@ class GrowingBuffer:
         """Free the buffer."""
         if self._buffer is not None:
             self._buffer.release()
-            self._buffer = None
+            self._buffer, self._is_required = None, False

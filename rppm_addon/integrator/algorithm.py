@@ -34,7 +34,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             stages.shadow_catcher.cast(context, importons, band, iteration, segment)
             stages.direct_light.add(context, importons, stages.final_gather, band, iteration, segment, radii)
             yield
-            film.add_passes(context, camera_hits.camera, importons, band, iteration, segment)
+            film.add_passes(context, camera_hits.camera.buffer, importons, band, iteration, segment)
             importons.scatter(context, stages.scatter_blocks, band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
             raster = camera_hits.raster(band) if segment == 0 else None

@@ -5,24 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ..scene.passes import passes_named
-from ..scene.settings import RenderSettings
-from .common.band import bands_of
-from .common.living_paths import LivingPaths
-from .common.records import (
-    ADJOINT_QUERY,
-    CAMERA_PATH,
-    CLOSURE,
-    FLUX_GROUP,
-    FLUX_SUMS,
-    GATHERING_VERTEX,
-    HIT,
-    IMPORTON,
-    PHOTON,
-    PHOTON_PATH,
-    RAY,
-)
-from .density_estimation.photon_grid import importon_memory
-from .stages.film import passes_memory
+from ..scene.settings import DensityEstimation, RenderSettings
+from .common.stage_sizes import StageSizes, film_pixels
+from .density_estimation.density_estimator import ROUTES
+from .stages.stage_set import expected_groups
 
 PPM_BUFFERS = ("film", "gathered radiance", "photons")
 """Running mean of radiance (16 R), sums of splats (48 bytes a pixel of one band of rows), photons (64 M L)."""
@@ -102,47 +88,8 @@ def expected_memory(
     passes: names of those that are rendered.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
-    pixels, band = width * height, bands_of(width, height)[0].pixel_count
-    groups = {
-        "photon paths": {
-            "photons": PHOTON.size * photons * segments,
-            "photon paths": PHOTON_PATH.size * photons,
-            "photon rays": RAY.size * photons,
-            "photon hits": HIT.size * photons,
-            "photon closures": CLOSURE.size * photons,
-            "adjoint queries": ADJOINT_QUERY.size * photons,
-            "world radiances": 4 * photons,
-            "emitted photons": PHOTON_PATH.size * photons,
-            "flux sums": FLUX_SUMS.size * -(-photons // FLUX_GROUP),
-            "living photon paths": 2 * LivingPaths.size(photons),
-        },
-        "camera paths": {
-            "camera rays": RAY.size * band,
-            "camera hits": HIT.size * band,
-            "camera paths": CAMERA_PATH.size * band,
-            "camera closures": CLOSURE.size * band,
-            "importons": IMPORTON.size * band,
-            "band radiance": 16 * band,
-            "living camera paths": 2 * LivingPaths.size(band),
-        },
-        "direct light": {
-            "shadow rays": RAY.size * band,
-            "direct light": 16 * band,
-            "visibility": 4 * band,
-            "triangles of sampled lights": 4 * band,
-            "living shadow rays": LivingPaths.size(band),
-        },
-        "final gather": {"gathering vertices": GATHERING_VERTEX.size * band, "found radiance": 16 * band},
-        "density estimation": {
-            "stored photons": 8 + 4 * photons * segments,
-            "gathered radiance": 48 * band,
-            "photon counts": 8 * band,
-            **({"splat core list": 4 * (band + 1)} if rasterized else importon_memory(band)),
-        },
-        "passes": {
-            "film": 16 * pixels,
-            **passes_memory(pixels, band, passes_named(passes)),
-            "radius factors": 4 * pixels,
-        },
-    }
-    return compute_memory(groups, pixels, photons, segments)
+    sizes = StageSizes(width, height, photons, segments, passes_named(passes))
+    groups = expected_groups(sizes)
+    route = DensityEstimation.RASTERIZED if rasterized else DensityEstimation.GRID
+    groups["density estimation"] |= ROUTES[route].expected_bytes(sizes)
+    return compute_memory(groups, film_pixels(sizes), photons, segments)

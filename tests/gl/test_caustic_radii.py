@@ -11,6 +11,7 @@ from rppm_addon.gl.timers import StageTimers
 from rppm_addon.integrator.common.band import Band
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.common.records import IMPORTON, GatherFlag
+from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.density_estimation.caustic_radii import CausticRadii
 from rppm_addon.integrator.density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage
 from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
@@ -29,7 +30,8 @@ def many_photons(**settings: object) -> Scene:
 def test_disks_shrink_to_what_they_should_hold(context, library, roulette):
     """The closed form, band by band and iteration by iteration; Eq. 2's shrinkage is no reason to shrink more."""
     pixels, first = 40, 8
-    radii, sums = CausticRadii(context, library, pixels), SplatSums(context, pixels)
+    sizes = StageSizes(pixels, 1)
+    radii, sums = CausticRadii(context, library, sizes), SplatSums(context, library, sizes)
     sums.count_in(1.0, roulette, True)
     timers = StageTimers(context)
     random = np.random.default_rng(4)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.integrator.common.records import FLUX_GROUP, FLUX_NAMES, PHOTON, PHOTON_PATH, PhotonFlag
+from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.stages.photons import Photons
 
 PATHS, SEGMENTS = 3 * FLUX_GROUP + 7, 4
@@ -12,7 +13,7 @@ PATHS, SEGMENTS = 3 * FLUX_GROUP + 7, 4
 
 @pytest.fixture
 def made(context, library):
-    photons = Photons(context, library, PATHS, SEGMENTS)
+    photons = Photons(context, library, StageSizes(1, 1, PATHS, SEGMENTS))
     yield photons
     photons.release()
 

@@ -6,6 +6,7 @@ import dataclasses
 import pytest
 import scenes
 
+from rppm_addon.gl.buffer_sets import sum_by_name
 from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS
 from rppm_addon.integrator.memory import expected_memory
 from rppm_addon.scene import DensityEstimation
@@ -47,6 +48,11 @@ def test_all_buffers_of_a_render_are_reckoned(renderer, route):
     assert told["splat jobs" if rasterized else "sorted photons"] > 16 * 3000
 
 
+def test_every_stage_is_in_a_group(mapper):
+    mapper.build(scenes.room(16, **SETTINGS))
+    assert sum_by_name(mapper.stages.memory_groups.values()) == mapper.stages.memory_bytes
+
+
 def test_buffers_of_the_camera_have_the_size_of_a_band(renderer):
     """Twice the rows beyond a band's pixels double the film and nothing else."""
     scene = scenes.room(16, **SETTINGS | {"photons": 64})
@@ -69,5 +75,5 @@ def test_what_the_settings_alone_take_is_known_beforehand(renderer, width, heigh
     for group, sizes in expected.working.items():
         assert sizes == {name: memory.working[group][name] for name in sizes}
         # Nothing but what depends on the scene or the camera's kind is left out.
-        lists = {"splat jobs", "splat cubemap"} if rasterized else {"photon grid", "sorted photons"}
+        lists = {"splat jobs"} if rasterized else {"photon grid", "sorted photons"}
         assert set(memory.working[group]) - set(sizes) <= {"visibility buffer", *lists}

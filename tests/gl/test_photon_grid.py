@@ -7,6 +7,7 @@ import pytest
 from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.common.living_paths import LivingPaths
 from rppm_addon.integrator.common.records import IMPORTON, PHOTON, GatherFlag, PhotonFlag
+from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.density_estimation.photon_grid import PhotonGrid
 from rppm_addon.integrator.density_estimation.radii import SplatRadii
 from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
@@ -31,12 +32,13 @@ class Device:
         radiances = np.zeros(len(photons), np.float32)
         for buffer, array in zip(buffers, (photons, importons, radiances), strict=True):
             buffer.upload(array)
-        listed = PhotonList(self._context, self._library)
+        sizes = StageSizes(len(importons), 1, photons=len(photons), segments=1)
+        listed = PhotonList(self._context, self._library, sizes)
         listed.collect(buffers[0].buffer, len(photons), indirect_only=False)
-        sums = SplatSums(self._context, len(importons))
+        sums = SplatSums(self._context, self._library, sizes)
         sums.count_in(1e-6, 0, True)
         sums.clear()
-        grid = PhotonGrid(self._context, self._library, len(importons))
+        grid = PhotonGrid(self._context, self._library, sizes)
         stored = StoredPhotons(
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
             buffers[2].buffer, len(photons), 1.0, radii, float(np.abs(photons["position"]).max()),

@@ -4,8 +4,10 @@
 import numpy as np
 import pytest
 
+from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS
+from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.memory import expected_memory
-from rppm_addon.integrator.stages.film import passes_memory
+from rppm_addon.integrator.stages.film import Film
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.errors import SettingsError
@@ -71,8 +73,11 @@ def test_merged_parts_are_the_whole():
 
 
 def test_passes_that_are_off_take_no_memory():
-    assert passes_memory(100, 10, ()) == {}
+    width, height = 1024, MAXIMUM_BAND_PIXELS // 512
+    pixels, radiance = width * height, {"film": 16 * width * height}
+    assert Film.expected_bytes(StageSizes(width, height)) == radiance
     channels = sum(len(entry.channels) for entry in FILM_PASSES)
-    assert passes_memory(100, 10, PASSES) == {"pass values": 400 * channels, "pass counts": 800, "pass paths": 160}
+    values = {"pass values": 4 * channels * pixels, "pass counts": 8 * pixels, "pass paths": 16 * MAXIMUM_BAND_PIXELS}
+    assert Film.expected_bytes(StageSizes(width, height, passes=PASSES)) == radiance | values
     without, beside = (expected_memory(16, 16, 64, 2, passes=names).total_bytes for names in ((), ("Depth",)))
     assert beside - without == 256 * (4 + 8)

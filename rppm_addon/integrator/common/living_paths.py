@@ -6,7 +6,8 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, Count, Declared
+from ...gl.buffers import SMALLEST, GrowingBuffer
 from ...gl.context import Context
 from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
@@ -18,7 +19,7 @@ _GROUPS = LIVING_PATHS_HEADER.offset("groups")
 _FIRST = LIVING_PATHS_HEADER.size // 4
 
 
-class LivingPaths:
+class LivingPaths(BufferSet):
     """The numbers of living paths, with the arguments of the dispatches over them, on the device.
 
     A list begins with all paths; each segment keeps those whose rays are to be traced. Programs over the paths of a
@@ -27,10 +28,11 @@ class LivingPaths:
     """
 
     def __init__(self, context: Context, library: ProgramLibrary, name: str, remedy: str) -> None:
+        super().__init__(context, library)
         self._context = context
         self._fill = library.compute("living_paths/fill.comp")
         self._keep = library.compute("living_paths/keep.comp")
-        self._lists = [GrowingBuffer(context, name, remedy)]
+        self._lists = [self.own(GrowingBuffer(context, name, remedy))]
         """The list, and where there is to be ``keep``, room for the next one."""
         self.most = 0
         """Paths that the list may have: as many as the list began with."""
@@ -39,11 +41,6 @@ class LivingPaths:
     def buffer(self) -> moderngl.Buffer:
         """The list: LIVING_PATHS_HEADER and the numbers, uint32."""
         return self._lists[0].buffer
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {self._lists[0].name: sum(paths.size for paths in self._lists)}
 
     @staticmethod
     def size(paths: int) -> int:
@@ -57,7 +54,7 @@ class LivingPaths:
         """
         if to_keep and len(self._lists) == 1:
             first = self._lists[0]
-            self._lists.append(GrowingBuffer(self._context, first.name, first.remedy))
+            self._lists.append(self.own(GrowingBuffer(self._context, first.name, first.remedy)))
         for buffer in self._lists:
             buffer.require(self.size(paths))
 
@@ -119,7 +116,21 @@ class LivingPaths:
         """(count,) uint32 numbers of the listed paths. Waits for the device."""
         return self._lists[0].read(np.uint32, self.read_count(), LIVING_PATHS_HEADER.size)
 
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in self._lists:
-            buffer.release()
+
+class PathList(Declared[LivingPaths]):
+    """Declares a list of up to ``count`` paths; to_keep: ``keep`` will leave some of them out."""
+
+    def __init__(self, name: str, count: Count | None = None, to_keep: bool = False, remedy: str | None = None) -> None:
+        self._name, self._count, self._to_keep, self._remedy = name, count, to_keep, remedy
+
+    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> LivingPaths:
+        """Declared.make."""
+        paths = LivingPaths(context, library, self._name, self._remedy or remedy)
+        if self._count is not None:
+            paths.require(self._count(sizes), self._to_keep)
+        return paths
+
+    def expected_bytes(self, sizes: object) -> dict[str, int]:
+        """Declared.expected_bytes."""
+        lists = 2 if self._to_keep else 1
+        return {} if self._count is None else {self._name: lists * max(LivingPaths.size(self._count(sizes)), SMALLEST)}

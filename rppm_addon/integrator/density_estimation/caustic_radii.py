@@ -9,32 +9,30 @@ earlier iterations took; Eq. 2 shrinks what remains, so the estimate stays consi
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.timers import StageTimers
 from ..common.band import Band
 from ..common.iteration import Iteration
+from ..common.stage_sizes import StageSizes, film_pixels
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
 
 Record("NarrowParameters", count="uint", first_pixel="uint", iteration="uint", most_factor="float", expected="float")
 
 
-class CausticRadii:
+class CausticRadii(BufferSet):
     """What Eq. 3's radius of each pixel of the film is multiplied by, from the second iteration on."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
-        self._program = library.compute("caustic_radii/narrow.comp")
-        self._factors = GrowingBuffer(context, "radius factors", "lower the resolution")
-        self._factors.require(4 * pixels)
-        self._pixels = pixels
+    remedy = "lower the resolution"
+    _factors = StorageBuffer("radius factors", "float", film_pixels)
 
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {self._factors.name: self._factors.size}
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._program = library.compute("caustic_radii/narrow.comp")
+        self._pixels = film_pixels(sizes)
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -68,7 +66,3 @@ class CausticRadii:
     def restore(self, factors: np.ndarray) -> None:
         """Take what read gave."""
         self._factors.upload(factors)
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._factors.release()

@@ -5,15 +5,18 @@ Splatting (splatting.py) rasterizes photons, as the paper does; importons gather
 """
 
 import logging
+from collections.abc import Mapping
 from weakref import WeakKeyDictionary
 
 import moderngl
 
+from ...gl.buffer_sets import BufferSet, Part
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.timers import StageTimers
 from ...scene.settings import DensityEstimation, RenderSettings
 from ..common.iteration import Iteration
+from ..common.stage_sizes import StageSizes
 from .photon_grid import PhotonGrid
 from .splat_sums import SplatSums, radiance_quantum
 from .splatting import Splatting
@@ -30,29 +33,35 @@ _faster: WeakKeyDictionary[ProgramLibrary, DensityEstimation] = WeakKeyDictionar
 """The faster route once both were tried, by the open device's programs."""
 
 
+ROUTES: Mapping[DensityEstimation, type[Splatting] | type[PhotonGrid]] = {
+    DensityEstimation.RASTERIZED: Splatting,
+    DensityEstimation.GRID: PhotonGrid,
+}
+
+
 def _may_rasterize(context: Context) -> bool:
     """Whether rasterization may be the faster route: where no unit rasterizes it takes 9 to 19 times as long as the
     grid, and the trial half of the first iteration."""
     return not context.is_software
 
 
-class DensityEstimator:
+class DensityEstimator(BufferSet):
     """Estimates densities at the importons of a band by the route that the settings ask for.
 
     AUTOMATIC takes the faster one: with the first photons and importons that are a thousand and more both are tried,
     but for software devices, on which the grid always is.
     """
 
-    def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
-        self._context = context
-        self._library = library
-        self._width, self._rows = width, rows
+    photon_list = Part(PhotonList)
+    sums = Part(SplatSums)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._context, self._library, self._sizes = context, library, sizes
         self._wanted = DensityEstimation.AUTOMATIC
         self._routes: dict[DensityEstimation, Splatting | PhotonGrid] = {}
         self._prepared: DensityEstimation | None = None
         self._photons: StoredPhotons | None = None
-        self.photon_list = PhotonList(context, library)
-        self.sums = SplatSums(context, width * rows)
 
     @property
     def route(self) -> DensityEstimation:
@@ -60,12 +69,6 @@ class DensityEstimator:
         if self._wanted is not DensityEstimation.AUTOMATIC:
             return self._wanted
         return _faster.get(self._library, _UNDECIDED)
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        parts = (self.photon_list, self.sums, *self._routes.values())
-        return {name: size for part in parts for name, size in part.memory_bytes.items()}
 
     def collect(self, photons: moderngl.Buffer, slots: int, indirect_only: bool, timers: StageTimers) -> PhotonList:
         """List the photons that importons may take (PhotonList.collect)."""
@@ -86,7 +89,7 @@ class DensityEstimator:
         """Bring the photons into the order that the route needs, unless that was done; release the other route."""
         route = self.route
         for other in self._routes.keys() - {route}:
-            self._routes.pop(other).release()
+            self.disown(self._routes.pop(other))
         if self._prepared is not route:
             self._get(route).prepare(self._photons)
             self._prepared = route
@@ -145,14 +148,5 @@ class DensityEstimator:
 
     def _get(self, route: DensityEstimation) -> Splatting | PhotonGrid:
         if route not in self._routes:
-            self._routes[route] = (
-                Splatting(self._context, self._library, self._width, self._rows)
-                if route is DensityEstimation.RASTERIZED
-                else PhotonGrid(self._context, self._library, self._width * self._rows)
-            )
+            self._routes[route] = self.own(ROUTES[route](self._context, self._library, self._sizes))
         return self._routes[route]
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for part in (self.photon_list, self.sums, *self._routes.values()):
-            part.release()

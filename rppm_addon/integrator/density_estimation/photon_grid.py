@@ -8,12 +8,13 @@ in which photons or importons come to lie.
 
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
+from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import ESTIMATE_PARAMETERS, StoredPhotons, TakingImportons
 
@@ -46,13 +47,13 @@ fewer."""
 _CAUSTIC_GRIDS, _WIDE_GRIDS = 1 + len(_FINER_SIDES), 2
 Constants("PhotonGrids", CAUSTIC_GRIDS=_CAUSTIC_GRIDS)
 _FEWEST_BUCKETS = 1 << 10
-_HEADER, _BUCKET, _SORTED_PHOTON, _VISIT = 16, 8, 16, 8
 _ROUNDING_STEPS = 8.0
 """Float spacings at the largest coordinate: more than the rounding of a sphere's ends and of their division."""
 _MOST_ROUNDS = 2000
 """Of a thread on software devices: llvmpipe ends the loops of a thread after 65535 rounds in all. The threads of a
 vector, up to 16, may have to wait for each other in both loops."""
 _NO_LIMIT = 0xFFFFFFFF
+_FEWER_PIXELS = "lower the resolution"
 
 
 def _buckets(count: int) -> int:
@@ -60,10 +61,20 @@ def _buckets(count: int) -> int:
     return max(_FEWEST_BUCKETS, 1 << (max(count, 1) - 1).bit_length())
 
 
-class PhotonGrid:
+class PhotonGrid(BufferSet):
     """Adds photons to the importons of a band, one route of density estimation (density_estimator.py)."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+    remedy = "lower the photons per iteration or the photon path length"
+    _grid = StorageBuffer("photon grid", "uvec2", header="uvec4")
+    _sorted_photons = StorageBuffer("sorted photons", "uvec4")
+    _importon_grid = StorageBuffer(
+        "importon grid", "uvec2", lambda sizes: _buckets(band_pixels(sizes)), "uvec4", _FEWER_PIXELS
+    )
+    _visits = StorageBuffer("importon visits", "uvec2", band_pixels, "uvec4", _FEWER_PIXELS)
+    _unfinished_visits = StorageBuffer("unfinished importon visits", "uvec2", band_pixels, "uvec4", _FEWER_PIXELS)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
         self._count_photons = library.compute("photon_grid/count_photons.comp")
         self._place_photons = library.compute("photon_grid/place_photons.comp")
         self._count_importons = library.compute("photon_grid/count_importons.comp")
@@ -71,26 +82,7 @@ class PhotonGrid:
         self._allocate = library.compute("photon_grid/allocate.comp")
         self._gather = library.compute("photon_grid/gather.comp")
         self._most_rounds = _MOST_ROUNDS if context.is_software else _NO_LIMIT
-        remedy = "lower the photons per iteration or the photon path length"
-        self._grid = GrowingBuffer(context, "photon grid", remedy)
-        self._sorted_photons = GrowingBuffer(context, "sorted photons", remedy)
-        remedy = "lower the resolution"
-        self._importon_grid = GrowingBuffer(context, "importon grid", remedy)
-        self._visits = GrowingBuffer(context, "importon visits", remedy)
-        self._unfinished_visits = GrowingBuffer(context, "unfinished importon visits", remedy)
-        for name, size in importon_memory(pixels).items():
-            next(buffer for buffer in self._buffers if buffer.name == name).require(size)
         self._parameters: dict[str, object] = {}
-
-    @property
-    def _buffers(self) -> tuple[GrowingBuffer, ...]:
-        photons = self._grid, self._sorted_photons
-        return *photons, self._importon_grid, self._visits, self._unfinished_visits
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in self._buffers}
 
     @property
     def visited(self) -> int:
@@ -111,8 +103,8 @@ class PhotonGrid:
         }
         self._holds_caustics = caustics > 0
         buckets = _CAUSTIC_GRIDS * _buckets(caustics) + _WIDE_GRIDS * _buckets(photons.diffused_count)
-        self._grid.require(_HEADER + _BUCKET * buckets)
-        self._sorted_photons.require(_SORTED_PHOTON * max(1, _CAUSTIC_GRIDS * caustics + photons.diffused_count))
+        self._grid.require_items(buckets)
+        self._sorted_photons.require_items(_CAUSTIC_GRIDS * caustics + photons.diffused_count)
         cells = {"Buckets": self._grid.buffer}
         parameters = {**self._parameters, "count": photons.count}
         self._grid.clear()
@@ -175,18 +167,3 @@ class PhotonGrid:
             {"Importons": importons.importons, **cells, "Visits": self._visits.buffer},
             parameters,
         )
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in self._buffers:
-            buffer.release()
-
-
-def importon_memory(pixels: int) -> dict[str, int]:
-    """Bytes by buffer that follow from a band's pixels."""
-    visits = _HEADER + _VISIT * pixels
-    return {
-        "importon grid": _HEADER + _BUCKET * _buckets(pixels),
-        "importon visits": visits,
-        "unfinished importon visits": visits,
-    }

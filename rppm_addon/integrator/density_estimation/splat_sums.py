@@ -8,9 +8,11 @@ from collections.abc import Iterator
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
 from ...gl.storage_blocks import StorageBlock
+from ..common.stage_sizes import StageSizes, band_pixels
 
 SUM_PARAMETERS = {"quanta": "float", "roulette": "uint", "counting": "uint"}
 """Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl or collect.glsl."""
@@ -19,7 +21,8 @@ StorageBlock("SplatSums", "uint sum_words[];")
 StorageBlock("PhotonCounts", "uint photon_counts[];")
 
 _PHOTON_QUANTA = 1 << 24
-_SUMS, _COUNTS = 48, 8
+_SUM_WORDS = 12
+"""Of a pixel (shaders/splat_sums/sums.glsl)."""
 
 
 def radiance_quantum(photon_flux: float, radius: float) -> float:
@@ -32,21 +35,16 @@ def radiance_quantum(photon_flux: float, radius: float) -> float:
     return 2.0 ** math.floor(math.log2(min(max(radiance, 1e-30), 1e20)))
 
 
-class SplatSums:
+class SplatSums(BufferSet):
     """The sums of a band's pixels (shaders/splat_sums/sums.glsl), and how many photons each of them took."""
 
-    def __init__(self, context: Context, pixels: int) -> None:
-        remedy = "lower the resolution"
-        self._sums = GrowingBuffer(context, "gathered radiance", remedy)
-        self._photon_counts = GrowingBuffer(context, "photon counts", remedy)
-        self._sums.require(_SUMS * pixels)
-        self._photon_counts.require(_COUNTS * pixels)
-        self.count_in(1.0, 0, False)
+    remedy = "lower the resolution"
+    _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes))
+    _photon_counts = StorageBuffer("photon counts", "uvec2", band_pixels)
 
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in (self._sums, self._photon_counts)}
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self.count_in(1.0, 0, False)
 
     def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
         """Set what the sums count in, W/(m^2 sr), the seed of the roulette (0 keeps all pairs of a photon and a pixel),
@@ -100,8 +98,3 @@ class SplatSums:
         """(count, 2) how many photons the importons of each of the band's pixels took, where they are counted:
         diffused ones, and caustic ones but for those at the ends of gathering rays."""
         return self._photon_counts.read(np.uint32, 2 * count).reshape(-1, 2) * self.photons_for_one
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._sums.release()
-        self._photon_counts.release()

@@ -4,12 +4,13 @@
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import DrawProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
+from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import ESTIMATE_PARAMETERS, CameraRaster, StoredPhotons, TakingImportons
 
@@ -17,7 +18,6 @@ _CUBE_RESOLUTION, _BLOCK_SIZE = 128, 8
 Constants("SplatCubemap", signed=True, BLOCK_SIZE=_BLOCK_SIZE)
 _FEW_IMPORTONS = 40_000
 """Up to so many have a cubemap of half the side: the same picture, on llvmpipe in 7 to 23 % less time."""
-_JOB_HEADER, _JOB = 16, 16
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
@@ -38,10 +38,28 @@ StorageBlock("Core", "uint core_count; uint core_importons[];")
 StorageBlock("Jobs", "uint job_vertices; uint draw_arguments[3]; SplatJob jobs[];")
 
 
-class Splatting:
+def _resolution(sizes: StageSizes) -> int:
+    """Pixels along the sides of the splat cubemap."""
+    few = band_pixels(sizes) <= _FEW_IMPORTONS
+    return max(_BLOCK_SIZE, _CUBE_RESOLUTION // 2) if few else _CUBE_RESOLUTION
+
+
+def _head_count(sizes: StageSizes) -> int:
+    resolution = _resolution(sizes)
+    return 6 * (resolution**2 + (resolution // _BLOCK_SIZE) ** 2 + 4)
+
+
+class Splatting(BufferSet):
     """Adds photons to the importons of a band, one route of density estimation (density_estimator.py)."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
+    _jobs = StorageBuffer(
+        "splat jobs", "uvec4", header="uvec4", remedy="lower the photons per iteration or the photon path length"
+    )
+    _heads = StorageBuffer("splat cubemap", "uint", _head_count)
+    _core = StorageBuffer("splat core list", "uint", band_pixels, header="uint")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
         gl = context.moderngl
         self._direct_jobs = library.compute("splatting/direct_jobs.comp")
         self._direct_program = library.draw("splatting/quads.vert", "splatting/direct.frag")
@@ -49,26 +67,14 @@ class Splatting:
         self._indirect_jobs = library.compute("splatting/indirect_jobs.comp")
         self._indirect_program = library.draw("splatting/quads.vert", "splatting/indirect.frag")
         self._core_program = library.compute("splatting/core.comp")
-        remedy = "lower the photons per iteration or the photon path length"
-        self._jobs = GrowingBuffer(context, "splat jobs", remedy)
-        self._heads = GrowingBuffer(context, "splat cubemap")
-        self._core = GrowingBuffer(context, "splat core list")
-        few = width * rows <= _FEW_IMPORTONS
-        self._resolution = max(_BLOCK_SIZE, _CUBE_RESOLUTION // 2) if few else _CUBE_RESOLUTION
-        self._heads.require(4 * 6 * (self._resolution**2 + (self._resolution // _BLOCK_SIZE) ** 2 + 4))
-        self._core.require(4 * (width * rows + 1))
-        self._direct_view = gl.empty_framebuffer((width, rows))
+        self._resolution = _resolution(sizes)
+        self._direct_view = self.own(gl.empty_framebuffer((sizes.width, sizes.bands[0].rows)))
         self._cube_size = (3 * self._resolution, 2 * self._resolution)
-        self._cube_view = gl.empty_framebuffer(self._cube_size)
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in (self._jobs, self._heads, self._core)}
+        self._cube_view = self.own(gl.empty_framebuffer(self._cube_size))
 
     def prepare(self, photons: StoredPhotons) -> None:
         """Make room for an iteration's photons."""
-        self._jobs.require(_JOB_HEADER + _JOB * _FACES_OF_A_SPLAT * max(1, photons.count))
+        self._jobs.require_items(_FACES_OF_A_SPLAT * photons.count)
 
     def splat(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
         """Add to the sums what the photons that were prepared for give."""
@@ -158,8 +164,3 @@ class Splatting:
             {"Core": self._core.buffer, **photons.list_blocks, **splats},
             {**cube, "count": photons.count},
         )
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for resource in (self._jobs, self._heads, self._core, self._direct_view, self._cube_view):
-            resource.release()

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.living_paths import LivingPaths
+from ..common.stage_sizes import StageSizes, photon_slots
 from .radii import SplatRadii
 
 ESTIMATE_PARAMETERS = {
@@ -24,16 +25,16 @@ ESTIMATE_PARAMETERS = {
 
 Record("StoredParameters", count="uint", indirect_only="uint")
 
-_HEADER = 8
 
-
-class PhotonList:
+class PhotonList(BufferSet):
     """The numbers of the photons that importons may take: ``count`` of them, ``diffused_count`` of these diffused."""
 
-    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+    remedy = "lower the photons per iteration or the photon path length"
+    _numbers = StorageBuffer("stored photons", "uint", photon_slots, header="uvec2")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
         self._program = library.compute("stored_photons/list.comp")
-        remedy = "lower the photons per iteration or the photon path length"
-        self._numbers = GrowingBuffer(context, "stored photons", remedy)
         self.count = self.diffused_count = 0
 
     @property
@@ -41,25 +42,15 @@ class PhotonList:
         """Two uint32, ``count`` and ``diffused_count``, and the numbers."""
         return self._numbers.buffer
 
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {self._numbers.name: self._numbers.size}
-
     def collect(self, photons: moderngl.Buffer, slots: int, indirect_only: bool) -> None:
         """List those of so many slots (PHOTON) that are stored, or those of them that are no direct light."""
-        self._numbers.require(_HEADER + 4 * slots)
-        self._numbers.buffer.write(bytes(_HEADER))
+        self._numbers.write(np.zeros(2, np.uint32))
         self._program.run(
             slots,
             {"Photons": photons, "StoredPhotons": self._numbers.buffer},
             {"count": slots, "indirect_only": indirect_only},
         )
         self.count, self.diffused_count = map(int, self._numbers.read(np.uint32, 2))
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._numbers.release()
 
 
 @dataclass(frozen=True)

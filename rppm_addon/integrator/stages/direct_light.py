@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light straight from the sources, by shadow rays from the camera paths' vertices."""
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...scene.settings import DirectLight as DirectLightMode
 from ..common.band import Band
 from ..common.iteration import Iteration
-from ..common.living_paths import LivingPaths
+from ..common.living_paths import PathList
 from ..common.records import RAY
+from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.radii import Radii
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
@@ -28,31 +29,20 @@ Record(
 )
 
 
-class DirectLight:
+class DirectLight(BufferSet):
     """One sampled light and one shadow ray for every camera path and segment."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+    remedy = "lower the resolution"
+    _rays = StorageBuffer("shadow rays", RAY, band_pixels)
+    _contributions = StorageBuffer("direct light", "vec4", band_pixels)
+    _visibility = StorageBuffer("visibility", "uint", band_pixels)
+    _triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels)
+    _living_rays = PathList("living shadow rays", band_pixels)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
         self._sample = library.compute("direct_light/sample.comp")
         self._add = library.compute("direct_light/add.comp")
-        self._rays = GrowingBuffer(context, "shadow rays")
-        self._contributions = GrowingBuffer(context, "direct light")
-        self._visibility = GrowingBuffer(context, "visibility")
-        self._triangles = GrowingBuffer(context, "triangles of sampled lights")
-        self._living_rays = LivingPaths(context, library, "living shadow rays", "lower the resolution")
-        self._living_rays.require(pixels)
-        self._rays.require(RAY.size * pixels)
-        self._contributions.require(16 * pixels)
-        self._visibility.require(4 * pixels)
-        self._triangles.require(4 * pixels)
-
-    @property
-    def _buffers(self) -> tuple[GrowingBuffer, ...]:
-        return self._rays, self._contributions, self._visibility, self._triangles
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in self._buffers} | self._living_rays.memory_bytes
 
     def add(
         self,
@@ -128,8 +118,3 @@ class DirectLight:
                 "gathers_again_below": radii.corner,
             },
         )
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in (*self._buffers, self._living_rays):
-            buffer.release()

@@ -6,14 +6,16 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
-from ...scene.passes import FILM_PASSES, Accumulation, RenderPass
+from ...scene.passes import FILM_PASSES, Accumulation
 from ..common.band import Band
 from ..common.iteration import Iteration
+from ..common.stage_sizes import StageSizes, band_pixels, film_pixels
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
@@ -46,54 +48,41 @@ _OF_SEEN_LIGHT = ("Emission", "Environment", "Denoising Albedo")
 """Passes to which light adds that camera paths meet."""
 
 
-def passes_memory(pixels: int, band_pixels: int, passes: tuple[RenderPass, ...]) -> dict[str, int]:
-    """Bytes by buffer of what a film holds beside radiance."""
-    channels = sum(len(entry.channels) for entry in passes if entry in FILM_PASSES)
-    if not channels:
-        return {}
-    sizes = {"pass values": 4 * channels * pixels, "pass counts": 8 * pixels}
-    return sizes | ({"pass paths": 16 * band_pixels} if _show_seen_light(passes) else {})
+def _show_seen_light(sizes: StageSizes) -> bool:
+    return any(entry.name in _OF_SEEN_LIGHT for entry in sizes.passes)
 
 
-def _show_seen_light(passes: tuple[RenderPass, ...]) -> bool:
-    return any(entry.name in _OF_SEEN_LIGHT for entry in passes)
+def _pass_values(sizes: StageSizes) -> int:
+    return film_pixels(sizes) * sum(len(entry.channels) for entry in sizes.passes if entry in FILM_PASSES)
 
 
-class Film:
+def _pass_counts(sizes: StageSizes) -> int:
+    return film_pixels(sizes) if _pass_values(sizes) else 0
+
+
+def _pass_paths(sizes: StageSizes) -> int:
+    return band_pixels(sizes) if _show_seen_light(sizes) else 0
+
+
+class Film(BufferSet):
     """Means over the iterations: 16 bytes of radiance and alpha a pixel, 4 for each channel of a pass, and 8 of their
     counts where there are passes."""
 
-    def __init__(
-        self,
-        context: Context,
-        library: ProgramLibrary,
-        width: int,
-        height: int,
-        band_pixels: int,
-        passes: tuple[RenderPass, ...],
-    ) -> None:
-        """band_pixels: of the largest band; passes: those wanted, of which the film keeps the ones that iterations
-        find."""
-        self._pass_program = library.compute("film/passes.comp")
-        self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(passes) else None
-        self._accumulate = library.compute("film/accumulate.comp")
-        self.width, self.height = width, height
-        self.passes = tuple(entry for entry in passes if entry in FILM_PASSES)
-        remedy = "lower the resolution"
-        self._radiance = GrowingBuffer(context, "film", remedy)
-        self._radiance.require(16 * width * height)
-        sizes = passes_memory(width * height, band_pixels, self.passes)
-        names = "pass values", "pass counts", "pass paths"
-        self._values, self._counts, self._paths = (GrowingBuffer(context, name, remedy) for name in names)
-        for buffer in (self._values, self._counts, self._paths):
-            buffer.require(sizes.get(buffer.name, 0))
+    remedy = "lower the resolution"
+    _radiance = StorageBuffer("film", "vec4", film_pixels)
+    _values = StorageBuffer("pass values", "float", _pass_values)
+    _counts = StorageBuffer("pass counts", "uvec2", _pass_counts)
+    _paths = StorageBuffer("pass paths", "vec4", _pass_paths)
 
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        kept = (self._values, self._counts) if self.passes else ()
-        paths = (self._paths,) if self._seen_light is not None else ()
-        return {buffer.name: buffer.size for buffer in (self._radiance, *kept, *paths)}
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._pass_program = library.compute("film/passes.comp")
+        self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(sizes) else None
+        self._accumulate = library.compute("film/accumulate.comp")
+        self.width, self.height = sizes.width, sizes.height
+        self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
+        """Of those wanted, the ones that iterations find."""
+
 
     def add_passes(
         self,
@@ -202,8 +191,3 @@ class Film:
             values = [np.asarray(passes[entry.name], np.float32).reshape(-1) for entry in self.passes]
             self._values.upload(np.concatenate(values))
             self._counts.upload(pass_counts)
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in (self._radiance, self._values, self._counts, self._paths):
-            buffer.release()

@@ -7,6 +7,7 @@ so keeps the estimate consistent. After Jensen, Realistic Image Synthesis Using 
 
 import math
 
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -14,6 +15,7 @@ from ...gl.records import Record
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records import GATHERING_VERTEX
+from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.radii import Radii
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
@@ -37,22 +39,17 @@ SHARED_RADIUS = 6.0
 """Times the Eq. 3 radius: indirect light varies more slowly than caustics."""
 
 
-class FinalGather:
+class FinalGather(BufferSet):
     """Where the paths of a band set out to gather, and what they found."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
+    remedy = "lower the resolution"
+    vertices = StorageBuffer("gathering vertices", GATHERING_VERTEX, band_pixels)
+    radiances = StorageBuffer("found radiance", "vec4", band_pixels)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
         self._found_program = library.compute("final_gather/found.comp")
         self._share_program = library.compute("final_gather/share.comp")
-        remedy = "lower the resolution"
-        self.vertices = GrowingBuffer(context, "gathering vertices", remedy)
-        self.radiances = GrowingBuffer(context, "found radiance", remedy)
-        self.vertices.require(GATHERING_VERTEX.size * pixels)
-        self.radiances.require(16 * pixels)
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in (self.vertices, self.radiances)}
 
     def clear(self) -> None:
         """Forget what the band before found."""
@@ -95,8 +92,3 @@ class FinalGather:
                     "iteration": iteration.number,
                 },
             )
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self.vertices.release()
-        self.radiances.release()

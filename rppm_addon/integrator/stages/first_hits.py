@@ -9,11 +9,12 @@ import logging
 
 import moderngl
 
+from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.errors import DeviceError
 from ...scene.settings import FirstPhotonHits
-from ..common.living_paths import LivingPaths
+from ..common.living_paths import LivingPaths, PathList
 from ..device_scene.stage_context import StageContext
 from .light_gbuffer import LightGBuffer
 
@@ -25,16 +26,18 @@ _FEWEST_TO_TRY = 1000
 """Photons to try both routes with."""
 
 
-class FirstHits:
+class FirstHits(BufferSet):
     """Finds photons' first hits by the route that the settings ask for.
 
     AUTOMATIC traces for some iterations, lest scenes in motion cost more, then tries both and takes the faster one
     until lights or geometry change.
     """
 
-    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+    _left = PathList("photons to trace", remedy="lower the photons per iteration")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
         self._context, self._library = context, library
-        self._left = LivingPaths(context, library, "photons to trace", "lower the photons per iteration")
         self._gbuffer: LightGBuffer | None = None
         self._stands = self._has_views = False
         self._lights_built = 0
@@ -43,11 +46,6 @@ class FirstHits:
         self._faster: FirstPhotonHits | None = None
         self.route = FirstPhotonHits.TRACED
         """The one that was taken last, which nothing but speed depends on."""
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {} if self._gbuffer is None else self._gbuffer.memory_bytes | self._left.memory_bytes
 
     def forget(self) -> None:
         """Begin anew, as when lights or geometry have changed."""
@@ -65,7 +63,8 @@ class FirstHits:
         if wanted is FirstPhotonHits.AUTOMATIC:
             wanted = self._automatic(context, rays, hits, living)
         if wanted is FirstPhotonHits.TRACED and self._gbuffer is not None:
-            self._release_gbuffer()
+            self.disown(self._gbuffer)
+            self._gbuffer, self._stands = None, False
         rasterized = wanted is FirstPhotonHits.RASTERIZED and self._build(context)
         self.route = FirstPhotonHits.RASTERIZED if rasterized else FirstPhotonHits.TRACED
         self._run(self.route, context, rays, hits, living)
@@ -110,7 +109,7 @@ class FirstHits:
         """Whether there are light G-buffers, made now if they are not those of the scene."""
         if not self._stands:
             if self._gbuffer is None:
-                self._gbuffer = LightGBuffer(self._context, self._library)
+                self._gbuffer = self.own(LightGBuffer(self._context, self._library))
             lights, geometry = context.lights, context.geometry
             self._has_views = self._gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry) > 0
             self._stands = True
@@ -131,13 +130,3 @@ class FirstHits:
         self._gbuffer.find(lights, context.geometry, rays, hits, living.most, self._left)
         if not self._left.known_empty:
             context.deep_cubemap.trace(rays, hits, self._left)
-
-    def _release_gbuffer(self) -> None:
-        self._gbuffer.release()
-        self._gbuffer, self._stands = None, False
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._left.release()
-        if self._gbuffer is not None:
-            self._release_gbuffer()

@@ -11,9 +11,10 @@ from ..common.band import Band
 from ..common.camera_view import camera_view
 from ..common.iteration import Iteration
 from ..common.low_discrepancy import scrambled_sobol
-from ..common.records import CAMERA_VIEW
+from ..common.stage_sizes import StageSizes
 from ..density_estimation.stored_photons import CameraRaster
 from ..device_scene.stage_context import StageContext
+from .camera_hits import CameraHits
 from .importons import Importons
 
 
@@ -39,27 +40,22 @@ def jittered_view(camera: Camera, filter_width: float, band: Band, iteration: It
     return camera_view(camera, band.first_row, band.rows, offset)
 
 
-class GBuffer:
+class GBuffer(CameraHits):
     """A visibility buffer of one band: the nearest triangle of each pixel."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, width: int, rows: int) -> None:
-        gl = context.moderngl
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        gl, size = context.moderngl, (sizes.width, sizes.bands[0].rows)
         self._draw = library.draw("gbuffer/visibility.vert", "gbuffer/visibility.frag")
         self._hits = library.compute("gbuffer/hits.comp")
-        self._visibility = gl.texture((width, rows), 2, dtype="f4")
+        self._visibility = self.own(gl.texture(size, 2, dtype="f4"), "visibility buffer")
         self._visibility.filter = (moderngl.NEAREST, moderngl.NEAREST)
-        self._depth = gl.depth_texture((width, rows))
-        self._framebuffer = gl.framebuffer([self._visibility], self._depth)
-        self.camera = gl.buffer(reserve=CAMERA_VIEW.size)
-
-    @property
-    def memory_bytes(self) -> int:
-        """Bytes on the device."""
-        return 12 * self._visibility.width * self._visibility.height
+        depth = self.own(gl.depth_texture(size), "visibility buffer")
+        self._framebuffer = self.own(gl.framebuffer([self._visibility], depth))
 
     def raster(self, band: Band) -> CameraRaster | None:
         """Where the band's first hits lie, for photons to be splatted onto."""
-        return CameraRaster(self.camera, band.columns, band.rows)
+        return CameraRaster(self.camera.buffer, band.columns, band.rows)
 
     def find(
         self, context: StageContext, importons: Importons, view: np.ndarray, band: Band, iteration: Iteration
@@ -68,12 +64,12 @@ class GBuffer:
         geometry = context.geometry
         with context.timers.stage("gbuffer"):
             importons.living.fill(band.pixel_count)
-            self.camera.write(view.tobytes())
+            self.camera.write(view)
             self._framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
             self._draw.draw(
                 self._framebuffer,
                 3 * geometry.triangle_count,
-                {"Camera": self.camera, "Triangles": geometry.triangles.buffer},
+                {"Camera": self.camera.buffer, "Triangles": geometry.triangles.buffer},
                 viewport=(0, 0, band.columns, band.rows),
                 state=moderngl.DEPTH_TEST,
             )
@@ -81,15 +77,10 @@ class GBuffer:
             self._hits.run(
                 band.pixel_count,
                 {
-                    "Camera": self.camera,
+                    "Camera": self.camera.buffer,
                     "Triangles": geometry.triangles.buffer,
                     "Rays": importons.rays.buffer,
                     "Hits": importons.hits.buffer,
                     "CameraPaths": importons.paths.buffer,
                 },
             )
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for resource in (self._framebuffer, self._visibility, self._depth, self.camera):
-            resource.release()

@@ -6,15 +6,16 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...scene.settings import DirectLight
 from ..common.band import Band
 from ..common.iteration import Iteration
-from ..common.living_paths import LivingPaths
+from ..common.living_paths import PathList
 from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
+from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.radii import Radii
 from ..density_estimation.stored_photons import CameraRaster, TakingImportons
 from ..device_scene.stage_context import StageContext
@@ -41,36 +42,22 @@ Record(
 )
 
 
-class Importons:
+class Importons(BufferSet):
     """Camera paths of one band and the importon that each leaves in the current segment."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, pixels: int) -> None:
-        self._scatter = library.compute("importons/scatter.comp")
-        remedy = "lower the resolution"
-        self.rays = GrowingBuffer(context, "camera rays", remedy)
-        self.hits = GrowingBuffer(context, "camera hits", remedy)
-        self.paths = GrowingBuffer(context, "camera paths", remedy)
-        self.closures = GrowingBuffer(context, "camera closures", remedy)
-        self.importons = GrowingBuffer(context, "importons", remedy)
-        self.radiances = GrowingBuffer(context, "band radiance", remedy)
-        self.living = LivingPaths(context, library, "living camera paths", remedy)
-        self.living.require(pixels, to_keep=True)
-        for buffer, size in (
-            (self.rays, RAY.size),
-            (self.hits, HIT.size),
-            (self.paths, CAMERA_PATH.size),
-            (self.closures, CLOSURE.size),
-            (self.importons, IMPORTON.size),
-            (self.radiances, 16),
-        ):
-            buffer.require(size * pixels)
-        self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (pixels, 1)).tobytes()
+    remedy = "lower the resolution"
+    rays = StorageBuffer("camera rays", RAY, band_pixels)
+    hits = StorageBuffer("camera hits", HIT, band_pixels)
+    paths = StorageBuffer("camera paths", CAMERA_PATH, band_pixels)
+    closures = StorageBuffer("camera closures", CLOSURE, band_pixels)
+    importons = StorageBuffer("importons", IMPORTON, band_pixels)
+    radiances = StorageBuffer("band radiance", "vec4", band_pixels)
+    living = PathList("living camera paths", band_pixels, to_keep=True)
 
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        buffers = (self.rays, self.hits, self.paths, self.closures, self.importons, self.radiances)
-        return {buffer.name: buffer.size for buffer in buffers} | self.living.memory_bytes
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._scatter = library.compute("importons/scatter.comp")
+        self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (band_pixels(sizes), 1)).tobytes()
 
     def clear(self) -> None:
         """Forget the radiance of the band before."""
@@ -165,8 +152,3 @@ class Importons:
     def footprints(self, count: int) -> np.ndarray:
         """(count,) radii of the importons just left, meters; 0 where there is none."""
         return self.importons.read(IMPORTON.dtype, count)["radius"]
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in (self.rays, self.hits, self.paths, self.closures, self.importons, self.radiances, self.living):
-            buffer.release()

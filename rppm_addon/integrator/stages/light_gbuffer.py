@@ -17,7 +17,7 @@ import math
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import DrawProgram, ProgramLibrary
 from ...gl.records import Record
@@ -68,7 +68,6 @@ _COARSEST_SIDE, _FINEST_SIDE, _TEXELS = 128, 512, 1 << 19
 _MOST_TESTS = 1 << 24
 """Views times triangles: beyond this only the first light has views."""
 _PICTURE_SIDE = 4096
-_JOB_SIZE = 16
 _JOBS_PER_DRAW = 1 << 16
 _WIDEST_MARGIN = 1.0 / 128.0
 """Of the scene's radius: lights with more extent have no view that is of use."""
@@ -78,7 +77,6 @@ _ROUNDING = 2.0**-19
 """Of the farthest distance: a few times the rounding of positions."""
 _SUN_DISTANCE = 2000.0
 """Of suns' tips, in radii of the scene."""
-_REMEDY = "trace the first photon hits"
 
 
 def _look(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -130,10 +128,18 @@ def views_side(views: int) -> int:
     return min(max(side, _COARSEST_SIDE), _FINEST_SIDE)
 
 
-class LightGBuffer:
+class LightGBuffer(BufferSet):
     """The views of a scene's point lights, spots and suns. Buffers are kept between scenes and grow with need."""
 
+    remedy = "trace the first photon hits"
+    _views = StorageBuffer("light views", LIGHT_VIEW)
+    _ranges = StorageBuffer("views by light", "uvec2")
+    _texels = StorageBuffer("light G-buffer", LIGHT_TEXEL)
+    _triangles = StorageBuffer("triangles of the light G-buffer", "uint")
+    _jobs = StorageBuffer("light G-buffer jobs", "uvec4", header=_COUNTS)
+
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        super().__init__(context, library)
         self._context = context
         self._list_jobs = library.compute("light_gbuffer/list_jobs.comp")
         self._nearest = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/nearest.frag")
@@ -141,23 +147,9 @@ class LightGBuffer:
         self._allocate = library.compute("light_gbuffer/allocate.comp")
         self._list = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/list.frag")
         self._first_hits = library.compute("light_gbuffer/first_hits.comp")
-        self._views = GrowingBuffer(context, "light views", _REMEDY)
-        self._ranges = GrowingBuffer(context, "views by light", _REMEDY)
-        self._texels = GrowingBuffer(context, "light G-buffer", _REMEDY)
-        self._triangles = GrowingBuffer(context, "triangles of the light G-buffer", _REMEDY)
-        self._jobs = GrowingBuffer(context, "light G-buffer jobs", _REMEDY)
         self._framebuffer: moderngl.Framebuffer | None = None
         self._parameters: dict[str, int] = {}
         self._light_count = self._side = 0
-
-    @property
-    def _buffers(self) -> tuple[GrowingBuffer, ...]:
-        return self._views, self._ranges, self._texels, self._triangles, self._jobs
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in self._buffers}
 
     def build(self, lights: np.ndarray, scene_center: np.ndarray, scene_radius: float, geometry: Geometry) -> int:
         """Rasterize what the lights (LIGHT records with their photon counts) see; how many views they have.
@@ -177,7 +169,7 @@ class LightGBuffer:
         if count:
             self._side = views_side(count)
             self._views.upload(np.concatenate(found))
-            self._texels.require(LIGHT_TEXEL.size * self._side**2 * count)
+            self._texels.require_items(self._side**2 * count)
             self._texels.clear()
             self._rasterize(count, geometry)
         return count
@@ -193,8 +185,8 @@ class LightGBuffer:
         size = (self._side * columns, self._side * rows)
         if self._framebuffer is None or self._framebuffer.size != size:
             if self._framebuffer is not None:
-                self._framebuffer.release()
-            self._framebuffer = self._context.moderngl.empty_framebuffer(size)
+                self.disown(self._framebuffer)
+            self._framebuffer = self.own(self._context.moderngl.empty_framebuffer(size))
         blocks = {
             "LightViews": self._views.buffer,
             "LightTexels": self._texels.buffer,
@@ -206,15 +198,15 @@ class LightGBuffer:
         self._draw(self._count, jobs, blocks)
         counted = {name: blocks[name] for name in ("LightViews", "LightTexels", "LightJobs")}
         self._allocate.run(views * self._side**2, counted, self._parameters)
-        self._triangles.require(4 * int(self._jobs.read(_COUNTS.dtype, 1)["triangles"][0]))
+        self._triangles.require_items(int(self._jobs.read(_COUNTS.dtype, 1)["triangles"][0]))
         self._draw(self._list, jobs, {**blocks, "TexelTriangles": self._triangles.buffer})
 
     def _find_jobs(self, threads: int, expected: int, blocks: dict[str, moderngl.Buffer]) -> int:
         """List where triangles may be seen; how many such jobs there are."""
         jobs = expected
         while True:
-            self._jobs.require(_COUNTS.size + _JOB_SIZE * jobs)
-            capacity = (self._jobs.size - _COUNTS.size) // _JOB_SIZE
+            self._jobs.require_items(jobs)
+            capacity = self._jobs.capacity
             self._jobs.write(_COUNTS.zeros(1))
             self._list_jobs.run(
                 threads, {**blocks, "LightJobs": self._jobs.buffer}, self._parameters | {"job_capacity": capacity}
@@ -254,10 +246,3 @@ class LightGBuffer:
             },
             {"side": self._side, "light_count": self._light_count, "count": count},
         )
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in self._buffers:
-            buffer.release()
-        if self._framebuffer is not None:
-            self._framebuffer.release()

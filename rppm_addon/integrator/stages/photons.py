@@ -4,12 +4,12 @@
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.iteration import Iteration
-from ..common.living_paths import LivingPaths
+from ..common.living_paths import PathList
 from ..common.records import (
     ADJOINT_QUERY,
     CLOSURE,
@@ -21,6 +21,7 @@ from ..common.records import (
     PHOTON_PATH,
     RAY,
 )
+from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
 from ..density_estimation.radii import Radii
 from ..density_estimation.stored_photons import PhotonList, StoredPhotons
 from ..device_scene.stage_context import StageContext
@@ -41,48 +42,35 @@ Record("AdjointParameters", photon_count="uint", segment="uint")
 Record("BalanceParameters", photon_count="uint", segments="uint")
 
 
-class Photons:
+def _flux_groups(sizes: StageSizes) -> int:
+    return -(-sizes.photons // FLUX_GROUP)
+
+
+class Photons(BufferSet):
     """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``world_radiances`` tells
     of each path the world's radiance where it began, the largest channel, 0 from other lights."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, photon_count: int, segments: int) -> None:
-        """photon_count: the most that an iteration has."""
+    remedy = "lower the photons per iteration or the photon path length"
+    photons = StorageBuffer("photons", PHOTON, photon_slots)
+    world_radiances = StorageBuffer("world radiances", "float", photon_paths)
+    _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths)
+    _rays = StorageBuffer("photon rays", RAY, photon_paths)
+    _hits = StorageBuffer("photon hits", HIT, photon_paths)
+    _closures = StorageBuffer("photon closures", CLOSURE, photon_paths)
+    _adjoint_queries = StorageBuffer("adjoint queries", ADJOINT_QUERY, photon_paths)
+    _emitted = StorageBuffer("emitted photons", PHOTON_PATH, photon_paths)
+    _sums = StorageBuffer("flux sums", FLUX_SUMS, _flux_groups)
+    _living = PathList("living photon paths", photon_paths, to_keep=True)
+    first_hits = Part(FirstHits)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
         self._context = context
         self._scatter = library.compute("photons/scatter.comp")
         self._adjoint = library.compute("photons/adjoint.comp")
         self._balance = library.compute("photons/balance.comp")
-        self.photon_count, self.segments = photon_count, segments
-        remedy = "lower the photons per iteration or the photon path length"
-        self.photons = GrowingBuffer(context, "photons", remedy)
-        self._paths = GrowingBuffer(context, "photon paths", remedy)
-        self._rays = GrowingBuffer(context, "photon rays", remedy)
-        self._hits = GrowingBuffer(context, "photon hits", remedy)
-        self._closures = GrowingBuffer(context, "photon closures", remedy)
-        self._adjoint_queries = GrowingBuffer(context, "adjoint queries", remedy)
-        self.world_radiances = GrowingBuffer(context, "world radiances", remedy)
-        self.world_radiances.require(4 * photon_count)
-        self._emitted = GrowingBuffer(context, "emitted photons", remedy)
-        self._sums = GrowingBuffer(context, "flux sums", remedy)
-        self._living = LivingPaths(context, library, "living photon paths", remedy)
+        self.photon_count, self.segments = sizes.photons, sizes.segments
         self._emission = PhotonEmission(library)
-        self.first_hits = FirstHits(context, library)
-        self.photons.require(PHOTON.size * photon_count * segments)
-        for buffer, record in (
-            (self._paths, PHOTON_PATH),
-            (self._rays, RAY),
-            (self._hits, HIT),
-            (self._closures, CLOSURE),
-            (self._adjoint_queries, ADJOINT_QUERY),
-            (self._emitted, PHOTON_PATH),
-        ):
-            buffer.require(record.size * photon_count)
-        self._living.require(photon_count, to_keep=True)
-        self._sums.require(FLUX_SUMS.size * -(-photon_count // FLUX_GROUP))
-
-    @property
-    def _buffers(self) -> tuple[GrowingBuffer, ...]:
-        paths = self._paths, self._rays, self._hits, self._closures, self._adjoint_queries
-        return self.photons, *paths, self._emitted, self._sums, self.world_radiances
 
     @property
     def _blocks(self) -> dict[str, moderngl.Buffer]:
@@ -94,12 +82,6 @@ class Photons:
             "Photons": self.photons.buffer,
             "AdjointQueries": self._adjoint_queries.buffer,
         }
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        buffers = {buffer.name: buffer.size for buffer in self._buffers}
-        return buffers | self._living.memory_bytes | self.first_hits.memory_bytes
 
     @property
     def slots(self) -> int:
@@ -208,8 +190,3 @@ class Photons:
         """(segments, photon_count) PHOTON records of the last iteration."""
         records = self.photons.read(PHOTON.dtype, self.segments * self.photon_count)
         return records.reshape(self.segments, self.photon_count)
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in (*self._buffers, self._living, self.first_hits):
-            buffer.release()

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects of which the camera sees the shadows only."""
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
-from ...scene.scene import Scene
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records import RAY
+from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
 from .importons import Importons
@@ -16,28 +16,26 @@ from .importons import Importons
 Record("ShadowCatcherParameters", **LIGHT_PARAMETERS, segment="uint", first_pixel="uint")
 
 
-class ShadowCatcher:
+def _catching_pixels(sizes: StageSizes) -> int:
+    return band_pixels(sizes) if sizes.has_catchers else 0
+
+
+class ShadowCatcher(BufferSet):
     """One shadow ray from each catcher that a camera path meets, to a light chosen by what it would give without
     shadows: ``lit`` is then 1 as often as the share of the light that arrives. Light that other surfaces send is left
     out. Without catchers nothing is run."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, pixels: int, scene: Scene) -> None:
-        self.present = any(instance.shadow_catcher for instance in scene.instances)
-        self._program = library.compute("shadow_catcher/cast.comp") if self.present else None
-        self._rays = GrowingBuffer(context, "rays from shadow catchers", "lower the resolution")
-        self.lit = GrowingBuffer(context, "lit shadow catchers", "lower the resolution")
-        if self.present:
-            self._rays.require(RAY.size * pixels)
-            self.lit.require(4 * pixels)
+    remedy = "lower the resolution"
+    _rays = StorageBuffer("rays from shadow catchers", RAY, _catching_pixels)
+    lit = StorageBuffer("lit shadow catchers", "uint", _catching_pixels)
 
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in (self._rays, self.lit)}
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._program = library.compute("shadow_catcher/cast.comp") if sizes.has_catchers else None
 
     def cast(self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int) -> None:
         """Fill ``lit`` for the resolved vertices of the living camera paths, before they scatter on."""
-        if not self.present:
+        if self._program is None:
             return
         with context.timers.stage("shadow catcher"):
             context.lights.use_maps()
@@ -52,8 +50,3 @@ class ShadowCatcher:
                 {**context.lights.parameters(iteration), "segment": segment, "first_pixel": band.first_pixel},
             )
             context.deep_cubemap.occluded(self._rays.buffer, self.lit.buffer, importons.living)
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._rays.release()
-        self.lit.release()

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the lengths of the stages' buffers follow from."""
+
+from dataclasses import dataclass
+
+from ...scene.passes import RenderPass, passes_named
+from ...scene.scene import Scene
+from .band import Band, bands_of
+from .camera_view import is_rasterized
+
+
+@dataclass(frozen=True)
+class StageSizes:
+    """Scenes that agree in these are rendered in the same buffers."""
+
+    width: int
+    height: int
+    photons: int = 0
+    """Of an iteration, the most."""
+    segments: int = 0
+    """Of a photon path, the first leaving the light."""
+    passes: tuple[RenderPass, ...] = ()
+    has_catchers: bool = False
+    """Whether objects catch shadows."""
+    rasterizes_camera: bool = True
+    """Whether the camera's first hits are rasterized."""
+
+    @classmethod
+    def of(cls, scene: Scene) -> "StageSizes":
+        """Those of a scene."""
+        width, height = scene.camera.resolution
+        return cls(
+            width,
+            height,
+            scene.photon_count,
+            scene.settings.photon_path_length,
+            passes_named(scene.settings.passes),
+            any(instance.shadow_catcher for instance in scene.instances),
+            is_rasterized(scene.camera),
+        )
+
+    @property
+    def bands(self) -> list[Band]:
+        """Of the film, from below; the first has the most rows."""
+        return bands_of(self.width, self.height)
+
+
+def film_pixels(sizes: StageSizes) -> int:
+    """Of the region that is rendered."""
+    return sizes.width * sizes.height
+
+
+def band_pixels(sizes: StageSizes) -> int:
+    """Of a band of rows, the most."""
+    return sizes.bands[0].pixel_count
+
+
+def photon_paths(sizes: StageSizes) -> int:
+    """Of an iteration, the most."""
+    return sizes.photons
+
+
+def photon_slots(sizes: StageSizes) -> int:
+    """Places for photons: one for each segment of each path."""
+    return sizes.photons * sizes.segments

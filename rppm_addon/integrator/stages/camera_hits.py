@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DirectCameraHits, by whichever way the camera's first hits are found."""
+
+import numpy as np
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.records import CAMERA_VIEW
+from ..density_estimation.stored_photons import CameraRaster
+from ..device_scene.stage_context import StageContext
+from .importons import Importons
+
+
+class CameraHits(BufferSet):
+    """What GBuffer and PrimaryRays have in common."""
+
+    camera = StorageBuffer("camera", CAMERA_VIEW, 1)
+
+    def raster(self, band: Band) -> CameraRaster | None:
+        """Where the band's first hits lie, for photons to be splatted onto; None where they lie on no raster."""
+        raise NotImplementedError
+
+    def find(
+        self, context: StageContext, importons: Importons, view: np.ndarray, band: Band, iteration: Iteration
+    ) -> None:
+        """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
+        raise NotImplementedError
