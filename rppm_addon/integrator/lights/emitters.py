@@ -6,14 +6,14 @@ import math
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...materials.emitted import Emits
 from ...materials.tables import MaterialTables
 from ...scene.scene import Scene
-from ..common.living_paths import LivingPaths
+from ..common.living_paths import LivingPaths, PathList
 from ..common.records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY
 from ..surfaces.geometry import Geometry, Placement
 from ..surfaces.resolve import Resolve
@@ -30,34 +30,30 @@ _STEPS = 1 << 24
 """Shares are multiples of 2^-24: random numbers have no more steps."""
 
 
-class Emitters:
+class Emitters(BufferSet):
     """The emissive triangles of a scene, and the emission of those whose material has it vary over the surface.
 
     ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves``
     are theirs of the light tree.
     """
 
-    def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        self._mark = library.compute("lights/mark.comp")
-        self._find = library.compute("lights/emitters.comp")
-        self._tint_photons = library.compute("lights/tint_photons.comp")
-        self._tint_contributions = library.compute("lights/tint_contributions.comp")
-        self.triangles = GrowingBuffer(context, "emissive triangles")
-        self._rays = GrowingBuffer(context, "rays to emitters")
-        self._hits = GrowingBuffer(context, "places on emitters")
-        self._closures = GrowingBuffer(context, "closures of emitters")
-        self._asked = LivingPaths(context, library, "rays to emitters to resolve", "lower the resolution")
+    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE)
+    _rays = StorageBuffer("rays to emitters", RAY)
+    _hits = StorageBuffer("places on emitters", HIT)
+    _closures = StorageBuffer("closures of emitters", CLOSURE)
+    _asked = PathList("rays to emitters to resolve", remedy="lower the resolution")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
+        self._mark = library.compute("emission/mark.comp")
+        self._find = library.compute("emission/emitters.comp")
+        self._tint_photons = library.compute("emission/tint_photons.comp")
+        self._tint_contributions = library.compute("emission/tint_contributions.comp")
         self.count = 0
         self.power = np.zeros(3)
         self.leaves = LIGHT_NODE.zeros(0)
         self._varying = False
         self._world_triangles: moderngl.Buffer | None = None
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        buffers = self.triangles, self._rays, self._hits, self._closures
-        return {buffer.name: buffer.size for buffer in buffers} | self._asked.memory_bytes
 
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
@@ -134,7 +130,7 @@ class Emitters:
         hits["triangle"], hits["b1"], hits["b2"], hits["distance"] = triangles, b1, b2, 1.0
         self._rays.upload(rays)
         self._hits.upload(hits)
-        self._closures.require(CLOSURE.size * count)
+        self._closures.require_items(count)
         self._asked.fill(count)
         resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, 0, 0)
         emission = self._closures.read(CLOSURE.dtype, count)["emission"]
@@ -156,7 +152,7 @@ class Emitters:
         """
         if not self._varying:
             return
-        self._rays.require(RAY.size * living.most)
+        self._rays.require_items(living.most)
         self._locate(rays, rays, hits, living, photons=True)
         resolve.run(self._rays.buffer, hits, closures, self._asked, iteration, 0)
         self._asked.run(self._tint_photons, {"Closures": closures, "PhotonPaths": photon_paths})
@@ -173,8 +169,8 @@ class Emitters:
         """Give shadow rays to emitters with varying emission the radiance of the place that they sampled."""
         if not self._varying:
             return
-        for buffer, record in ((self._rays, RAY), (self._hits, HIT), (self._closures, CLOSURE)):
-            buffer.require(record.size * living.most)
+        for buffer in (self._rays, self._hits, self._closures):
+            buffer.require_items(living.most)
         self._locate(shadow_rays, light_triangles, self._hits.buffer, living, photons=False)
         resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, iteration, 0)
         self._asked.run(self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions})
@@ -200,11 +196,6 @@ class Emitters:
             {"photons": photons},
         )
         self._asked.take(living, self._rays.buffer)
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in (self.triangles, self._rays, self._hits, self._closures, self._asked):
-            buffer.release()
 
 
 def chances(weights: np.ndarray) -> np.ndarray:

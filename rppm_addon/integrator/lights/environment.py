@@ -4,8 +4,9 @@
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
 from ...gl.textures import TextureKind
 from ...materials.emitted import Emits, emits, reachable
 from ...materials.tables import MaterialTables
@@ -45,28 +46,26 @@ def distribution_of(brightness: np.ndarray) -> np.ndarray:
 _MAP = TextureKind((0, 1), "f4", repeats=(True, False))
 
 
-class Environment:
-    """The world for shaders/lights/environment.glsl; width 0 stands for a constant world.
+class Environment(BufferSet):
+    """The world for shaders/emission/environment.glsl; width 0 stands for a constant world.
 
     ``radiance`` (3,) is that of a constant world, or 1 where textures give it; ``mean_radiance`` (3,) W/(m^2 sr).
     """
 
-    def __init__(self, context: Context) -> None:
+    distribution = StorageBuffer("environment distribution", "float")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
         self._context = context
-        self.distribution = GrowingBuffer(context, "environment distribution")
         self._textures: list[moderngl.Texture] = []
         self.width = self.height = 0
         self.radiance = self.mean_radiance = np.zeros(3)
 
-    @property
-    def memory_bytes(self) -> int:
-        """Bytes on the device."""
-        return self.distribution.size + sum(16 * texture.width * texture.height for texture in self._textures)
-
     def build(self, world: World, images: list[Image], materials: MaterialTables) -> None:
         """Evaluate the world's nodes: once where they give one color, else for a map of all directions, and for
         another of what the camera sees where Light Path nodes tell it apart."""
-        self._release_textures()
+        for texture in self._textures:
+            self.disown(texture)
         self.width = self.height = 0
         self.radiance = self.mean_radiance = np.maximum(world.radiance, 0.0).astype(np.float64)
         if world.graph is None or emits(world.graph) is not Emits.VARYING:
@@ -93,22 +92,12 @@ class Environment:
     def _texture(self, pixels: np.ndarray) -> moderngl.Texture:
         rgba = np.ones((*pixels.shape[:2], 4), np.float32)
         rgba[..., :3] = pixels
-        return _MAP.make(self._context.moderngl, pixels.shape[1::-1], rgba.tobytes())
+        return self.own(_MAP.make(self._context.moderngl, pixels.shape[1::-1], rgba.tobytes()), "environment")
 
     def use(self) -> None:
         """Bind the maps to texture units 0 and 1, where environment.glsl reads them."""
         self._textures[0].use(0)
         self._textures[-1].use(1)
-
-    def _release_textures(self) -> None:
-        for texture in self._textures:
-            texture.release()
-        self._textures = []
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self.distribution.release()
-        self._release_textures()
 
 
 def _map_width(world: World, images: list[Image]) -> int:

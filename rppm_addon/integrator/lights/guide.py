@@ -10,7 +10,7 @@ by the density, so energy stays as it is.
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -78,14 +78,16 @@ def starts(probability: np.ndarray) -> np.ndarray:
     return np.minimum(np.floor(cumulated * 2.0**32), 2.0**32 - 1).astype(np.uint32)
 
 
-class Guide:
+class Guide(BufferSet):
     """Cells of all lights: what is known of them, and what an iteration adds."""
 
-    def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        self._program = library.compute("lights/learn.comp")
-        self._starts = GrowingBuffer(context, "emission guide")
-        self._tallies = GrowingBuffer(context, "emission tallies")
-        self._photon_cells = GrowingBuffer(context, "photon cells", "lower the photons per iteration")
+    _starts = StorageBuffer("emission guide", "uint")
+    _tallies = StorageBuffer("emission tallies", "uvec2")
+    _photon_cells = StorageBuffer("photon cells", "uint", remedy="lower the photons per iteration")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
+        self._program = library.compute("emission/learn.comp")
         self._cells: list[tuple[int, int, int, int]] = []
         self._probabilities: list[np.ndarray] = []
         self.learned: np.ndarray | None = None
@@ -95,11 +97,6 @@ class Guide:
     def buffers(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of photon_emission/emit.comp."""
         return {"Guide": self._starts.buffer, "PhotonCells": self._photon_cells.buffer}
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in (self._starts, self._tallies, self._photon_cells)}
 
     @property
     def _cell_count(self) -> int:
@@ -114,7 +111,7 @@ class Guide:
         self._choose_by([np.full(count, 1.0 / count) for count in counts])
         self.learned = None
         self._tallies.upload(np.zeros((counts.sum(), 2), np.uint32))
-        self._photon_cells.require(4 * photons)
+        self._photon_cells.require_items(photons)
 
     def tally(self, photons: moderngl.Buffer, count: int, segments: int) -> None:
         """Count an iteration's photons that contributed, once they have been splatted."""
@@ -165,8 +162,3 @@ class Guide:
             first += count
         self._choose_by([probabilities(estimate) for estimate in estimates])
         return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in (self._starts, self._tallies, self._photon_cells):
-            buffer.release()

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 import moderngl
 import numpy as np
 
+from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
 from ...gl.textures import TextureKind
 from ...materials.emitted import LightVariation, light_variation
 from ...materials.evaluation import LightSurface, LightSurfaceKind, MapShape
@@ -45,19 +47,15 @@ class LightNodes:
 _TEXTURE = TextureKind((2,), "f2", repeats=(True, True))
 
 
-class LightMaps:
+class LightMaps(BufferSet):
     """The maps of all lights in one texture. Each has a border of one texel, so that filtering meets nothing else."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
         self._context = context
         self._texture: moderngl.Texture | None = None
         self.nodes: dict[int, LightNodes] = {}
         """By the index of their light."""
-
-    @property
-    def memory_bytes(self) -> int:
-        """Bytes on the device."""
-        return 0 if self._texture is None else 8 * self._texture.width * self._texture.height
 
     def build(self, lights: list[Light], images: list[Image], materials: MaterialTables) -> None:
         """Ask the nodes of all lights that have some."""
@@ -82,18 +80,14 @@ class LightMaps:
             normalized = pixels / largest if largest > 0.0 else pixels
             texels[y : y + map_height + 2, x : x + map_width + 2, :3] = _bordered(normalized, nodes.shape)
             nodes.place = (x + 1) / width, (y + 1) / height, map_width / width, map_height / height
-        self.release()
-        self._texture = _TEXTURE.make(self._context.moderngl, (width, height), texels.tobytes())
+        if self._texture is not None:
+            self.disown(self._texture)
+        texture = _TEXTURE.make(self._context.moderngl, (width, height), texels.tobytes())
+        self._texture = self.own(texture, "light maps")
 
     def use(self) -> None:
         """Bind the maps to texture unit 2, where light_maps.glsl reads them."""
         self._texture.use(2)
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        if self._texture is not None:
-            self._texture.release()
-            self._texture = None
 
 
 def is_sphere(light: Light) -> bool:

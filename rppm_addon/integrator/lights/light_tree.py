@@ -11,8 +11,9 @@ import math
 
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
 from ..common.records import LIGHT_NODE, LightShape
 
 _MORTON_BITS = 10
@@ -20,14 +21,16 @@ _SLACK = 1e-5
 """Boxes are wider by so much of their largest coordinate: rays along a flat light must find it."""
 
 
-class LightTree:
+class LightTree(BufferSet):
     """Nodes of two trees, of light objects and of emissive triangles, and of the suns, in one buffer.
 
     Each tree's root is node 1 behind its first; ``parameters`` are the values of LIGHT_TREE_PARAMETERS.
     """
 
-    def __init__(self, context: Context) -> None:
-        self.nodes = GrowingBuffer(context, "light tree")
+    nodes = StorageBuffer("light tree", LIGHT_NODE)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
         self.parameters: dict[str, int] = {}
 
     def build(self, lights: np.ndarray, triangles: np.ndarray) -> None:

@@ -7,7 +7,7 @@ import math
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
@@ -72,19 +72,21 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
     return counts
 
 
-class Lights:
-    """The lights of a scene: buffers for the shaders that include lights/lights.glsl."""
+class Lights(BufferSet):
+    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
+
+    _lights = StorageBuffer("lights", LIGHT)
+    emitters = Part(Emitters)
+    targets = StorageBuffer("photon targets", "vec4")
+    """Spheres that photons are aimed at (caustic_casters.py)."""
+    environment = Part(Environment)
+    light_maps = Part(LightMaps)
+    guide = Part(Guide)
+    _light_tree = Part(LightTree)
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        self._lights = GrowingBuffer(context, "lights")
-        self.emitters = Emitters(context, library)
-        self.targets = GrowingBuffer(context, "photon targets")
-        """(n, 4) float32 spheres that photons are aimed at (caustic_casters.py)."""
+        super().__init__(context, library)
         self.target_count = 0
-        self.environment = Environment(context)
-        self.light_maps = LightMaps(context)
-        self.guide = Guide(context, library)
-        self._light_tree = LightTree(context)
         self.table = LIGHT.zeros(0)
         """LIGHT records, all lights'."""
         self._weights = np.zeros(0)
@@ -112,19 +114,6 @@ class Lights:
     def tree_buffers(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of lights/light_tree.glsl."""
         return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {
-            "lights": self._lights.size,
-            **self.emitters.memory_bytes,
-            "photon targets": self.targets.size,
-            "light tree": self._light_tree.nodes.size,
-            "environment": self.environment.memory_bytes,
-            "light maps": self.light_maps.memory_bytes,
-            **self.guide.memory_bytes,
-        }
 
     @property
     def source_watts(self) -> dict[str, float]:
@@ -293,13 +282,3 @@ class Lights:
     def photon_flux(self) -> float:
         """Mean flux of the iteration's photons as they leave their lights, W, the channels' mean."""
         return self._power / self._photons
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._lights.release()
-        self.emitters.release()
-        self.targets.release()
-        self._light_tree.nodes.release()
-        self.guide.release()
-        self.light_maps.release()
-        self.environment.release()
