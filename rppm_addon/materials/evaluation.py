@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from ..gl.buffers import GrowingBuffer
+from ..gl.buffer_sets import BufferSet, StorageBuffer
 from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
@@ -83,15 +83,17 @@ class LightSurface:
     """() ShadingInstance record: what nodes may ask about the object."""
 
 
-class GraphEvaluator:
+class GraphEvaluator(BufferSet):
     """Runs the programs of graphs on directions instead of hits."""
 
-    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+    _emissions = StorageBuffer("emission by direction", "vec4")
+    _instance = StorageBuffer("object of a light", "vec4")
+    _nothing = StorageBuffer("in place of geometry", "uint", 256)
+    """These graphs cannot ask about it."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
         self._library = library
-        self._emissions = GrowingBuffer(context, "emission by direction")
-        self._nothing = context.moderngl.buffer(reserve=1024)
-        """Stands for the geometry, which these graphs cannot ask about."""
-        self._instance = GrowingBuffer(context, "object of a light")
 
     def run(
         self,
@@ -112,8 +114,8 @@ class GraphEvaluator:
         """
         program = self._library.compute("materials/evaluate.comp", inserts={"materials/generated.glsl": text})
         rows = max(1, _CHUNK // width)
-        self._emissions.require(16 * width * min(rows, height))
-        bound = {name: buffers.get(name, self._nothing) for name in program.blocks}
+        self._emissions.require_items(width * min(rows, height))
+        bound = {name: buffers.get(name, self._nothing.buffer) for name in program.blocks}
         bound["Emissions"] = self._emissions.buffer
         names = ("position", "radius", "u", "v", "normal", "shape", "kind")
         light_parameters = {
@@ -136,9 +138,3 @@ class GraphEvaluator:
             program.run(count, bound, parameters)
             parts.append(self._emissions.read(np.dtype("<f4"), 4 * count).reshape(-1, width, 4)[..., :3])
         return np.nan_to_num(np.concatenate(parts), nan=0.0, posinf=0.0, neginf=0.0)
-
-    def release(self) -> None:
-        """Free the buffers."""
-        self._emissions.release()
-        self._instance.release()
-        self._nothing.release()

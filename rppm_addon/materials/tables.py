@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from ..gl.buffer_sets import BufferSet, Part
 from ..gl.buffers import GrowingBuffer
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
@@ -43,7 +44,7 @@ def _texels(image: Image) -> tuple[np.ndarray, TexelFormat]:
     return halves.reshape(-1, 4).view(np.uint32).ravel(), TexelFormat.SRGB_HALF if srgb else TexelFormat.HALF
 
 
-class MaterialTables:
+class MaterialTables(BufferSet):
     """The buffers Materials, MaterialData, Images, Texels and AlbedoTables, and the GLSL of the graphs.
 
     ``programs`` lists the distinct texts that materials need, ``attribute_names`` the mesh attributes that their
@@ -51,12 +52,13 @@ class MaterialTables:
     ``default_material``, the last.
     """
 
+    remedy = "use smaller or fewer image textures"
+    _evaluator = Part(GraphEvaluator)
+
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        self._evaluator = GraphEvaluator(context, library)
+        super().__init__(context, library)
         names = ("Materials", "MaterialData", "Images", "Texels", "AlbedoTables")
-        self._buffers = {
-            name: GrowingBuffer(context, f"material {name}", "use smaller or fewer image textures") for name in names
-        }
+        self._buffers = {name: self.own(GrowingBuffer(context, f"material {name}", self.remedy)) for name in names}
         self._buffers["AlbedoTables"].upload(albedo_tables.load())
         self.default_material = 0
         self.programs: list[str] = []
@@ -74,11 +76,6 @@ class MaterialTables:
     def buffers(self) -> dict:
         """moderngl buffers by block name."""
         return {name: buffer.buffer for name, buffer in self._buffers.items()}
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes by buffer."""
-        return {buffer.name: buffer.size for buffer in self._buffers.values()}
 
     def build(self, scene: Scene) -> None:
         """Compile the graphs of a scene and upload their constants, and the images that they use.
@@ -166,12 +163,6 @@ class MaterialTables:
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")
             return np.zeros((height, width, 3), np.float32)
-
-    def release(self) -> None:
-        """Free the buffers."""
-        self._evaluator.release()
-        for buffer in self._buffers.values():
-            buffer.release()
 
 
 class _Layout:

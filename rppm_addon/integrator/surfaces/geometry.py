@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
@@ -18,6 +19,8 @@ from ..common.records import TRIANGLE_ATTRIBUTES
 
 log = logging.getLogger(__name__)
 
+_VERTICES = 3
+"""Of a triangle."""
 _NO_UV = 0xFFFFFFFF
 """In place of where a mesh's UV begin."""
 Constants("MeshArrays", NO_UV=_NO_UV)
@@ -106,7 +109,7 @@ class Placement:
     first_triangle: int
 
 
-class Geometry:
+class Geometry(BufferSet):
     """World-space triangles of a scene in GPU buffers.
 
     ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/geometry/gather.comp),
@@ -115,20 +118,18 @@ class Geometry:
     what they lie in, low and high in meters, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
     """
 
+    remedy = "lower the subdivision, decimate meshes or remove instances"
+    triangles = StorageBuffer("world triangles", "vec4")
+    attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES)
+
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
-        remedy = "lower the subdivision, decimate meshes or remove instances"
+        super().__init__(context, library)
         self._context = context
         self._gather = library.compute("geometry/gather.comp")
         self._inputs = {
-            name: GrowingBuffer(context, f"geometry {name}", remedy)
-            for name in (
-                "Instances",
-                "SlotMaterials",
-                *_MESH_ARRAYS,
-            )
+            name: self.own(GrowingBuffer(context, f"geometry {name}", self.remedy))
+            for name in ("Instances", "SlotMaterials", *_MESH_ARRAYS)
         }
-        self.triangles = GrowingBuffer(context, "world triangles", remedy)
-        self.attributes = GrowingBuffer(context, "triangle attributes", remedy)
         self._arrays: dict[str, list[np.ndarray]] = {}
         """What lies one behind the other in the buffers of that name."""
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
@@ -147,12 +148,6 @@ class Geometry:
     def radius(self) -> float:
         """Radius of the bounding sphere of the bounds, meters; never zero."""
         return max(0.5 * float(np.linalg.norm(self.bounds_high - self.bounds_low)), 1e-9)
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        buffers = [*self._inputs.values(), self.triangles, self.attributes]
-        return {buffer.name: buffer.size for buffer in buffers}
 
     def build(self, scene: Scene, default_material: int, swept: tuple[np.ndarray, np.ndarray] | None = None) -> None:
         """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
@@ -192,8 +187,8 @@ class Geometry:
         self._upload_meshes(meshes)
         self._inputs["Instances"].upload(entries)
         self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
-        self.triangles.require(48 * max(1, self.triangle_count))
-        self.attributes.require(TRIANGLE_ATTRIBUTES.size * max(1, self.triangle_count))
+        self.triangles.require_items(_VERTICES * self.triangle_count)
+        self.attributes.require_items(self.triangle_count)
         buffers = {name: buffer.buffer for name, buffer in self._inputs.items()}
         buffers |= {"Triangles": self.triangles.buffer, "Attributes": self.attributes.buffer}
         self._gather.run(
@@ -238,11 +233,6 @@ class Geometry:
                 data = [_flat(arrays[index], dtype) for index in run]
                 buffer.write(data[0] if len(data) == 1 else np.concatenate(data), int(offsets[run[0]]))
             self._arrays[name] = arrays
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        for buffer in [*self._inputs.values(), self.triangles, self.attributes]:
-            buffer.release()
 
 
 def _fill(entries: np.ndarray, instances: list[Instance], materials: int, default_material: int) -> list[int]:

@@ -6,7 +6,7 @@ import enum
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ComputeProgram, ProgramLibrary
@@ -56,24 +56,22 @@ Constants("PathKinds", PATH_OF=_PathKind)
 _STAGE = "resolve/resolve.comp"
 
 
-class Resolve:
+class Resolve(BufferSet):
     """Rays and their hits to closures: the hits are ordered by program, and each program resolves its own."""
 
+    remedy = "lower the resolution or the photons per iteration"
+    _order = StorageBuffer("hits by material", "uint")
+    _surface_attributes = Part(SurfaceAttributes)
+
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        super().__init__(context, library)
         self._library = library
         self._count = library.compute("resolve/count.comp")
         self._allocate = library.compute("resolve/allocate.comp")
         self._order_hits = library.compute("resolve/order.comp")
-        self._order = GrowingBuffer(context, "hits by material", "lower the resolution or the photons per iteration")
-        self._surface_attributes = SurfaceAttributes(context)
         self._programs: list[ComputeProgram] = []
         self._buffers: dict[str, moderngl.Buffer] = {}
         self._parameters: dict[str, object] = {}
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {self._order.name: self._order.size, **self._surface_attributes.memory_bytes}
 
     @property
     def shading_instances(self) -> moderngl.Buffer:
@@ -162,18 +160,13 @@ class Resolve:
             )
 
     def _order_by_program(self, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> moderngl.Buffer:
-        self._order.require(4 * (_RANGE_SIZE * len(self._programs) + living.most))
+        self._order.require_items(_RANGE_SIZE * len(self._programs) + living.most)
         self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
         buffers = {**buffers, "HitOrder": self._order.buffer, "LivingPaths": living.buffer}
         living.run(self._count, _blocks_of(self._count, buffers))
         self._allocate.run(1, _blocks_of(self._allocate, buffers), {"count": len(self._programs)})
         living.run(self._order_hits, _blocks_of(self._order_hits, buffers))
         return self._order.buffer
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._order.release()
-        self._surface_attributes.release()
 
 
 def _blocks_of(program: ComputeProgram, buffers: dict[str, moderngl.Buffer]) -> dict[str, moderngl.Buffer]:

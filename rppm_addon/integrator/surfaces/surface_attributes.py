@@ -6,8 +6,9 @@ import operator
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
@@ -49,13 +50,15 @@ StorageBlock("ShadingInstances", "ShadingInstance shading_instances[];")
 _PARTICLE = ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity")
 
 
-class SurfaceAttributes:
+class SurfaceAttributes(BufferSet):
     """The buffers ShadingInstances and AttributeValues: the latter starts with the place and the components of each of
     ``count`` attributes of each instance, then come the values, three corners a triangle."""
 
-    def __init__(self, context: Context) -> None:
-        self._instances = GrowingBuffer(context, "shading instances", "remove instances")
-        self._values = GrowingBuffer(context, "mesh attributes", "use fewer attributes in materials")
+    _instances = StorageBuffer("shading instances", SHADING_INSTANCE, remedy="remove instances")
+    _values = StorageBuffer("mesh attributes", "uint", remedy="use fewer attributes in materials")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
         self.count = 0
         self._sources: dict[int, tuple] = {}
         """Of what lies at a place of the values, that from which it was made."""
@@ -64,11 +67,6 @@ class SurfaceAttributes:
     def buffers(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of the programs that resolve hits."""
         return {"ShadingInstances": self._instances.buffer, "AttributeValues": self._values.buffer}
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes on the device by buffer."""
-        return {buffer.name: buffer.size for buffer in (self._instances, self._values)}
 
     def build(self, scene: Scene, geometry: Geometry, names: list[str]) -> None:
         """Upload what the nodes of the scene's materials need. ``names``: the attributes that they read.
@@ -105,7 +103,7 @@ class SurfaceAttributes:
                 column.append(places[key])
             table[:, number] = column
         before, self._sources = self._sources, {}  # should an upload fail
-        if self._values.require(4 * end):
+        if self._values.require_items(end):
             before = {}
         self._values.write(table)
         sources = {}
@@ -114,11 +112,6 @@ class SurfaceAttributes:
             if not same_members(sources[place], before.get(place, ())):
                 self._values.write(_per_corner(attribute, mesh), 4 * place)
         self._sources = sources
-
-    def release(self) -> None:
-        """Give the buffers back."""
-        self._instances.release()
-        self._values.release()
 
 
 def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, meshes: list[Mesh]) -> None:
