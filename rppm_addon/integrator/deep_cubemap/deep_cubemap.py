@@ -27,7 +27,7 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -123,8 +123,6 @@ _CORE_MARGINS = 64.0
 _BASE_LEVEL = 2
 _LEAST_GAIN = 32
 _MOST_BINS = 64
-_JOB_SIZE = 16
-_ENTRY_SIZE = 8
 _MOST_ROOTS = 24
 _PICTURE_SIDE = 4096
 """Pixels of the picture that jobs are drawn into: a tile takes 4 x 4."""
@@ -138,8 +136,6 @@ _JOBS_PER_DRAW = 1 << 16
 
 _READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
 
-_REMEDY = "lower the cubemap resolution or simplify the geometry"
-
 
 class _TooShort(Exception):
     """A list did not hold everything; it has been grown."""
@@ -152,7 +148,7 @@ class _TooLong(Exception):
         self.level = level
 
 
-class DeepCubemap:
+class DeepCubemap(BufferSet):
     """A deep cubemap on the GPU. Buffers are kept between builds and grow with need.
 
     ``resolution`` (cells along a face's side where they are finest), ``center`` (three floats, meters)
@@ -165,6 +161,19 @@ class DeepCubemap:
     to the kind of driver. What is too long for that is read from storage blocks.
     """
 
+    remedy = "lower the cubemap resolution or simplify the geometry"
+    _state = StorageBuffer("deep cubemap state", STATE)
+    _cells = StorageBuffer("deep cubemap cells", CELL)
+    _bins = StorageBuffer("deep cubemap depth bins", "uint")
+    _tiles = StorageBuffer("deep cubemap tiles", "uint")
+    _jobs = StorageBuffer("deep cubemap jobs", "uvec4")
+    _fragments = StorageBuffer("deep cubemap fragments", FRAGMENT)
+    _fragments_above = StorageBuffer("deep cubemap fragments of the level above", FRAGMENT)
+    _entries = StorageBuffer("deep cubemap entries", "uvec2")
+    _binned_cells = StorageBuffer("deep cubemap binned cells", BINNED_CELL)
+    _binned_fragments = StorageBuffer("deep cubemap binned fragments", BINNED_FRAGMENT)
+    _core = StorageBuffer("deep cubemap core list", "uint", 16)
+
     def __init__(
         self,
         context: Context,
@@ -174,6 +183,7 @@ class DeepCubemap:
         most_bins: int = _MOST_BINS,
         texel_buffers: bool | None = None,
     ) -> None:
+        super().__init__(context, library)
         self._context = context
         self._rasterize = rasterize
         self._library = library
@@ -181,20 +191,17 @@ class DeepCubemap:
         self._texel_buffers = context.is_software if texel_buffers is None else texel_buffers
         self._most_texel_bytes = TEXEL_SIZE * most_texels(context)
 
-        def buffer(name: str) -> GrowingBuffer:
-            return GrowingBuffer(context, f"deep cubemap {name}", _REMEDY)
-
-        self._state, self._cells, self._bins = buffer("state"), buffer("cells"), buffer("depth bins")
-        self._old_fragments = buffer("fragments of the level above")
-        self._tiles = buffer("tiles")
         self._lists = {
-            "job": (buffer("jobs"), _JOB_SIZE),
-            "fragment": (buffer("fragments"), FRAGMENT.size),
-            "entry": (buffer("entries"), _ENTRY_SIZE),
-            "binned_cell": (buffer("binned cells"), BINNED_CELL.size),
-            "binned_fragment": (buffer("binned fragments"), BINNED_FRAGMENT.size),
-            "core": (buffer("core list"), 4),
+            "job": self._jobs,
+            "fragment": self._fragments,
+            "entry": self._entries,
+            "binned_cell": self._binned_cells,
+            "binned_fragment": self._binned_fragments,
+            "core": self._core,
         }
+        """By name of their count and capacity in the state."""
+        self._old_fragments = self._fragments_above
+        """Changes places with the list of fragments, level by level."""
         self._framebuffer: moderngl.Framebuffer | None = None
         self._triangles: moderngl.Buffer | None = None
         self._too_many, self._last_level = 1 << 32, 0
@@ -271,35 +278,14 @@ class DeepCubemap:
             "DeepCubemap": self._state.buffer,
             "CubemapCells": self._cells.buffer,
             "DepthBins": self._bins.buffer,
-            "CellEntries": self._list("entry"),
-            "CoreTriangles": self._list("core"),
+            "CellEntries": self._entries.buffer,
+            "CoreTriangles": self._core.buffer,
         }
 
     @property
     def route(self) -> str | None:
         """How triangles are found in cells; None where that has not been decided yet (a compute shader serves)."""
         return {True: "rasterization", False: "compute shader", None: None}[self._rasterize]
-
-    @property
-    def memory_bytes(self) -> dict[str, int]:
-        """Bytes held, by buffer name."""
-        return {buffer.name: buffer.size for buffer in self._buffers()}
-
-    def release(self) -> None:
-        """Give all GPU memory back."""
-        for buffer in self._buffers():
-            buffer.release()
-        if self._framebuffer is not None:
-            self._framebuffer.release()
-
-    def _buffers(self) -> list[GrowingBuffer]:
-        return [
-            self._state, self._cells, self._bins, self._old_fragments, self._tiles,
-            *(buffer for buffer, _ in self._lists.values()),
-        ]  # fmt: skip
-
-    def _list(self, name: str) -> moderngl.Buffer:
-        return self._lists[name][0].buffer
 
     def _trace(self, kernel: str, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> None:
         as_texels = self._texel_buffers and all(
@@ -331,7 +317,7 @@ class DeepCubemap:
         """Room for an ordinary scene of so many triangles, as far as the device allows it."""
         limit = self._context.storage_block_limit
         for name, expected in _expected(triangle_count).items():
-            size = 16 * CELL.size if name == "tile" else self._lists[name][1]
+            size = 16 * CELL.size if name == "tile" else self._lists[name].item_size
             self._grow(name, min(expected, limit // size - 2))
 
     def _grow(self, name: str, count: int) -> None:
@@ -346,18 +332,18 @@ class DeepCubemap:
             self._tiles.require(room(4 * count, 4 * spacious))
             self._cells.require(room(CELL.size * (_MOST_ROOTS + 16 * count), CELL.size * (_MOST_ROOTS + 16 * spacious)))
             return
-        buffer, size = self._lists[name]
-        if count * size > buffer.size:
-            buffer.require(room(count * size, spacious * size))
+        buffer = self._lists[name]
+        if count > buffer.capacity:
+            buffer.require(room(count * buffer.item_size, spacious * buffer.item_size))
         if name == "fragment":
             self._old_fragments.require(buffer.size)
 
     def _set_capacities(self, state: np.void) -> None:
-        state["tile_capacity"] = min((self._cells.size // CELL.size - _MOST_ROOTS) // 16, self._tiles.size // 4)
-        for name, (buffer, size) in self._lists.items():
-            state[f"{name}_capacity"] = buffer.size // size
+        state["tile_capacity"] = min((self._cells.capacity - _MOST_ROOTS) // 16, self._tiles.capacity)
+        for name, buffer in self._lists.items():
+            state[f"{name}_capacity"] = buffer.capacity
         state["fragment_limit"] = self._context.storage_block_limit // FRAGMENT.size
-        state["fragment_capacity"] = min(int(state["fragment_capacity"]), self._old_fragments.size // FRAGMENT.size)
+        state["fragment_capacity"] = min(int(state["fragment_capacity"]), self._old_fragments.capacity)
 
     def _check_lists(self, state: np.void, level: int) -> None:
         """Raise _TooShort when lists were, which cells of a level needed, after making room.
@@ -410,13 +396,13 @@ class DeepCubemap:
             "DeepCubemap": self._state.buffer,
             "CubemapCells": self._cells.buffer,
             "CubemapTiles": self._tiles.buffer,
-            "OverlapJobs": self._list("job"),
-            "NewFragments": self._list("fragment"),
+            "OverlapJobs": self._jobs.buffer,
+            "NewFragments": self._lists["fragment"].buffer,
             "OldFragments": self._old_fragments.buffer,
-            "BinnedFragments": self._list("binned_fragment"),
-            "BinnedCells": self._list("binned_cell"),
-            "CellEntries": self._list("entry"),
-            "CoreTriangles": self._list("core"),
+            "BinnedFragments": self._binned_fragments.buffer,
+            "BinnedCells": self._binned_cells.buffer,
+            "CellEntries": self._entries.buffer,
+            "CoreTriangles": self._core.buffer,
             "Triangles": self._triangles,
         }
 
@@ -438,9 +424,9 @@ class DeepCubemap:
             self._check_lists(state, level)
             fragments = int(state["fragment_count"])
             self._fragments_found += fragments
-            self._old_fragments, new = self._lists["fragment"][0], self._old_fragments
-            self._lists["fragment"] = new, FRAGMENT.size
-            buffers["NewFragments"], buffers["OldFragments"] = new.buffer, self._old_fragments.buffer
+            self._old_fragments, self._lists["fragment"] = self._lists["fragment"], self._old_fragments
+            buffers["NewFragments"] = self._lists["fragment"].buffer
+            buffers["OldFragments"] = self._old_fragments.buffer
             state["job_count"] = state["fragment_count"] = state["reserved_count"] = 0
             self._state.upload(state)
             division = {
@@ -459,7 +445,7 @@ class DeepCubemap:
             buffers["DepthBins"] = self._bins.buffer
             run("allocate_bins", int(state["binned_cell_count"]))
             try:
-                self._bins.require(4 * int(self._read_state()["bin_count"]))
+                self._bins.require_items(int(self._read_state()["bin_count"]))
             except DeviceError as error:
                 raise _TooLong(level) from error
             self._bins.clear()
@@ -486,7 +472,7 @@ class DeepCubemap:
                 *map(int, self._context.limits["GL_MAX_VIEWPORT_DIMS"]),
             )
             if self._framebuffer is None:
-                self._framebuffer = self._context.moderngl.empty_framebuffer((side, side))
+                self._framebuffer = self.own(self._context.moderngl.empty_framebuffer((side, side)))
         else:
             program, side = self._library.compute("deep_cubemap/overlap.comp"), 1 << 30
         buffers = {block: buffers[block] for block in program.blocks}
