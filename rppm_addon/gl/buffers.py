@@ -3,6 +3,7 @@
 
 import moderngl
 import numpy as np
+from numpy.typing import DTypeLike
 
 from ..scene.errors import DeviceError
 from .context import Context
@@ -78,7 +79,7 @@ class GrowingBuffer:
             ) from error
         return True
 
-    def upload(self, array: np.ndarray) -> None:
+    def upload(self, array: np.ndarray | np.void) -> None:
         """Hold a contiguous array's bytes from the buffer's start. Raises DeviceError as require does."""
         data = np.ascontiguousarray(array)
         self.require(data.nbytes)
@@ -89,7 +90,7 @@ class GrowingBuffer:
         if array.nbytes:
             self.buffer.write(array.reshape(-1).view(np.uint8), offset=offset)
 
-    def read(self, dtype: np.dtype, count: int, offset: int = 0) -> np.ndarray:
+    def read(self, dtype: DTypeLike, count: int, offset: int = 0) -> np.ndarray:
         """(count,) array of a dtype from a byte offset on."""
         size = np.dtype(dtype).itemsize * count
         return np.frombuffer(self.buffer.read(size, offset=offset), dtype) if size else np.empty(0, dtype)

@@ -39,7 +39,7 @@ class DeviceInformation:
     name: str
     driver: str
     version: str
-    limits: dict[str, object] = field(default_factory=dict)
+    limits: dict[str, Any] = field(default_factory=dict)
     missing: list[str] = field(default_factory=list)
     driver_folder: str = ""
     """Where the driver was loaded from, if it is not the system's."""

@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from .common.iteration import Iteration
+from .common.known import known
 from .common.photon_counts import PhotonCounts, later_photons
 from .density_estimation.radii import (
     Radii,
@@ -87,6 +88,8 @@ class Learning:
             gain = context.lights.learn(self.photon_counts.of(number + 1))
             shrunk = self.wide_radius * shrinkage(number, self._alpha)
             # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, self._expected, self.diffused_photons_found) / math.sqrt(min(gain, 4.0))
+            fitted = fitted_wide_radius(shrunk, self._expected, known(self.diffused_photons_found)) / math.sqrt(
+                min(gain, 4.0)
+            )
             self.wide_radius = min(fitted, self.widest_radius)
             self.diffused_photons_found = None

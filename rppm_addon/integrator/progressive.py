@@ -14,6 +14,7 @@ from ..scene.scene import Scene
 from ..scene.settings import DensityEstimation, FirstPhotonHits
 from .algorithm import iterate, store_photons, trace_photons
 from .common.iteration import LEARNING_ITERATIONS, Iteration, learns_after
+from .common.known import known
 from .deep_cubemap.deep_cubemap import DeepCubemap
 from .deep_cubemap.inspection import inspect_deep_cubemap
 from .device_scene.device_scene import DeviceScene
@@ -33,8 +34,8 @@ class ProgressivePhotonMapper:
         self._library = library
         self.timers = StageTimers(context)
         self.device_scene = DeviceScene(context, library, self.timers)
-        self.stages: StageSet | None = None
-        self.learning: Learning | None = None
+        self._stages: StageSet | None = None
+        self._learning: Learning | None = None
         self.iteration = 0
         """The last that was run, counted from 1."""
         self._skipped = 0
@@ -57,18 +58,18 @@ class ProgressivePhotonMapper:
         """
         start = time.perf_counter()
         self._begin(scene)
-        if self.stages is None:  # before the scene, so that their programs are compiled meanwhile
-            self.stages = StageSet(self.context, self._library, scene)
+        if self._stages is None:  # before the scene, so that their programs are compiled meanwhile
+            self._stages = StageSet(self.context, self._library, scene)
         self.device_scene.update(scene, center_tolerance)
         context = self.device_scene.context
         footprints = first_footprints(context, self.stages)
-        self.learning = Learning(context, footprints)
+        self._learning = Learning(context, footprints)
         self.build_seconds = time.perf_counter() - start
 
     def _begin(self, scene: Scene) -> None:
         """Iterations begin anew with a scene."""
         scene.settings.validate()
-        if self.stages is not None and not self.stages.fits(scene):
+        if self._stages is not None and not self._stages.fits(scene):
             self._release_stages()
         self.iteration = self._skipped = 0
 
@@ -117,9 +118,19 @@ class ProgressivePhotonMapper:
         self._skipped, self.iteration = state.skipped, state.iteration
 
     @property
-    def scene(self) -> Scene | None:
+    def scene(self) -> Scene:
         """With a shutter, as it is at the iteration's moment."""
-        return self.device_scene.scene
+        return known(self.device_scene.scene)
+
+    @property
+    def stages(self) -> StageSet:
+        """Those of the iterations, once a scene was built."""
+        return known(self._stages)
+
+    @property
+    def learning(self) -> Learning:
+        """What the iterations learn, once a scene was built."""
+        return known(self._learning)
 
     @property
     def film(self) -> Film:
@@ -210,9 +221,9 @@ class ProgressivePhotonMapper:
         return inspect_deep_cubemap(self.context, self._library, self.deep_cubemap, self.scene.camera)
 
     def _release_stages(self) -> None:
-        if self.stages is not None:
-            self.stages.release()
-            self.stages = None
+        if self._stages is not None:
+            self._stages.release()
+            self._stages = None
 
     def release(self) -> None:
         """Give all buffers back."""

@@ -277,7 +277,7 @@ class GatherFlag(enum.IntFlag):
     """It stands where that led, and counts for the vertex that the path set out from."""
 
 
-Constants("GatherFlags", **GatherFlag.__members__)
+Constants("GatherFlags", GATHERS_BY_RAY=GatherFlag.GATHERS_BY_RAY, GATHERED_BY_RAY=GatherFlag.GATHERED_BY_RAY)
 
 GATHERING_VERTEX = Record(
     "GatheringVertex",

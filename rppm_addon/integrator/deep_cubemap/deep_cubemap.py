@@ -22,7 +22,7 @@ traverse.glsl walks the result.
 
 import enum
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import moderngl
 import numpy as np
@@ -37,6 +37,7 @@ from ...gl.texel_buffers import DEFINE as TEXEL_BUFFERS
 from ...gl.texel_buffers import TEXEL_SIZE, most_texels
 from ...scene.errors import DeviceError
 from ..common import records  # noqa: F401  the kernels include Ray and Hit
+from ..common.known import known
 from ..common.living_paths import LivingPaths
 
 log = logging.getLogger(__name__)
@@ -142,10 +143,10 @@ class _TooShort(Exception):
 
 
 class _TooLong(Exception):
-    """A list that the cells of ``level`` needed is longer than the device allows; the cause says which."""
+    """A list that the cells of ``level`` needed is longer than the device allows; ``cause`` says which."""
 
-    def __init__(self, level: int) -> None:
-        self.level = level
+    def __init__(self, level: int, cause: DeviceError) -> None:
+        self.level, self.cause = level, cause
 
 
 class DeepCubemap(BufferSet):
@@ -214,7 +215,7 @@ class DeepCubemap(BufferSet):
         self,
         triangles: moderngl.Buffer,
         triangle_count: int,
-        center: tuple[float, float, float],
+        center: Iterable[float],
         scene_radius: float,
         resolution: int = 0,
     ) -> None:
@@ -231,7 +232,8 @@ class DeepCubemap(BufferSet):
         if not 4 <= resolution <= FINEST_RESOLUTION or resolution & (resolution - 1):
             raise ValueError(f"cubemap resolution {resolution} is not a power of two from 4 to {FINEST_RESOLUTION}")
         self._triangles = triangles
-        self.center = tuple(float(c) for c in center)
+        x, y, z = map(float, center)
+        self.center = x, y, z
         exponent = resolution.bit_length() - 1
         scene_radius = max(float(scene_radius), 1e-20)
         state = STATE.zeros(1)[0]
@@ -274,7 +276,7 @@ class DeepCubemap(BufferSet):
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
         """Buffers by block name that kernels which include deep_cubemap/traverse.glsl need."""
         return {
-            "Triangles": self._triangles,
+            "Triangles": known(self._triangles),
             "DeepCubemap": self._state.buffer,
             "CubemapCells": self._cells.buffer,
             "DepthBins": self._bins.buffer,
@@ -356,7 +358,7 @@ class DeepCubemap(BufferSet):
             try:
                 self._grow(name, int(state[f"{name}_count"]))
             except DeviceError as error:
-                raise _TooLong(level) from error
+                raise _TooLong(level, error) from error
         if names:
             raise _TooShort
 
@@ -376,12 +378,12 @@ class DeepCubemap(BufferSet):
                 elif state["base_level"] > 1:
                     state["base_level"] = state["last_level"] = 1
                 else:
-                    raise too_long.__cause__ from None
+                    raise too_long.cause from None
                 # builds to come of as many triangles start with that
                 self._too_many, self._last_level = int(state["triangle_count"]), int(state["last_level"])
                 log.warning(
                     "%s; for now cells stay at a resolution of %d, which slows rays down",
-                    too_long.__cause__,
+                    too_long.cause,
                     1 << int(state["root_exponent"] + 2 * state["last_level"]),
                 )
 
@@ -403,7 +405,7 @@ class DeepCubemap(BufferSet):
             "BinnedCells": self._binned_cells.buffer,
             "CellEntries": self._entries.buffer,
             "CoreTriangles": self._core.buffer,
-            "Triangles": self._triangles,
+            "Triangles": known(self._triangles),
         }
 
         def run(name: str, threads: int, parameters: dict | None = None) -> None:
@@ -447,7 +449,7 @@ class DeepCubemap(BufferSet):
             try:
                 self._bins.require_items(int(self._read_state()["bin_count"]))
             except DeviceError as error:
-                raise _TooLong(level) from error
+                raise _TooLong(level, error) from error
             self._bins.clear()
             buffers["DepthBins"] = self._bins.buffer
             run("count_entries", int(state["binned_fragment_count"]))
@@ -464,18 +466,7 @@ class DeepCubemap(BufferSet):
     def _classify(
         self, buffers: Mapping[str, moderngl.Buffer], jobs: int, first_tile: int, end_tile: int, side_exponent: int
     ) -> None:
-        if self._rasterize:
-            program = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag")
-            side = min(
-                _PICTURE_SIDE,
-                int(self._context.limits["GL_MAX_TEXTURE_SIZE"]),
-                *map(int, self._context.limits["GL_MAX_VIEWPORT_DIMS"]),
-            )
-            if self._framebuffer is None:
-                self._framebuffer = self.own(self._context.moderngl.empty_framebuffer((side, side)))
-        else:
-            program, side = self._library.compute("deep_cubemap/overlap.comp"), 1 << 30
-        buffers = {block: buffers[block] for block in program.blocks}
+        side = self._picture_side() if self._rasterize else 1 << 30
         for picture_tile in range(first_tile, end_tile, (side // 4) ** 2):
             for first in range(0, jobs, _JOBS_PER_DRAW):
                 end = min(first + _JOBS_PER_DRAW, jobs)
@@ -483,10 +474,23 @@ class DeepCubemap(BufferSet):
                     "first_job": first, "end_job": end, "side_exponent": side_exponent, "first_tile": picture_tile,
                     "picture_side": side,
                 }  # fmt: skip
-                if self._rasterize:
-                    program.draw(self._framebuffer, 6 * (end - first), buffers, parameters)
-                else:
-                    program.run(end - first, buffers, parameters)
+                self._overlap(end - first, buffers, parameters)
+
+    def _overlap(self, jobs: int, buffers: Mapping[str, moderngl.Buffer], parameters: dict[str, int]) -> None:
+        if not self._rasterize:
+            computed = self._library.compute("deep_cubemap/overlap.comp")
+            computed.run(jobs, {block: buffers[block] for block in computed.blocks}, parameters)
+            return
+        side = parameters["picture_side"]
+        if self._framebuffer is None:
+            self._framebuffer = self.own(self._context.moderngl.empty_framebuffer((side, side)))
+        drawn = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag")
+        drawn.draw(self._framebuffer, 6 * jobs, {block: buffers[block] for block in drawn.blocks}, parameters)
+
+    def _picture_side(self) -> int:
+        """Of the picture that jobs are drawn into, pixels."""
+        limits = self._context.limits
+        return min(_PICTURE_SIDE, int(limits["GL_MAX_TEXTURE_SIZE"]), *map(int, limits["GL_MAX_VIEWPORT_DIMS"]))
 
 
 def _expected(triangle_count: int) -> dict[str, int]:

@@ -16,6 +16,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.timers import StageTimers
 from ...scene.settings import DensityEstimation, RenderSettings
 from ..common.iteration import Iteration
+from ..common.known import known
 from ..common.stage_sizes import StageSizes
 from .photon_grid import PhotonGrid
 from .splat_sums import SplatSums, radiance_quantum
@@ -91,36 +92,37 @@ class DensityEstimator(BufferSet):
         for other in self._routes.keys() - {route}:
             self.disown(self._routes.pop(other))
         if self._prepared is not route:
-            self._get(route).prepare(self._photons)
+            self._get(route).prepare(known(self._photons))
             self._prepared = route
 
     def splat(self, importons: TakingImportons, timers: StageTimers) -> None:
         """DirectSplatting or IndirectSplatting: add to the sums what the photons give."""
         with timers.stage("indirect splatting" if importons.raster is None else "direct splatting"):
-            if not self._photons.count:
+            photons = known(self._photons)
+            if not photons.count:
                 return
             if self._is_undecided:
-                self._try_both(importons)
+                self._try_both(photons, importons)
             self.prepare()
-            self._get(self.route).splat(self._photons, importons, self.sums)
+            self._get(self.route).splat(photons, importons, self.sums)
 
     @property
     def _is_undecided(self) -> bool:
         automatic = self._wanted is DensityEstimation.AUTOMATIC
         return automatic and self._library not in _faster and _may_rasterize(self._context)
 
-    def _try_both(self, importons: TakingImportons) -> None:
+    def _try_both(self, photons: StoredPhotons, importons: TakingImportons) -> None:
         """Take the route that is faster with these importons, if they are many and take all photons.
 
         Nothing is added, and what contributes is marked as it will be anyway.
         """
-        photons = self._photons
         if importons.gathers or min(photons.count, importons.living.read_count()) < _FEWEST_TO_TRY:
             return
         self._prepared = None
         with self.sums.left_alone():
             self._seconds(DensityEstimation.GRID, photons.first(_WARM_UP_PHOTONS), importons)
-            if self._get(DensityEstimation.GRID).visited < _FEWEST_TO_TRY:
+            grid = self._get(DensityEstimation.GRID)
+            if isinstance(grid, PhotonGrid) and grid.visited < _FEWEST_TO_TRY:
                 return
             by_grid = self._seconds(DensityEstimation.GRID, photons, importons)
             # Ever more photons until it is clear, lest the trial take long where rasterization does.

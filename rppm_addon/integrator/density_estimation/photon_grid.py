@@ -6,6 +6,8 @@ are grouped by cells in the same way, so that threads side by side walk the same
 in which photons or importons come to lie.
 """
 
+from typing import Any
+
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
@@ -82,7 +84,7 @@ class PhotonGrid(BufferSet):
         self._allocate = library.compute("photon_grid/allocate.comp")
         self._gather = library.compute("photon_grid/gather.comp")
         self._most_rounds = _MOST_ROUNDS if context.is_software else _NO_LIMIT
-        self._parameters: dict[str, object] = {}
+        self._parameters: dict[str, Any] = {}
 
     @property
     def visited(self) -> int:

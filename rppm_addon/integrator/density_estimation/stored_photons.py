@@ -75,8 +75,12 @@ class StoredPhotons:
 
     def first(self, count: int) -> "StoredPhotons":
         """No more than so many of them."""
-        fewer = (min(count, number) for number in (self.count, self.caustic_count, self.diffused_count))
-        return dataclasses.replace(self, **dict(zip(("count", "caustic_count", "diffused_count"), fewer)))
+        return dataclasses.replace(
+            self,
+            count=min(count, self.count),
+            caustic_count=min(count, self.caustic_count),
+            diffused_count=min(count, self.diffused_count),
+        )
 
     @property
     def list_blocks(self) -> dict[str, moderngl.Buffer]:

@@ -3,6 +3,7 @@
 
 import dataclasses
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -57,7 +58,7 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
 
 def snapshot(scene: Scene) -> Scene:
     """The scene as it is now, to be compared with later: its lists may grow afterwards."""
-    copies = {name: list(getattr(scene, name)) for name in LISTS}
+    copies: dict[str, Any] = {name: list(getattr(scene, name)) for name in LISTS}
     return dataclasses.replace(scene, settings=dataclasses.replace(scene.settings), **copies)
 
 

@@ -14,6 +14,7 @@ from ...materials.tables import MaterialTables
 from ...scene.moving_scene import MovingScene
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
+from ..common.known import known
 from ..deep_cubemap.deep_cubemap import DeepCubemap
 from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..lights.lights import Lights
@@ -62,7 +63,7 @@ class DeviceScene:
     def context(self) -> StageContext:
         """For stages, at the moment that the scene was last moved to."""
         return StageContext(
-            self.scene,
+            known(self.scene),
             self.geometry,
             self.materials,
             self.lights,
@@ -85,7 +86,7 @@ class DeviceScene:
         changes = changes_between(self._uploaded_scene, scene)
         self._take(scene)
         self._moving = MovingScene(scene) if scene.shutter is not None else None
-        swept = swept_bounds(scene) if scene.shutter is not None else _NOWHERE
+        swept = swept_bounds(scene)
         changes.geometry |= not np.array_equal(swept, self._swept)
         self._swept = swept
         self._build_parts(changes, scene.photon_count)
@@ -109,8 +110,8 @@ class DeviceScene:
 
         The deep cubemap's center stays: it changes no picture, and a camera that moves alone costs nothing.
         """
-        time = self._source_scene.shutter.time_of(moment(iteration.number, iteration.seed))
-        self.scene = self._moving.at(time)
+        shutter = known(known(self._source_scene).shutter)
+        self.scene = known(self._moving).at(shutter.time_of(moment(iteration.number, iteration.seed)))
         changes = changes_between(self._uploaded_scene, self.scene)
         self._uploaded_scene = None
         with self._timers.stage("motion"):
@@ -128,7 +129,7 @@ class DeviceScene:
 
         photons: of the iteration. keep_learned: go on with what was learned of the lights.
         """
-        scene = self.scene
+        scene = known(self.scene)
         self.materials.follow(scene)
         if changes.materials:
             with self._collect_warnings("materials"):
@@ -157,16 +158,17 @@ class DeviceScene:
     @contextlib.contextmanager
     def _collect_warnings(self, part: str) -> Iterator[None]:
         """Keep what is said while a part is built."""
-        before, self.scene.warnings = self.scene.warnings, []
+        scene = known(self.scene)
+        before, scene.warnings = scene.warnings, []
         try:
             yield
-            self._warnings[part] = self.scene.warnings
+            self._warnings[part] = scene.warnings
         finally:
-            self.scene.warnings = before
+            scene.warnings = before
 
     def _build_deep_cubemap(self) -> None:
         """Where few triangles touch the center: those are tested by every ray that passes it."""
-        centers = list(cubemap_centers(self._source_scene, self.geometry))
+        centers = list(cubemap_centers(known(self._source_scene), self.geometry))
         self._wanted_center = centers[0]
         with self._timers.stage("deep cubemap"):
             for center in centers:
@@ -176,7 +178,7 @@ class DeviceScene:
                     self.geometry.triangle_count,
                     center,
                     radius_about(center, self.geometry),
-                    self.scene.settings.cubemap_resolution,
+                    known(self.scene).settings.cubemap_resolution,
                 )
                 if self.deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
                     return

@@ -32,6 +32,8 @@ def swept_bounds(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     shutter = scene.shutter
+    if shutter is None:
+        return low, high
     shapes = {deformation.mesh: deformation.positions for deformation in shutter.meshes}
     moving = {movement.member for movement in shutter.instances}
     moving |= {index for index, instance in enumerate(scene.instances) if instance.mesh in shapes}

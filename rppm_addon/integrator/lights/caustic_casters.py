@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What photons are aimed at: the objects that make caustics."""
 
+from typing import cast
+
 import numpy as np
 
 from ...materials.nodes import KINDS
@@ -23,7 +25,7 @@ _SPECULAR = {"bsdf_glass", "bsdf_refraction", "bsdf_glossy", "bsdf_metallic", "b
 def _number(node: ShaderNode, name: str, unknown: float) -> float:
     """A constant input; what varies counts as ``unknown``."""
     value = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
-    return unknown if isinstance(value, Link) else float(np.mean(value))
+    return unknown if isinstance(value, Link) else float(np.mean(np.asarray(value)))
 
 
 def _makes_caustics(node: ShaderNode) -> bool:
@@ -39,7 +41,8 @@ def _makes_caustics(node: ShaderNode) -> bool:
 
 def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
     """Shader nodes whose weight, as far as it is constant, is not next to nothing."""
-    found, pending = [], [(graph.surface, 1.0)]
+    found: list[ShaderNode] = []
+    pending: list[tuple[object, float]] = [(graph.surface, 1.0)]
     while pending:
         link, weight = pending.pop()
         if not isinstance(link, Link) or weight < _LEAST or not 0 <= link.node < len(graph.nodes):
@@ -48,7 +51,7 @@ def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
         shaders = node.inputs.get("shader"), node.inputs.get("shader_001")
         if node.kind == "mix_shader":
             factor = node.inputs.get("fac", 0.5)
-            shares = (1.0, 1.0) if isinstance(factor, Link) else (1.0 - factor, factor)
+            shares = (1.0, 1.0) if isinstance(factor, Link) else (1.0 - cast(float, factor), cast(float, factor))
             pending += [(shader, weight * share) for shader, share in zip(shaders, shares, strict=True)]
         elif node.kind == "add_shader":
             pending += [(shader, weight) for shader in shaders]

@@ -5,6 +5,7 @@ import math
 
 import moderngl
 import numpy as np
+from numpy.typing import DTypeLike
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
@@ -13,6 +14,7 @@ from ...gl.records import Record
 from ...materials.emitted import Emits
 from ...materials.tables import MaterialTables
 from ...scene.scene import Scene
+from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
 from ..common.records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY
 from ..surfaces.geometry import Geometry, Placement
@@ -63,9 +65,10 @@ class Emitters(BufferSet):
             for placement in geometry.placements
             if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
         ]
+        kinds_of_parts: tuple[DTypeLike, ...] = EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool
         records, corners, kinds, varying = (
             np.concatenate([parts[k] for parts in found]) if found else np.zeros((0,), kind)
-            for k, kind in enumerate((EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool))
+            for k, kind in enumerate(kinds_of_parts)
         )
         self._ask(records, corners, kinds, varying, resolve)
         bright = records["radiance"].max(axis=1, initial=0.0) > 0
@@ -189,7 +192,7 @@ class Emitters(BufferSet):
             {
                 "Rays": rays,
                 "LightTriangles": light_triangles,
-                "Triangles": self._world_triangles,
+                "Triangles": known(self._world_triangles),
                 "EmitterRays": self._rays.buffer,
                 "EmitterHits": hits,
             },

@@ -76,7 +76,7 @@ class Environment(BufferSet):
             self._textures = [self._texture(np.ones((1, 1, 3), np.float32))]
             return
         kinds = {world.graph.nodes[index].kind for index in reachable(world.graph, world.graph.surface)}
-        width = _map_width(world, images)
+        width = _map_width(world.graph, images)
         maps = [materials.evaluate(world.graph, width, width // 2)]
         if "light_path" in kinds:
             maps.append(materials.evaluate(world.graph, width, width // 2, from_camera=True))
@@ -92,7 +92,8 @@ class Environment(BufferSet):
     def _texture(self, pixels: np.ndarray) -> moderngl.Texture:
         rgba = np.ones((*pixels.shape[:2], 4), np.float32)
         rgba[..., :3] = pixels
-        return self.own(_MAP.make(self._context.moderngl, pixels.shape[1::-1], rgba.tobytes()), "environment")
+        height, width = pixels.shape[:2]
+        return self.own(_MAP.make(self._context.moderngl, (width, height), rgba.tobytes()), "environment")
 
     def use(self) -> None:
         """Bind the maps to texture units 0 and 1, where environment.glsl reads them."""
@@ -100,12 +101,12 @@ class Environment(BufferSet):
         self._textures[-1].use(1)
 
 
-def _map_width(world: World, images: list[Image]) -> int:
+def _map_width(graph: NodeGraph, images: list[Image]) -> int:
     """Pixels across the map: those of an image that is shown as it is, else enough to show its pixels anywhere."""
-    used = [node for node in world.graph.nodes if 0 <= node.image < len(images)]
+    used = [node for node in graph.nodes if 0 <= node.image < len(images)]
     widest = max((images[node.image].pixels.shape[1] for node in used), default=0)
-    patterns = any(node.kind.startswith("tex_") and node.image < 0 for node in world.graph.nodes)
-    if used and not patterns and all(_is_plain(world.graph, node) for node in used):
+    patterns = any(node.kind.startswith("tex_") and node.image < 0 for node in graph.nodes)
+    if used and not patterns and all(_is_plain(graph, node) for node in used):
         return int(np.clip(widest + widest % 2, 2, _WIDEST_MAP))
     return int(np.clip(2 * widest, _NARROWEST_MAP, _WIDEST_MAP))
 

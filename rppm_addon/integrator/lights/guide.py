@@ -40,9 +40,9 @@ _FINEST = {
 """Cells along the place on the light and the direction, by kind; for MESH the first is the triangle."""
 
 
-def cells_of(kind: int, photons: int) -> tuple[int, int, int, int]:
+def cells_of(kind: int, photons: int) -> tuple[int, ...]:
     """Cells along each number, powers of two: at most one for each photon."""
-    cells = list(_FINEST[kind])
+    cells = list(_FINEST[LightShape(kind)])
     while np.prod(cells) > max(photons, 1):
         most = max(cells)
         cells[3 - cells[::-1].index(most)] //= 2
@@ -88,7 +88,7 @@ class Guide(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
         self._program = library.compute("emission/learn.comp")
-        self._cells: list[tuple[int, int, int, int]] = []
+        self._cells: list[tuple[int, ...]] = []
         self._probabilities: list[np.ndarray] = []
         self.learned: np.ndarray | None = None
         """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""

@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import Literal
 
 import moderngl
 import numpy as np
@@ -16,6 +17,7 @@ from ...materials.evaluation import LightSurface, LightSurfaceKind, MapShape
 from ...materials.tables import MaterialTables
 from ...scene.images import Image
 from ...scene.lights import Light, LightKind
+from ..common.known import known
 from ..surfaces.surface_attributes import object_record
 
 _PATTERN_WIDTH, _WIDEST_MAP = 1024, 2048
@@ -60,7 +62,7 @@ class LightMaps(BufferSet):
     def build(self, lights: list[Light], images: list[Image], materials: MaterialTables) -> None:
         """Ask the nodes of all lights that have some."""
         with_nodes = {index: light for index, light in enumerate(lights) if light.graph is not None}
-        varying = {index: light_variation(light.graph) for index, light in with_nodes.items()}
+        varying = {index: light_variation(known(light.graph)) for index, light in with_nodes.items()}
         shapes = {index: _shape(with_nodes[index], varies) for index, varies in varying.items() if varies}
         sizes = {index: _size(with_nodes[index], shape, images) for index, shape in shapes.items()}
         widest = min(int(self._context.limits["GL_MAX_TEXTURE_SIZE"]), 2 * (_WIDEST_MAP + 2))
@@ -72,13 +74,13 @@ class LightMaps(BufferSet):
             if index not in places:
                 continue
             x, y, map_width, map_height = places[index]
-            pixels = np.maximum(_asked(light, nodes.shape, (map_width, map_height), 1.0, materials), 0.0)
+            pixels = np.maximum(_asked(light, shapes[index], (map_width, map_height), 1.0, materials), 0.0)
             largest = float(pixels.max(initial=0.0))
             falls = (1.0 + nodes.smoothing) * np.ones(3)
             nodes.scale = falls * largest
-            nodes.mean = falls * _mean(pixels, light, nodes.shape)
+            nodes.mean = falls * _mean(pixels, light, shapes[index])
             normalized = pixels / largest if largest > 0.0 else pixels
-            texels[y : y + map_height + 2, x : x + map_width + 2, :3] = _bordered(normalized, nodes.shape)
+            texels[y : y + map_height + 2, x : x + map_width + 2, :3] = _bordered(normalized, shapes[index])
             nodes.place = (x + 1) / width, (y + 1) / height, map_width / width, map_height / height
         if self._texture is not None:
             self.disown(self._texture)
@@ -87,7 +89,7 @@ class LightMaps(BufferSet):
 
     def use(self) -> None:
         """Bind the maps to texture unit 2, where light_maps.glsl reads them."""
-        self._texture.use(2)
+        known(self._texture).use(2)
 
 
 def is_sphere(light: Light) -> bool:
@@ -117,14 +119,16 @@ def _size(light: Light, shape: MapShape, images: list[Image]) -> tuple[int, int]
     """Width and height of a map that shows the pixels of the images in use."""
     if light.kind is LightKind.SUN and light.sun_angle <= 0.0:
         return 1, 1
-    widths = [images[node.image].pixels.shape[1] for node in light.graph.nodes if 0 <= node.image < len(images)]
+    widths = [images[node.image].pixels.shape[1] for node in known(light.graph).nodes if 0 <= node.image < len(images)]
     spherical = shape in (MapShape.NORMALS, MapShape.DIRECTIONS)
     least = _PATTERN_WIDTH if spherical else _PATTERN_WIDTH // 2
     width = min(max([least, *widths]), _WIDEST_MAP)
     return width, width // 2 if spherical else width
 
 
-def _packed(sizes: dict[int, tuple[int, int]], widest: int) -> tuple[dict[int, tuple[int, ...]], tuple[int, int]]:
+def _packed(
+    sizes: dict[int, tuple[int, int]], widest: int
+) -> tuple[dict[int, tuple[int, int, int, int]], tuple[int, int]]:
     """(x, y, width, height) of maps side by side in rows, and the width and height of all, borders included. Maps
     become smaller where all of them would be too large."""
     while True:
@@ -144,7 +148,7 @@ def _packed(sizes: dict[int, tuple[int, int]], widest: int) -> tuple[dict[int, t
 
 def _bordered(pixels: np.ndarray, shape: MapShape) -> np.ndarray:
     """A map with a texel more on every side."""
-    around = "wrap" if shape in (MapShape.NORMALS, MapShape.DIRECTIONS) else "edge"
+    around: Literal["wrap", "edge"] = "wrap" if shape in (MapShape.NORMALS, MapShape.DIRECTIONS) else "edge"
     return np.pad(np.pad(pixels, ((0, 0), (1, 1), (0, 0)), around), ((1, 1), (0, 0), (0, 0)), "edge")
 
 
@@ -168,7 +172,7 @@ def _asked(
         kind, shape, np.asarray(light.matrix)[:3, 3], normal, u, v, light.radius if is_sphere(light) else 0.0,
         object_record(light.matrix),
     )  # fmt: skip
-    return materials.evaluate(light.graph, *size, ray_length=distance, light_surface=light_surface)
+    return materials.evaluate(known(light.graph), *size, ray_length=distance, light_surface=light_surface)
 
 
 def _mean(pixels: np.ndarray, light: Light, shape: MapShape) -> np.ndarray:
@@ -180,7 +184,7 @@ def _mean(pixels: np.ndarray, light: Light, shape: MapShape) -> np.ndarray:
         weight = np.sin(polar) * np.ones_like(azimuth)
         if light.kind is not LightKind.POINT:
             axis = -np.asarray(light.matrix, np.float64)[:3, 2]
-            axis = axis / max(np.linalg.norm(axis), 1e-9)
+            axis = axis / max(float(np.linalg.norm(axis)), 1e-9)
             cosine = np.sin(polar) * (axis[0] * np.cos(azimuth) + axis[1] * np.sin(azimuth)) + axis[2] * np.cos(polar)
             widest = 0.5 * np.pi if light.kind is LightKind.AREA or is_sphere(light) else 0.5 * light.spot_angle
             weight = weight * np.clip((cosine - math.cos(widest)) / (1.0 - math.cos(widest)), 0.0, 1.0)

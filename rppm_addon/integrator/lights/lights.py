@@ -15,6 +15,7 @@ from ...scene.errors import SceneError
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
+from ..common.known import known
 from ..common.records import LIGHT, LIGHT_SOFT, LightShape
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
@@ -106,7 +107,7 @@ class Lights(BufferSet):
         return {
             "Lights": self._lights.buffer,
             "EmissiveTriangles": self.emitters.triangles.buffer,
-            "Triangles": self._triangles,
+            "Triangles": known(self._triangles),
             "EnvironmentDistribution": self.environment.distribution.buffer,
         }
 

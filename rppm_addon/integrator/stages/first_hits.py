@@ -14,6 +14,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.errors import DeviceError
 from ...scene.settings import FirstPhotonHits
+from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
 from ..device_scene.stage_context import StageContext
 from .light_gbuffer import LightGBuffer
@@ -93,7 +94,7 @@ class FirstHits(BufferSet):
         for route in 2 * (FirstPhotonHits.RASTERIZED, FirstPhotonHits.TRACED):
             seconds[route] = self._seconds(route, context, rays, hits, living)
         log.debug("first photon hits: %.1f ms rasterized, %.1f ms traced", *(1e3 * s for s in seconds.values()))
-        return min(seconds, key=seconds.get)
+        return min(seconds, key=lambda route: seconds[route])
 
     def _seconds(
         self,
@@ -127,6 +128,6 @@ class FirstHits(BufferSet):
             context.deep_cubemap.trace(rays, hits, living)
             return
         lights = context.lights.buffers["Lights"]
-        self._gbuffer.find(lights, context.geometry, rays, hits, living.most, self._left)
+        known(self._gbuffer).find(lights, context.geometry, rays, hits, living.most, self._left)
         if not self._left.known_empty:
             context.deep_cubemap.trace(rays, hits, self._left)

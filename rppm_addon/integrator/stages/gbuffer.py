@@ -29,9 +29,10 @@ def filter_offsets(iteration: int, width: float, seed: int) -> tuple[float, floa
         0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
     )
     cumulated = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
-    scramble = np.random.default_rng((seed, 2)).integers(1 << 32, size=3)
-    u = scrambled_sobol(iteration - 1, tuple(map(int, scramble)))
-    return tuple(float(2.0 * width * np.interp(value, cumulated / cumulated[-1], x)) for value in u)
+    first, second, third = map(int, np.random.default_rng((seed, 2)).integers(1 << 32, size=3))
+    u = scrambled_sobol(iteration - 1, (first, second, third))
+    across, up = (float(2.0 * width * np.interp(value, cumulated / cumulated[-1], x)) for value in u)
+    return across, up
 
 
 def jittered_view(camera: Camera, filter_width: float, band: Band, iteration: Iteration) -> np.ndarray:

@@ -22,6 +22,7 @@ from ...gl.context import Context
 from ...gl.programs import DrawProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
+from ..common.known import known
 from ..common.living_paths import LivingPaths
 from ..common.records import LightShape
 from ..surfaces.geometry import Geometry
@@ -218,7 +219,7 @@ class LightGBuffer(BufferSet):
     def _draw(self, program: DrawProgram, jobs: int, blocks: dict[str, moderngl.Buffer]) -> None:
         for first in range(0, jobs, _JOBS_PER_DRAW):
             vertices = 6 * min(_JOBS_PER_DRAW, jobs - first)
-            program.draw(self._framebuffer, vertices, blocks, self._parameters | {"first_job": first})
+            program.draw(known(self._framebuffer), vertices, blocks, self._parameters | {"first_job": first})
 
     def find(
         self,

@@ -226,9 +226,9 @@ class Geometry(BufferSet):
             before = self._arrays.pop(name, [])  # should an upload fail
             buffer = self._inputs[name]
             offsets = _starts([array.size * dtype.itemsize for array in arrays])
-            if buffer.require(int(offsets[-1])) or [a.shape for a in before] != [a.shape for a in arrays]:
-                before = [None] * len(arrays)
-            changed = [index for index, array in enumerate(arrays) if array is not before[index]]
+            made_anew = buffer.require(int(offsets[-1]))
+            stands = not made_anew and [a.shape for a in before] == [a.shape for a in arrays]
+            changed = [index for index, array in enumerate(arrays) if not (stands and array is before[index])]
             for run in _runs(changed):
                 data = [_flat(arrays[index], dtype) for index in run]
                 buffer.write(data[0] if len(data) == 1 else np.concatenate(data), int(offsets[run[0]]))
