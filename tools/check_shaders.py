@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks that every stage file below shaders/ is valid OpenGL 4.3 core GLSL for glslangValidator, and lines' lengths.
+"""Checks that every stage file below shaders/ is valid OpenGL 4.3 core GLSL for glslangValidator, and how long lines
+and functions are.
 
 A file that needs defines names values for them in a comment: ``// lint: RESOLUTION=64 DEPTH=2``; several such lines are
 several variants, each checked. Stages that run node graphs are checked with every kind of node, a file of kinds at a
 time.
 """
 
+import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -19,6 +21,9 @@ from support.shader_declarations import Variant, variants  # noqa: E402
 from rppm_addon.gl.sources import SHADER_FOLDER, ShaderError  # noqa: E402
 
 COLUMNS = 120
+FUNCTION_LINES = 60
+_FUNCTION = re.compile(r"^\w+ (\w+)\([^;{]*\{$.*?^\}$", re.MULTILINE | re.DOTALL)
+"""Functions begin and end with the lines of theirs that are not indented."""
 
 
 def long_lines() -> list[str]:
@@ -29,6 +34,25 @@ def long_lines() -> list[str]:
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
         if len(line) > COLUMNS
     ]
+
+
+def long_functions(text: str) -> list[tuple[str, int, int]]:
+    """Functions of a shader that are longer than FUNCTION_LINES: name, number of the first line, lines."""
+    found = (
+        (match[1], text.count("\n", 0, match.start()) + 1, match[0].count("\n") + 1)
+        for match in _FUNCTION.finditer(text)
+    )
+    return [function for function in found if function[2] > FUNCTION_LINES]
+
+
+def lengths() -> list[str]:
+    """What is too long in shaders."""
+    functions = [
+        f"{path.relative_to(SHADER_FOLDER).as_posix()}:{line}: {name} has {lines} lines, {FUNCTION_LINES} at most"
+        for path in sorted(SHADER_FOLDER.rglob("*.*"))
+        for name, line, lines in long_functions(path.read_text(encoding="utf-8"))
+    ]
+    return [*long_lines(), *functions]
 
 
 def check_shader(variant: Variant) -> str:
@@ -59,7 +83,7 @@ def check_shaders() -> tuple[list[str], int]:
     checked = variants()
     with ThreadPoolExecutor(2) as pool:
         results = list(pool.map(check_shader, checked))
-    return [*long_lines(), *(result for result in results if result)], len(checked)
+    return [*lengths(), *(result for result in results if result)], len(checked)
 
 
 def main() -> int:

@@ -88,8 +88,6 @@ class Learning:
             gain = context.lights.learn(self.photon_counts.of(number + 1))
             shrunk = self.wide_radius * shrinkage(number, self._alpha)
             # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, self._expected, known(self.diffused_photons_found)) / math.sqrt(
-                min(gain, 4.0)
-            )
-            self.wide_radius = min(fitted, self.widest_radius)
+            fitted = fitted_wide_radius(shrunk, self._expected, known(self.diffused_photons_found))
+            self.wide_radius = min(fitted / math.sqrt(min(gain, 4.0)), self.widest_radius)
             self.diffused_photons_found = None

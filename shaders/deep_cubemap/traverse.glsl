@@ -123,6 +123,26 @@ int move_on(int cell, int computed, int step_direction, int first, int last) {
     return step_direction > 0 ? clamp(computed, cell, last) : clamp(computed, first, cell);
 }
 
+ivec2 move_within(ivec2 cell, ivec2 computed, ivec2 steps, ivec2 first, ivec2 last) {
+    return ivec2(move_on(cell.x, computed.x, steps.x, first.x, last.x),
+                 move_on(cell.y, computed.y, steps.y, first.y, last.y));
+}
+
+// Distances, not before `here`, at which the ray crosses the borders of a block of cells that it moves toward.
+vec2 border_crossings(vec3 origin, vec3 direction, ivec2 steps, ivec2 block, int level_exponent, float here) {
+    vec2 border = cell_border(block + ivec2(greaterThan(steps, ivec2(0))), cell_size(level_exponent));
+    vec2 approach = direction.xy - border * direction.z;
+    vec2 crossing = max((border * origin.z - origin.xy) / approach, vec2(here));
+    // A border counts only if the ray moves toward it; else the ray tends to a vanishing point
+    // before the border, and the distance belongs to the ray's other half.
+    return mix(vec2(INFINITY_DISTANCE), crossing, greaterThan(vec2(steps) * approach, vec2(0.0)));
+}
+
+// Codes of the depths that triangles between two depths may have.
+uvec2 depths_between(float near, float far, DeepCubemapState cubemap) {
+    return depth_codes(vec2(near - cubemap.margin, far + cubemap.margin), cubemap);
+}
+
 const int START_LEVEL = 1;
 
 // findMSB for numbers below 2^24, which not all devices have an instruction for.
@@ -144,6 +164,14 @@ uint tile_at(TileStack tiles, int level) {
     uint low = level == 1 ? tiles.at1 : (level == 2 ? tiles.at2 : tiles.at3);
     uint high = level == 4 ? tiles.at4 : (level == 5 ? tiles.at5 : tiles.at6);
     return level <= 3 ? low : high;
+}
+
+// Up to the level whose tile the ray is still in.
+void leave_tiles(TileStack tiles, int still_in, inout int level, inout uint tile) {
+    if (level > still_in) {
+        level = still_in;
+        tile = tile_at(tiles, level);
+    }
 }
 
 // The tile of the start level that a cell lies in.
@@ -175,18 +203,11 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
 #endif
         int shift = finest - root_exponent - 2 * level;
         ivec2 block = cell >> shift;
-        float size = cell_size(root_exponent + 2 * level);
-        vec2 border = cell_border(block + ivec2(greaterThan(steps, ivec2(0))), size);
-        vec2 approach = direction.xy - border * direction.z;
-        vec2 crossing = max((border * origin.z - origin.xy) / approach, vec2(here));
-        // A border counts only if the ray moves toward it; else the ray tends to a vanishing point
-        // before the border, and the distance belongs to the ray's other half.
-        crossing = mix(vec2(INFINITY_DISTANCE), crossing, greaterThan(vec2(steps) * approach, vec2(0.0)));
+        vec2 crossing = border_crossings(origin, direction, steps, block, root_exponent + 2 * level, here);
         float exit = min(min(crossing.x, crossing.y), leave);
 
         vec2 ends = vec2(origin.z + here * direction.z, origin.z + exit * direction.z);
-        uvec2 depths = depth_codes(
-            vec2(min(ends.x, ends.y) - walk.cubemap.margin, max(ends.x, ends.y) + walk.cubemap.margin), walk.cubemap);
+        uvec2 depths = depths_between(min(ends.x, ends.y), max(ends.x, ends.y), walk.cubemap);
         CubemapCell content = cubemap_cell(tile + tile_offset(block));
         bool occupied = depths.x <= content.far && depths.y >= ~content.near_complement
             && (content.slices & depth_slices(depths, content)) != 0u;
@@ -204,12 +225,9 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
 
         ivec2 previous = cell;
         ivec2 first = block << shift, last = first + (1 << shift) - 1;
-        if (shift > 0) {
-            // Along the axis that is not crossed the ray has moved on within the block, forwards only.
-            ivec2 moved = cell_at(origin, direction, vec2(exit), steps, resolution);
-            cell.x = move_on(cell.x, moved.x, steps.x, first.x, last.x);
-            cell.y = move_on(cell.y, moved.y, steps.y, first.y, last.y);
-        }
+        // Along the axis that is not crossed the ray has moved on within the block, forwards only.
+        if (shift > 0)
+            cell = move_within(cell, cell_at(origin, direction, vec2(exit), steps, resolution), steps, first, last);
         if (crossing.x <= crossing.y) {
             cell.x = steps.x > 0 ? last.x + 1 : first.x - 1;
         } else {
@@ -217,13 +235,8 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
         }
         if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(1 << finest)))) return;
         here = exit;
-        // up to the level whose tile the ray is still in
         int changed = highest_bit((previous.x ^ cell.x) | (previous.y ^ cell.y));
-        int tile_level = (finest - root_exponent + 1 - changed) >> 1;
-        if (level > tile_level) {
-            level = tile_level;
-            tile = tile_at(tiles, level);
-        }
+        leave_tiles(tiles, (finest - root_exponent + 1 - changed) >> 1, level, tile);
         if (level <= START_LEVEL) {
             level = START_LEVEL;
             tile = start_tile(face, cell, finest, root_exponent);

@@ -111,6 +111,34 @@ void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec
     rays[index].maximum_distance = matters ? INFINITY_DISTANCE : 0.0;
 }
 
+// The ray and the flux that a path goes on with, if it does; path_flags are those that it came with.
+void go_on(uint index, Closure closure, uint path_flags, inout Photon photon) {
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
+                                            parameters.segment, index);
+    Scattering scattering = scatter(closure, photon.flux, photon.direction, random);
+    float side = dot(scattering.direction, geometric);
+    bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
+    if (!(largest(scattering.weight) > 0.0 && passes)) return;
+    bool straight = scattering.direction == -photon.direction;
+    if (!straight)
+        scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric,
+                                                scattering.normal);
+    photon.scattered_flux = photon.flux * scattering.weight;
+    photon_paths[index].flux = photon.scattered_flux;
+    path_flags |= scattering.flags;
+    if ((path_flags & scattering.unseen) != 0u) photon_paths[index].flux = photon.scattered_flux = vec3(0.0);
+    if (!straight)
+        path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
+    if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
+    if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
+    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
+    rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
+    if (parameters.has_adjoint_queries != 0u)
+        store_adjoint_query(index, closure, scattering, photon.direction, path_flags);
+    else photon_paths[index].flags = path_flags;
+}
+
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
@@ -148,32 +176,7 @@ void main() {
         stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) photon.flags |= PHOTON_STORED;
 
-    if (parameters.segment + 1u < parameters.segments && largest(photon.flux) > 0.0) {
-        vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-        RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
-                                                parameters.segment, index);
-        Scattering scattering = scatter(closure, photon.flux, photon.direction, random);
-        float side = dot(scattering.direction, geometric);
-        bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
-        if (largest(scattering.weight) > 0.0 && passes) {
-            bool straight = scattering.direction == ray.direction;
-            if (!straight)
-                scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric,
-                                                        scattering.normal);
-            photon.scattered_flux = photon.flux * scattering.weight;
-            photon_paths[index].flux = photon.scattered_flux;
-            path_flags |= scattering.flags;
-            if ((path_flags & scattering.unseen) != 0u) photon_paths[index].flux = photon.scattered_flux = vec3(0.0);
-            if (!straight)
-                path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
-            if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
-            if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
-            vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
-            rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
-            if (parameters.has_adjoint_queries != 0u)
-                store_adjoint_query(index, closure, scattering, photon.direction, path_flags);
-            else photon_paths[index].flags = path_flags;
-        }
-    }
+    if (parameters.segment + 1u < parameters.segments && largest(photon.flux) > 0.0)
+        go_on(index, closure, path_flags, photon);
     photons[slot] = photon;
 }

@@ -34,17 +34,8 @@ uint path_flags(uint index) {
            ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
 }
 
-void main() {
-    uint place = invocation_index();
-    if (place >= range_length(parameters.program)) return;
-    uint index = hit_order[range_first(parameters.program) + place];
-    Ray ray = rays[index];
-    Hit hit = hits[index];
-    // Where one program resolves all, misses are in its range.
-    if (!(ray.maximum_distance > 0.0) || hit.triangle == NO_TRIANGLE) {
-        closures[index].triangle = NO_TRIANGLE;  // the rest of it is never read
-        return;
-    }
+// flags: of the path that came there.
+Surface surface_at(Ray ray, Hit hit, uint flags) {
     vec3 v0, v1, v2;
     triangle_points(hit.triangle, v0, v1, v2);
     vec3 b = vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2);
@@ -66,49 +57,78 @@ void main() {
     surface.triangle = hit.triangle;
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;
-    uint flags = path_flags(index);
     // Where lights are sampled, no path has come to them, and it is of no kind, as in Cycles.
     surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags)
                 : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
+    return surface;
+}
 
-    uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
-                                            parameters.segment + variant, index);
-    ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing,
-                                             next_random(random));
-    builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;
-    uint material = attributes[hit.triangle].material;
-    ShadingInstance instance = shading_instances[surface.instance];
-    bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;
-    // Light reaches what casts no shadow, and what lies behind it too.
-    bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & RAY_SHADOW) == 0u;
-    bool unseen = camera && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
-    // What diffuse surfaces do not see is lit, but gives no light, and light from other surfaces goes on through it.
-    bool keeps_light = photon && (instance.visibility & RAY_DIFFUSE) == 0u;
-    bool passes = unseen || shadowless || (keeps_light && (flags & PHOTON_DIRECT) == 0u);
-    if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
-    if (camera && instance.holdout != 0u && (surface.ray & RAY_CAMERA) != 0u) {
+ClosureBuilder builder_at(Surface surface, float u_choice) {
+    return closure_builder(surface.viewer, surface.geometric, surface.normal, surface.backfacing, u_choice);
+}
+
+// What an object that is a holdout, or catches shadows, does to its closure.
+void hold_out_and_catch(Surface surface, ShadingInstance instance, bool unseen, inout ClosureBuilder builder) {
+    bool seen_by_camera = parameters.path_kind == PATH_OF_CAMERA && (surface.ray & RAY_CAMERA) != 0u;
+    if (seen_by_camera && instance.holdout != 0u) {
         vec3 transparent = clamp(builder.closure.transparent, 0.0, 1.0);
-        builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
+        builder = builder_at(surface, 0.0);
         builder.closure.transparent = transparent;
         add_holdout(builder, 1.0 - mean(transparent));
     }
-    bool catches = camera && instance.shadow_catcher != 0u && (surface.ray & RAY_CAMERA) != 0u && !unseen;
-    if (catches) {
-        builder = closure_builder(surface.viewer, surface.geometric, shading, surface.backfacing, 0.0);
+    if (seen_by_camera && instance.shadow_catcher != 0u && !unseen) {
+        builder = builder_at(surface, 0.0);
         builder.closure.flags |= CLOSURE_CATCHES_SHADOWS;
     }
-    bool opaque = photon && (flags & PHOTON_CASTS_SHADOWS) != 0u && materials[material].opaque_shadow != 0u;
-    if (passes || catches) builder.closure.transparent = vec3(1.0);
+}
+
+// What of the light an object lets pass, by whom it may be seen. flags: of the path.
+void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool unseen, bool opaque_shadow,
+                    inout ClosureBuilder builder) {
+    bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;
+    // Light reaches what casts no shadow, and what lies behind it too.
+    bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & RAY_SHADOW) == 0u;
+    // What diffuse surfaces do not see is lit, but gives no light, and light from other surfaces goes on through it.
+    bool keeps_light = photon && (instance.visibility & RAY_DIFFUSE) == 0u;
+    bool passes = unseen || shadowless || (keeps_light && (flags & PHOTON_DIRECT) == 0u);
+    bool opaque = photon && (flags & PHOTON_CASTS_SHADOWS) != 0u && opaque_shadow;
+    if (passes || (builder.closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) builder.closure.transparent = vec3(1.0);
     else if (opaque) builder.closure.transparent = vec3(0.0);
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
-    builder.closure.position = surface.position;
-    builder.closure.triangle = hit.triangle;
     bool leaves_direct_light = shadowless || (camera && (unseen || (instance.visibility & RAY_SHADOW) == 0u));
     builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u)
                              | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
+}
+
+void main() {
+    uint place = invocation_index();
+    if (place >= range_length(parameters.program)) return;
+    uint index = hit_order[range_first(parameters.program) + place];
+    Ray ray = rays[index];
+    Hit hit = hits[index];
+    // Where one program resolves all, misses are in its range.
+    if (!(ray.maximum_distance > 0.0) || hit.triangle == NO_TRIANGLE) {
+        closures[index].triangle = NO_TRIANGLE;  // the rest of it is never read
+        return;
+    }
+    uint flags = path_flags(index);
+    Surface surface = surface_at(ray, hit, flags);
+    uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
+    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
+                                            parameters.segment + variant, index);
+    ClosureBuilder builder = builder_at(surface, next_random(random));
+    builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;
+    uint material = attributes[hit.triangle].material;
+    ShadingInstance instance = shading_instances[surface.instance];
+    bool unseen = parameters.path_kind == PATH_OF_CAMERA
+        && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
+    if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
+    hold_out_and_catch(surface, instance, unseen, builder);
+    let_light_pass(surface, instance, flags, unseen, materials[material].opaque_shadow != 0u, builder);
+    builder.closure.position = surface.position;
+    builder.closure.triangle = hit.triangle;
     builder.closure.material = material;
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
