@@ -47,10 +47,10 @@ class Emitters(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
-        self._mark = library.compute("emission/mark.comp")
-        self._find = library.compute("emission/emitters.comp")
-        self._tint_photons = library.compute("emission/tint_photons.comp")
-        self._tint_contributions = library.compute("emission/tint_contributions.comp")
+        self._mark = library.compute("lights/mark.comp")
+        self._find = library.compute("lights/emitters.comp")
+        self._tint_photons = library.compute("lights/tint_photons.comp")
+        self._tint_contributions = library.compute("lights/tint_contributions.comp")
         self.count = 0
         self.power = np.zeros(3)
         self.leaves = LIGHT_NODE.zeros(0)

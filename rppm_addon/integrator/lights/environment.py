@@ -47,7 +47,7 @@ _MAP = TextureKind((0, 1), "f4", repeats=(True, False))
 
 
 class Environment(BufferSet):
-    """The world for shaders/emission/environment.glsl; width 0 stands for a constant world.
+    """The world for shaders/lights/environment.glsl; width 0 stands for a constant world.
 
     ``radiance`` (3,) is that of a constant world, or 1 where textures give it; ``mean_radiance`` (3,) W/(m^2 sr).
     """

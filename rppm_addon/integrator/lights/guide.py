@@ -87,7 +87,7 @@ class Guide(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
-        self._program = library.compute("emission/learn.comp")
+        self._program = library.compute("lights/learn.comp")
         self._cells: list[tuple[int, ...]] = []
         self._probabilities: list[np.ndarray] = []
         self.learned: np.ndarray | None = None

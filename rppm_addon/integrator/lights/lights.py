@@ -74,7 +74,7 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
 
 
 class Lights(BufferSet):
-    """The lights of a scene: buffers for the shaders that include emission/lights.glsl."""
+    """The lights of a scene: buffers for the shaders that include lights/lights.glsl."""
 
     _lights = StorageBuffer("lights", LIGHT)
     emitters = Part(Emitters)

@@ -22,7 +22,7 @@ class PrimaryRays(CameraHits):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._rays = library.compute("gbuffer/rays.comp")
+        self._rays = library.compute("primary_rays/rays.comp")
 
     def raster(self, band: Band) -> CameraRaster | None:
         """None: first hits lie on no raster."""
