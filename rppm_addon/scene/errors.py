@@ -22,5 +22,9 @@ class DeviceError(RppmError):
     """The graphics device or its driver cannot do what is asked."""
 
 
+class DenoiserError(RppmError):
+    """There is no library that denoises, or it cannot be used."""
+
+
 class RendererError(RppmError):
     """The renderer's process has failed."""

@@ -116,6 +116,10 @@ FILM_PASSES = tuple(entry for entry in PASSES if entry.accumulation is not Accum
 """Those that iterations find."""
 DEEP_CUBEMAP = next(entry for entry in PASSES if entry.name == "Deep Cubemap")
 COMBINED = "Combined"
+NOISY_IMAGE = RenderPass("Noisy Image", "RGBA", PassKind.COLOR, Accumulation.MEAN)
+"""Combined before it was denoised: what comes with each denoised picture, and cannot be asked for by itself."""
+DENOISING_ALBEDO, DENOISING_NORMAL = "Denoising Albedo", "Denoising Normal"
+"""Passes that guide denoising."""
 
 
 def passes_named(names: Sequence[str]) -> tuple[RenderPass, ...]:

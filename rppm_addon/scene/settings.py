@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .errors import SettingsError
-from .passes import passes_named
+from .passes import DENOISING_ALBEDO, DENOISING_NORMAL, passes_named
 from .setting_info import setting, settings_of
 
 CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
@@ -51,6 +51,30 @@ class FirstPhotonHits(enum.Enum):
     """Point lights, spots and suns rasterize what they see, as in the paper."""
     TRACED = "TRACED"
     """Through the deep cubemap, like all later segments."""
+
+
+class DenoisingInputPasses(enum.Enum):
+    """What guides denoising. Names are Cycles'."""
+
+    RGB = "RGB"
+    RGB_ALBEDO = "RGB_ALBEDO"
+    RGB_ALBEDO_NORMAL = "RGB_ALBEDO_NORMAL"
+
+
+class DenoisingPrefilter(enum.Enum):
+    """What is done against noise in that which guides."""
+
+    NONE = "NONE"
+    FAST = "FAST"
+    ACCURATE = "ACCURATE"
+
+
+class DenoisingQuality(enum.Enum):
+    """What denoising may cost."""
+
+    HIGH = "HIGH"
+    BALANCED = "BALANCED"
+    FAST = "FAST"
 
 
 @dataclass
@@ -260,6 +284,53 @@ class RenderSettings:
         unit="pixels",
     )
     """As Cycles counts it."""
+    use_denoising: bool = setting(
+        False,
+        "Denoise",
+        "Take the noise out of the picture by Intel's Open Image Denoise once it is rendered; the picture with its "
+        "noise is kept as the pass Noisy Image",
+    )
+    denoising_input_passes: DenoisingInputPasses = setting(
+        DenoisingInputPasses.RGB_ALBEDO_NORMAL,
+        "Denoising Passes",
+        "Passes by which denoising tells noise from textures and edges",
+        choices={
+            DenoisingInputPasses.RGB: ("None", "The picture alone"),
+            DenoisingInputPasses.RGB_ALBEDO: ("Albedo", "Keep what is seen in the surfaces' colors"),
+            DenoisingInputPasses.RGB_ALBEDO_NORMAL: (
+                "Albedo and Normal",
+                "Keep what is seen in the surfaces' colors and normals",
+            ),
+        },
+    )
+    denoising_prefilter: DenoisingPrefilter = setting(
+        DenoisingPrefilter.ACCURATE,
+        "Denoising Prefilter",
+        "What is done against noise in the passes that guide denoising",
+        choices={
+            DenoisingPrefilter.NONE: ("None", "Nothing: for passes without noise"),
+            DenoisingPrefilter.FAST: ("Fast", "Denoise the picture and the passes together"),
+            DenoisingPrefilter.ACCURATE: ("Accurate", "Denoise the passes first: takes longest"),
+        },
+    )
+    denoising_quality: DenoisingQuality = setting(
+        DenoisingQuality.HIGH,
+        "Denoising Quality",
+        "Quality of denoising, and the time that it takes",
+        choices={
+            DenoisingQuality.HIGH: ("High", "Best quality"),
+            DenoisingQuality.BALANCED: ("Balanced", "Between quality and speed"),
+            DenoisingQuality.FAST: ("Fast", "Least time"),
+        },
+    )
+    denoising_start_sample: int = setting(
+        1,
+        "Denoising Start Sample",
+        "First sample of a viewport whose picture is denoised",
+        minimum=0,
+        maximum=1 << 24,
+        where="Sampling > Viewport > Denoise > Start Sample (scene.rppm.preview_denoising_start_sample)",
+    )
     film_transparent: bool = setting(
         False,
         "Transparent",
@@ -289,6 +360,22 @@ class RenderSettings:
             raise SettingsError(
                 f"cubemap_resolution is {resolution}; set it to 0 (automatic) or a power of two from 16 to 16384"
             )
+
+    @property
+    def denoising_features(self) -> tuple[str, ...]:
+        """The passes that guide denoising, by name; none where nothing is denoised."""
+        if not self.use_denoising:
+            return ()
+        return {
+            DenoisingInputPasses.RGB: (),
+            DenoisingInputPasses.RGB_ALBEDO: (DENOISING_ALBEDO,),
+            DenoisingInputPasses.RGB_ALBEDO_NORMAL: (DENOISING_ALBEDO, DENOISING_NORMAL),
+        }[self.denoising_input_passes]
+
+    @property
+    def film_passes(self) -> tuple[str, ...]:
+        """Names of the passes that are found: those asked for, and those that denoising needs."""
+        return tuple(dict.fromkeys((*self.passes, *self.denoising_features)))
 
     def photons_for(self, width: int, height: int) -> int:
         """Photons of an iteration that renders so many pixels. Where automatic, one a pixel within limits: those of
