@@ -18,9 +18,11 @@ from .commands.options import is_blend, load_blend_or_saved, split_values, write
 from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
 from .commands.rendering import render
+from .denoising.denoiser import Denoiser
+from .denoising.places import library_places
 from .pictures import PictureError, make_folder
 from .scene import RenderSettings
-from .scene.errors import RppmError, SettingsError
+from .scene.errors import DenoiserError, RppmError, SettingsError
 from .scene.quantities import count_text
 
 
@@ -136,7 +138,12 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     for name, value in device.limits.items():
         print(f"  {name} {value}")
     print("Missing  " + ("nothing" if not device.missing else "\n         ".join(device.missing)))
-    report: dict[str, object] = {"blender": blender, "device": dataclasses.asdict(device)}
+    try:
+        denoiser = Denoiser(library_places()).description
+    except DenoiserError as error:
+        denoiser = f"none: {error}"
+    print(f"Denoise  {denoiser}")
+    report: dict[str, object] = {"blender": blender, "device": dataclasses.asdict(device), "denoiser": denoiser}
     if options.scene is not None:
         from .commands.memory import memory_lines
         from .session.renderer import Renderer

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .scene.errors import RppmError
-from .scene.passes import PASSES
+from .scene.passes import NOISY_IMAGE, PASSES
 
 
 class PictureError(RppmError):
@@ -84,7 +84,7 @@ def write_exr(
 
 def _channels_of(layer: str, count: int) -> list[str]:
     """Names of a layer's channels: those of the pass of that name, or X, Y, Z, and Z where it is one."""
-    letters = {entry.name: entry.channels for entry in PASSES}.get(layer, "Z" if count == 1 else "XYZ")
+    letters = {entry.name: entry.channels for entry in (*PASSES, NOISY_IMAGE)}.get(layer, "Z" if count == 1 else "XYZ")
     return [f"{layer}.{letter}" for letter in letters]
 
 

@@ -55,7 +55,7 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
     def expected(settings: RenderSettings, width: int, height: int) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
         photons = settings.photons_for(width, height)
-        return expected_memory(width, height, photons, settings.photon_path_length, rasterized, settings.passes)
+        return expected_memory(width, height, photons, settings.photon_path_length, rasterized, settings.film_passes)
 
     scene_bytes = None
     if report is not None:

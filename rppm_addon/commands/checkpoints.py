@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..pictures import PictureError, Placement
 from ..scene import Camera, Scene
 from ..scene.errors import CheckpointError, SettingsError
-from ..scene.fingerprint import plain_settings, scene_digests
+from ..scene.fingerprint import AFTER_FILM, plain_settings, scene_digests
 
 if TYPE_CHECKING:
     from ..session.checkpoint_file import CheckpointSummary, StillRender
@@ -159,7 +159,7 @@ def refuse_differences(path: Path, mine: "StillRender", other: "StillRender", ot
     if members:
         names = ", ".join(name.replace("_", " ") for name in members)
         raise CheckpointError(f"{path} is of another scene than {others_name} (other {names}); {remedy}")
-    settings = _differing(mine.settings, other.settings)
+    settings = [name for name in _differing(mine.settings, other.settings) if name not in AFTER_FILM]
     if settings:
         differences = [f"{name} {mine.settings.get(name)} instead of {other.settings.get(name)}" for name in settings]
         more = f" and {len(differences) - _MOST_DIFFERENCES} more" if len(differences) > _MOST_DIFFERENCES else ""

@@ -9,10 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from ..denoising.denoiser import Denoiser
+from ..denoising.places import library_places
 from ..pictures import standard_view
 from ..scene.errors import CheckpointError
+from ..scene.fingerprint import settings_of_plain
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
 from ..session.continuation import Pause
+from ..session.denoised_pictures import finished_frame
 from ..session.merged_passes import MergedPasses
 from ..session.renderer import exposed, exposed_passes
 from ..session.results import Frame
@@ -35,6 +39,7 @@ class MergedStill:
     radius_meters: float
     parts: list[tuple[int, int, str]]
     """First iteration, the one after the last, and file of each part, in their order."""
+    warnings: list[str]
 
     def report(self) -> dict[str, object]:
         """What happened, for --json: plain values only."""
@@ -44,6 +49,7 @@ class MergedStill:
             "seconds": self.seconds,
             "devices": self.devices,
             "settings": self.render.settings,
+            "warnings": self.warnings,
             "parts": [{"first": first, "end": end, "file": file} for first, end, file in self.parts],
         }
 
@@ -68,7 +74,7 @@ class MergedStill:
 
 
 def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
-    """The mean of all iterations of the parts, each part one file.
+    """The mean of all iterations of the parts, each part one file, denoised where their settings say so.
 
     incomplete: iterations may be missing. Raises CheckpointError when a file is no part, when parts are of different
     stills or share iterations, and when iterations are missing.
@@ -89,7 +95,9 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     iterations = sum(summary.iteration - summary.left_out for summary in summaries)
     render = summaries[0].render
     combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
-    frame = Frame(combined, {**exposed_passes(passes.result(), render.exposure), **inspections})
+    settings, warnings = settings_of_plain(render.settings), list[str]()
+    merged = Frame(combined, {**exposed_passes(passes.result(), render.exposure), **inspections})
+    frame = finished_frame(merged, settings, Denoiser(library_places()), warnings)
     return MergedStill(
         frame,
         render,
@@ -99,6 +107,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
         sorted({summary.device for summary in summaries}),
         summaries[-1].radius_meters,
         [(summary.left_out, summary.iteration, str(path)) for summary, path in found],
+        warnings,
     )
 
 

@@ -4,6 +4,7 @@
 import dataclasses
 import hashlib
 import json
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,20 @@ from .documents import encode
 from .scene import Scene
 from .settings import RenderSettings
 
-UNSEEN = frozenset({"iterations", "time_limit", "iterations_per_frame", "density_estimation", "first_photon_hits"})
+UNSEEN = frozenset(
+    {
+        "iterations",
+        "time_limit",
+        "iterations_per_frame",
+        "density_estimation",
+        "first_photon_hits",
+        "denoising_start_sample",
+    }
+)
 """Settings that say when a render ends or is shown or by which way it comes to its picture, and nothing of what an
 iteration finds."""
+AFTER_FILM = frozenset({"denoising_prefilter", "denoising_quality"})
+"""Settings that say what becomes of a picture once all iterations are in it."""
 _NOT_RENDERED = frozenset({"settings", "warnings"})
 
 
@@ -43,3 +55,9 @@ def plain_settings(settings: RenderSettings) -> dict[str, Any]:
     """The settings that a picture depends on by name, as JSON has them."""
     values: Any = encode(settings, lambda array: array.tolist())
     return {name: value for name, value in values.items() if name not in UNSEEN}
+
+
+def settings_of_plain(values: Mapping[str, Any]) -> RenderSettings:
+    """The settings that plain_settings has made plain; those that it leaves out have their defaults. Raises
+    SettingsError for what it has not made."""
+    return RenderSettings().with_values(**values)

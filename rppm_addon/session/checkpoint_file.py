@@ -24,6 +24,7 @@ from ..integrator.common.photon_counts import PhotonCounts
 from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.errors import CheckpointError
+from ..scene.fingerprint import settings_of_plain
 from ..scene.passes import FILM_PASSES, passes_named
 from .continuation import Pause
 
@@ -133,7 +134,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
         def pairs(*names: str) -> np.ndarray:
             return np.stack([guide[name].reshape(-1) for name in names], axis=-1)
 
-        passes = passes_named(summary.render.settings["passes"])
+        passes = passes_named(settings_of_plain(summary.render.settings).film_passes)
         state = RenderState(
             summary.left_out,
             summary.iteration,

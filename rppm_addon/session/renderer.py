@@ -7,6 +7,8 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from ..denoising.denoiser import Denoiser
+from ..denoising.places import library_places
 from ..gl.context import Context, DeviceInformation
 from ..gl.programs import ProgramLibrary
 from ..integrator.memory import Memory
@@ -15,6 +17,7 @@ from ..integrator.stages.film import Film
 from ..scene.passes import DEEP_CUBEMAP, PASSES
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
+from .denoised_pictures import finished_frame, finished_result, wanted_frame
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
 from .time_limit import TimeLimit
 
@@ -191,7 +194,7 @@ class SlicedRender:
         return Progress(self.iterations, settings.iterations, self._elapsed, photons, settings.time_limit)
 
     def frame(self) -> Frame:
-        """The picture so far."""
+        """The picture so far, with its noise and all passes of the film."""
         if self._before is not None:
             return self._before.frame
         return read_frame(self._mapper.film, self._scene.exposure, self._inspections)
@@ -234,9 +237,13 @@ class SlicedRender:
 class Renderer:
     """Owns the GL context and the compiled programs; renders one scene after another."""
 
-    def __init__(self, device: str | None = None) -> None:
-        """Open the device (see Context.create). Raises DeviceError."""
+    def __init__(self, device: str | None = None, denoiser: Denoiser | None = None) -> None:
+        """Open the device (see Context.create). Raises DeviceError.
+
+        denoiser: None is one by the libraries that are found here.
+        """
         self._context = Context.create(device)
+        self._denoiser = denoiser or Denoiser(library_places())
         self._library = ProgramLibrary(self._context)
         self._mapper: ProgressivePhotonMapper | None = None
 
@@ -284,7 +291,17 @@ class Renderer:
     ) -> RenderResult:
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
-        render = SlicedRender(self._context, self._mapper, scene, on_progress, snapshots, on_snapshot, continuation)
+        late_warnings: list[str] = []
+
+        def report(progress: Progress, read: Callable[[], Frame]) -> None:
+            if on_progress is not None:
+                on_progress(progress, lambda: wanted_frame(read(), scene.settings))
+
+        def hand_out(seconds: float, frame: Frame) -> None:
+            if on_snapshot is not None:
+                on_snapshot(seconds, finished_frame(frame, scene.settings, self._denoiser, late_warnings))
+
+        render = SlicedRender(self._context, self._mapper, scene, report, snapshots, hand_out, continuation)
         stopped = False
         for _ in render.slices():
             may_stop = render.getting_ready or (render.between_iterations and render.iterations > 0)
@@ -292,7 +309,7 @@ class Renderer:
             if stopped:
                 break
         render.keep()
-        return render.result(stopped)
+        return finished_result(render.result(stopped), scene.settings, self._denoiser)
 
     def compile(self, scene: Scene, on_program: Callable[[int, int], None]) -> int:
         """Have the driver compile the programs that pictures of a scene need, and keep them on the disk.

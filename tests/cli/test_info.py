@@ -39,7 +39,8 @@ def test_options_of_a_scene_need_one(rppm):
 
 
 def test_the_device_alone_as_json(tmp_path, rppm):
-    status, _, errors = rppm("info", "--json", tmp_path / "info.json")
+    status, output, errors = rppm("info", "--json", tmp_path / "info.json")
     assert status == 0, errors
     told = json.loads((tmp_path / "info.json").read_text())
-    assert set(told) == {"blender", "device"} and told["device"]["limits"]
+    assert set(told) == {"blender", "device", "denoiser"} and told["device"]["limits"]
+    assert f"Denoise  {told['denoiser']}\n" in output

@@ -34,7 +34,7 @@ class StageSizes:
             height,
             scene.photon_count,
             scene.settings.photon_path_length,
-            passes_named(scene.settings.passes),
+            passes_named(scene.settings.film_passes),
             any(instance.shadow_catcher for instance in scene.instances),
             is_rasterized(scene.camera),
         )

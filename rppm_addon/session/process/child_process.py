@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import BinaryIO
 
+from ...denoising.places import LibraryPlace
 from ...scene.scene import Scene
 from .arrays import pack
 from .protocol import VERSION, frame_message, read_message
@@ -31,8 +32,11 @@ class ProcessEnded(Exception):
 class ChildProcess:
     """One started process. Messages are sent by one thread and read by another; any thread may kill it."""
 
-    def __init__(self, python: Sequence[str], folders: Sequence[str], log_path: Path) -> None:
-        """Start ``python`` (a program and its options) and greet it. Raises OSError when it cannot be started."""
+    def __init__(
+        self, python: Sequence[str], folders: Sequence[str], log_path: Path, denoisers: Sequence[LibraryPlace] = ()
+    ) -> None:
+        """Start ``python`` (a program and its options) and greet it; arguments as RendererProcess's. Raises OSError
+        when it cannot be started."""
         with _opened(log_path) as log:
             self._process = subprocess.Popen(
                 [*python, str(_BOOTSTRAP)],
@@ -43,6 +47,7 @@ class ChildProcess:
             )
         self.pid = self._process.pid
         self._folders = list(folders)
+        self._denoisers = [(place.source.name, str(place.path)) for place in denoisers]
         self._scenes = SceneSender()
         self._blocks: dict[tuple[int, int], list[SharedBlock]] = {}
         self._killed = False
@@ -52,7 +57,7 @@ class ChildProcess:
 
     def greet(self) -> None:
         """Say who is there; the process answers when it has opened the device."""
-        self.send("hello", version=VERSION, path=self._folders)
+        self.send("hello", version=VERSION, path=self._folders, denoisers=self._denoisers)
 
     def send(self, kind: str, **content: object) -> None:
         """Send a message. Raises ProcessEnded when the process has gone."""

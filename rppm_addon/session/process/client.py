@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...denoising.places import LibraryPlace
 from ...gl.context import DeviceInformation
 from .child_process import ChildProcess
 from .client_session import RenderSession, Session, ViewportSession
@@ -59,7 +60,12 @@ class RendererProcess:
     """
 
     def __init__(
-        self, python: Sequence[str], folders: Sequence[str], log_path: Path, timeouts: Timeouts | None = None
+        self,
+        python: Sequence[str],
+        folders: Sequence[str],
+        log_path: Path,
+        timeouts: Timeouts | None = None,
+        denoisers: Sequence[LibraryPlace] = (),
     ) -> None:
         """No process is started yet.
 
@@ -68,6 +74,7 @@ class RendererProcess:
             folders: where that Python finds NumPy and moderngl, if not by itself.
             log_path: the file that takes what the process logs; earlier contents are dropped.
             timeouts: how long to wait for what.
+            denoisers: libraries in the order in which they are tried.
         """
         self.state = ProcessState.STOPPED
         self.error = ""
@@ -79,6 +86,8 @@ class RendererProcess:
         self._python = list(python)
         self._folders = list(folders)
         self._timeouts = timeouts or Timeouts()
+        self.denoisers = list(denoisers)
+        """What the next process that is started is told of."""
         self.sessions: dict[int, Session] = {}
         self._numbers = 0
         self.outbox: collections.deque[tuple[str, dict]] = collections.deque()
@@ -206,7 +215,7 @@ class RendererProcess:
     def _run_process(self) -> tuple[str, bool]:
         """Start a process and see to it until it ends: why it did, and whether another one may do better."""
         try:
-            child = ChildProcess(self._python, self._folders, self.log_path)
+            child = ChildProcess(self._python, self._folders, self.log_path, self.denoisers)
         except OSError as error:
             return f"The renderer process cannot be started ({error})", False
         with self.changed:

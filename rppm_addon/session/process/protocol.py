@@ -40,7 +40,7 @@ import json
 import struct
 from typing import BinaryIO
 
-VERSION = 3
+VERSION = 4
 LONGEST_MESSAGE = 1 << 28
 _LENGTH = struct.Struct("<I")
 

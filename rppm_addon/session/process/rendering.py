@@ -5,11 +5,13 @@ import collections
 import dataclasses
 from collections.abc import Callable, Iterator, Sequence
 
+from ...denoising.denoiser import Denoiser
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...scene.errors import RppmError
 from ...scene.scene import Scene
+from ..denoised_pictures import finished_frame, finished_result, wanted_frame
 from ..renderer import SlicedRender, log
 from ..results import Frame
 from .arrays import pack
@@ -22,9 +24,12 @@ class Rendering:
     What the next scene shares with it stays on the device.
     """
 
-    def __init__(self, context: Context, library: ProgramLibrary, send: Callable[..., None]) -> None:
+    def __init__(
+        self, context: Context, library: ProgramLibrary, denoiser: Denoiser, send: Callable[..., None]
+    ) -> None:
         self._context = context
         self._library = library
+        self._denoiser = denoiser
         self._send = send
         self._snapshots: Sequence[float] = ()
         self._scene: Scene | None = None
@@ -92,15 +97,20 @@ class Rendering:
             self._scene,
             on_progress=lambda progress, _: self._send("progress", progress=dataclasses.asdict(progress)),
             snapshots=self._snapshots,
-            on_snapshot=lambda seconds, frame: self._send_frame("snapshot", frame, seconds=seconds),
+            on_snapshot=self._send_snapshot,
         )
         self._slices = self._render.slices()
+
+    def _send_snapshot(self, seconds: float, frame: Frame) -> None:
+        finished = finished_frame(frame, self._scene.settings, self._denoiser, self._scene.warnings)
+        self._send_frame("snapshot", finished, seconds=seconds)
 
     def _send_wanted_picture(self) -> None:
         render = self._render
         if self._picture_wanted and render.between_iterations and render.iterations > 0:
             self._picture_wanted = False
-            self._send_frame("picture", render.frame(), progress=dataclasses.asdict(render.progress))
+            frame = wanted_frame(render.frame(), self._scene.settings)
+            self._send_frame("picture", frame, progress=dataclasses.asdict(render.progress))
 
     def _send_frame(self, kind: str, frame: Frame, **content: object) -> None:
         description, block = pack([frame.combined, *frame.passes.values()])
@@ -109,7 +119,7 @@ class Rendering:
         self._send(kind, arrays=description, passes=list(frame.passes), **content)
 
     def _end(self) -> None:
-        result = self._render.result(self._stopping)
+        result = finished_result(self._render.result(self._stopping), self._scene.settings, self._denoiser)
         self._scene = self._slices = None
         self._send_frame("result", result.frame, statistics=result.statistics.as_dict(), stopped=result.stopped)
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...denoising.denoiser import Denoiser
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
@@ -39,9 +40,9 @@ Send = Callable[..., None]
 def shown_picture(film: Film, scene: Scene) -> np.ndarray:
     """(height, width, 4) float32: Combined, or where the scene's settings name a single pass, that as colors, a
     value as gray."""
-    if len(film.passes) != 1:
+    if len(scene.settings.passes) != 1:
         return read_combined(film, scene.exposure)
-    (values,) = exposed_passes(film.read_passes(), scene.exposure).values()
+    values = exposed_passes(film.read_passes(), scene.exposure)[scene.settings.passes[0]]
     planes = np.atleast_3d(values)
     shown = np.zeros((*planes.shape[:2], 4), np.float32)
     shown[..., : planes.shape[2]] = planes
@@ -54,9 +55,10 @@ def shown_picture(film: Film, scene: Scene) -> np.ndarray:
 class Viewing:
     """Renders the newest scene that it was shown, slice by slice, and gives frames out."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, send: Send) -> None:
+    def __init__(self, context: Context, library: ProgramLibrary, denoiser: Denoiser, send: Send) -> None:
         self._context = context
         self._library = library
+        self._denoiser = denoiser
         self._send = send
         self._frames = FrameWriter()
         self._mapper: ProgressivePhotonMapper | None = None

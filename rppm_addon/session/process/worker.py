@@ -9,8 +9,11 @@ import queue
 import threading
 import time
 from dataclasses import asdict
+from pathlib import Path
 from typing import BinaryIO
 
+from ...denoising.denoiser import Denoiser
+from ...denoising.places import LibraryPlace, Source
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.errors import RppmError
@@ -43,15 +46,17 @@ def work(hello: dict, reader: BinaryIO, writer: BinaryIO) -> int:
         return 1
     write_message(writer, "ready", version=VERSION, device=asdict(context.information))
     with contextlib.suppress(BrokenPipeError):
-        Worker(context, reader, writer).run()
+        places = [LibraryPlace(Source[source], Path(path)) for source, path in hello["denoisers"]]
+        Worker(context, Denoiser(places), reader, writer).run()
     return 0
 
 
 class Worker:
     """Reads messages in a thread of its own, renders in this one."""
 
-    def __init__(self, context: Context, reader: BinaryIO, writer: BinaryIO) -> None:
+    def __init__(self, context: Context, denoiser: Denoiser, reader: BinaryIO, writer: BinaryIO) -> None:
         self._context = context
+        self._denoiser = denoiser
         self._library = ProgramLibrary(context)
         self._reader = reader
         self._writer = writer
@@ -133,7 +138,7 @@ class Worker:
             session_kind = SessionKind[message["session_kind"]]
             serve = Viewing if session_kind is SessionKind.VIEWPORT else Rendering
             send = functools.partial(self._send, session=number)
-            self._sessions[number] = session_kind, serve(self._context, self._library, send)
+            self._sessions[number] = session_kind, serve(self._context, self._library, self._denoiser, send)
         elif kind == "close":
             self._close(number)
         elif kind in _FOR_SESSIONS:
