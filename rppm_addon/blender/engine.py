@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..scene.passes import COMBINED
+from ..scene.passes import COMBINED, NOISY_IMAGE
 from . import viewport
 from .export.passes import passes_of_layer
 from .final import render_final
@@ -27,7 +27,8 @@ class RppmRenderEngine(bpy.types.RenderEngine):
     def update_render_passes(self, scene: bpy.types.Scene, renderlayer: bpy.types.ViewLayer) -> None:
         """Tell Blender of the passes that a render will have."""
         self.register_pass(scene, renderlayer, COMBINED, 4, "RGBA", "COLOR")
-        for entry in passes_of_layer(renderlayer):
+        noisy = (NOISY_IMAGE,) if scene.rppm.use_denoising else ()
+        for entry in (*noisy, *passes_of_layer(renderlayer)):
             self.register_pass(scene, renderlayer, entry.name, len(entry.channels), entry.channels, entry.kind.value)
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ..denoising.places import REMEDY
 from ..scene.quantities import bytes_text
 from ..session.process.client import ProcessState
 from . import renderer_process
+from .denoising_libraries import denoising_libraries, root_package
 from .panels.base import letters_across, paragraph, reading
 
 if TYPE_CHECKING:
@@ -32,11 +34,6 @@ _LIMITS = {
 }
 
 
-def root_package() -> str:
-    """The name under which Blender knows the extension: bl_ext.REPOSITORY.rppm, or rppm_addon from source."""
-    return __package__.rpartition(".rppm_addon")[0] or "rppm_addon"
-
-
 def missing() -> list[str]:
     """What keeps RPPM from rendering here, a line each with the remedy."""
     problems = []
@@ -55,6 +52,16 @@ class RppmPreferences(bpy.types.AddonPreferences):
     """What holds for all files of a user."""
 
     bl_idname = root_package()
+
+    denoiser_path: bpy.props.StringProperty(
+        name="Denoiser",
+        description=(
+            "The file of an Open Image Denoise library of version 2, for a Blender that brings none and where the "
+            "package pyoidn is not installed"
+        ),
+        subtype="FILE_PATH",
+        update=lambda _owner, _context: renderer_process.libraries_changed(),
+    )
 
     def draw(self, context: bpy.types.Context) -> None:
         """Called by Blender."""
@@ -77,9 +84,20 @@ class RppmPreferences(bpy.types.AddonPreferences):
         chosen = os.environ.get("RPPM_DEVICE")
         if chosen:
             reading(layout, "Chosen Device", f"{chosen}, by the environment variable RPPM_DEVICE")
+        self._draw_denoiser(context)
         row = layout.row()
         row.label(text=f"Log: {process.log_path}")
         row.operator("rppm.open_log", text="Open", icon="TEXT")
+
+    def _draw_denoiser(self, context: bpy.types.Context) -> None:
+        column = self.layout.column(align=True)
+        libraries = denoising_libraries()
+        if libraries:
+            used = libraries[0]
+            reading(column, "Open Image Denoise", f"of {used.source.value}: {used.path}")
+        else:
+            paragraph(column, f"Open Image Denoise is not there: {REMEDY}", letters_across(context), icon="INFO")
+        column.prop(self, "denoiser_path", text="Denoiser")
 
     def _draw_device(self, device: "DeviceInformation") -> None:
         column = self.layout.column(align=True)

@@ -14,12 +14,18 @@ from bpy import props
 from ..scene import RenderSettings
 from ..scene.passes import COMBINED, FILM_PASSES, PASSES
 from ..scene.setting_info import SettingInfo, settings_of
-from ..scene.settings import MOST_PHOTONS
+from ..scene.settings import MOST_PHOTONS, DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
 
 
 def _edited(owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Does nothing, but that there is it makes Blender take what scripts and presets set for edits, as it takes what
     users set: the data block is evaluated again and the window is drawn."""
+
+
+def _passes_edited(owner: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """There is a pass more or less, which the compositor's nodes have sockets for."""
+    for layer in owner.id_data.view_layers:
+        layer.update_render_passes()
 
 
 BoolProperty = functools.partial(props.BoolProperty, update=_edited)
@@ -29,11 +35,21 @@ IntProperty = functools.partial(props.IntProperty, update=_edited)
 PointerProperty = functools.partial(props.PointerProperty, update=_edited)
 
 DEFAULTS = RenderSettings()
+_INFOS = settings_of(RenderSettings)
 
 VIEWPORT_PHOTONS = 1 << 14
 """In the viewport a quick first picture counts for more than how good it is."""
 VIEWPORT_ITERATIONS = 4 * DEFAULTS.iterations
 """A viewport at rest goes on for longer, as its iterations have fewer photons."""
+
+VIEWPORT_DENOISING = {
+    "use_denoising": False,
+    "denoising_input_passes": DenoisingInputPasses.RGB_ALBEDO,
+    "denoising_prefilter": DenoisingPrefilter.FAST,
+    "denoising_quality": DenoisingQuality.BALANCED,
+    "denoising_start_sample": DEFAULTS.denoising_start_sample,
+}
+"""What viewports have apart, by field of RenderSettings, with their defaults: Cycles'."""
 
 _UNITS = {
     "": {},
@@ -42,6 +58,11 @@ _UNITS = {
     "pixels": {"subtype": "PIXEL"},
     "fraction": {"subtype": "FACTOR"},
 }
+
+
+def viewport_property(name: str) -> str:
+    """The property of scene.rppm by which viewports have the field ``name`` apart, named as Cycles names them."""
+    return "use_preview_" + name.removeprefix("use_") if name.startswith("use_") else f"preview_{name}"
 
 
 def setting_property(info: SettingInfo, default: object) -> object:
@@ -69,7 +90,7 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
 
     __annotations__ = {
         info.property_of(name): setting_property(info, getattr(DEFAULTS, name))
-        for name, info in settings_of(RenderSettings).items()
+        for name, info in _INFOS.items()
         if not info.where
     } | {
         "preview_samples": IntProperty(
@@ -90,6 +111,16 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
             max=MOST_PHOTONS,
             step=1024,
         ),
+        "use_denoising": BoolProperty(
+            name=_INFOS["use_denoising"].label,
+            description=_INFOS["use_denoising"].description,
+            default=DEFAULTS.use_denoising,
+            update=_passes_edited,
+        ),
+        **{
+            viewport_property(name): setting_property(_INFOS[name], default)
+            for name, default in VIEWPORT_DENOISING.items()
+        },
         "preview_pause": BoolProperty(
             name="Pause Preview",
             description="Hold the picture of all rendered viewports and leave the graphics device alone",

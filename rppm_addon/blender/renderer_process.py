@@ -15,6 +15,7 @@ from ..session.process.client import ProcessState, RendererProcess
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
 from ..session.results import RenderResult
+from .denoising_libraries import denoising_libraries
 
 _EXTENSIONS = "bl_ext"
 _process: RendererProcess | None = None
@@ -29,7 +30,8 @@ def renderer_process() -> RendererProcess:
     with _lock:
         if _process is None:
             folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
-            _process = RendererProcess([python_program(), *bpy.app.python_args], folders, log_path())
+            python = [python_program(), *bpy.app.python_args]
+            _process = RendererProcess(python, folders, log_path(), denoisers=denoising_libraries())
         return _process
 
 
@@ -59,6 +61,14 @@ def forget() -> None:
     """Have the process give back what final renders have left there."""
     if _final is not None:
         _final.forget()
+
+
+def libraries_changed() -> None:
+    """Another library may be there to denoise with: a process that runs is started anew with it."""
+    if _process is not None:
+        _process.denoisers = denoising_libraries()
+        if _process.state is ProcessState.RUNNING:
+            _process.restart()
 
 
 def close() -> None:

@@ -16,8 +16,10 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from ..denoising.denoiser import Denoiser
 from ..scene import Scene
 from ..session.render_job import POLL_SECONDS, RenderJob
+from .denoising_libraries import denoising_libraries
 
 if TYPE_CHECKING:
     from ..session.renderer import Frame, Progress, RenderResult
@@ -30,6 +32,7 @@ class _Conversation:
 
     def __init__(self, scene: Scene, job: RenderJob) -> None:
         self.scene = scene
+        self.libraries = denoising_libraries()
         self.job = job
         self.stop = threading.Event()
         self._questions: queue.SimpleQueue = queue.SimpleQueue()
@@ -132,7 +135,7 @@ class RendererThread:
                 if renderer is None:
                     from ..session.renderer import Renderer
 
-                    renderer = Renderer()
+                    renderer = Renderer(denoiser=Denoiser(conversation.libraries))
                 result = context.run(_render, renderer, conversation)
             except BaseException as raised:
                 error = raised

@@ -10,8 +10,10 @@ def test_from_cycles_and_back(scene):
     cycles, own = scene.cycles, scene.rppm
     cycles.samples, cycles.preview_samples, cycles.time_limit = 300, 40, 12.5
     cycles.seed, cycles.use_animated_seed, cycles.filter_width, cycles.max_bounces = 9, True, 2.0, 5
+    cycles.use_denoising, cycles.denoising_quality, cycles.preview_denoising_start_sample = True, "FAST", 7
     assert bpy.ops.rppm.copy_from_cycles() == {"FINISHED"}
-    assert [getattr(own, name) for name in SHARED] == [300, 40, 12.5, 9, True, 2.0, 5]
+    assert [getattr(own, name) for name in list(SHARED)[:7]] == [300, 40, 12.5, 9, True, 2.0, 5]
+    assert (own.use_denoising, own.denoising_quality, own.preview_denoising_start_sample) == (True, "FAST", 7)
     assert own.max_photon_bounces == 5
     for name, value in {"samples": 7, "seed": 3, "max_camera_bounces": 2, "use_animated_seed": False}.items():
         setattr(own, name, value)

@@ -226,7 +226,7 @@ def test_no_camera_is_an_error(lit):
 
 
 def test_a_device_error_is_shown(lit, monkeypatch):
-    def fail(self, device=None):
+    def fail(self, device=None, denoiser=None):
         raise DeviceError("no OpenGL 4.3 here; install a driver")
 
     renderer_thread.release()
@@ -292,9 +292,9 @@ def test_animation_keeps_the_renderer(lit, tmp_path, monkeypatch):
     made = []
     original = session_renderer.Renderer.__init__
 
-    def count(self, device=None):
+    def count(self, device=None, denoiser=None):
         made.append(True)
-        original(self, device)
+        original(self, device, denoiser)
 
     renderer_thread.release()
     monkeypatch.setattr(session_renderer.Renderer, "__init__", count)

@@ -8,12 +8,21 @@ import pytest
 from blender_scenes import add_light, export
 
 from rppm_addon.blender.export.settings import export_settings
+from rppm_addon.blender.properties import VIEWPORT_DENOISING, viewport_property
 from rppm_addon.scene import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
 from rppm_addon.scene.setting_info import settings_of
 
-ELSEWHERE = {"film_transparent", "passes"}  # properties that Blender itself has
+# properties that Blender itself has, and what viewports alone have
+ELSEWHERE = {"film_transparent", "passes", "denoising_start_sample"}
 # what makes the seed another one, an object of Blender's, exported as a point, and what viewports have apart
-BESIDES = {"use_animated_seed", "cubemap_center_object", "preview_samples", "preview_photons", "preview_pause"}
+BESIDES = {
+    "use_animated_seed",
+    "cubemap_center_object",
+    "preview_samples",
+    "preview_photons",
+    "preview_pause",
+    *(viewport_property(name) for name in VIEWPORT_DENOISING),
+}
 
 
 def test_properties_are_the_settings_with_their_defaults(scene):
@@ -67,7 +76,21 @@ def test_a_viewport_has_settings_of_its_own(scene):
     assert viewport.passes == () and {"Depth", "Deep Cubemap"} <= set(final.passes)
     assert (final.iterations, final.photons, final.time_limit) == (default.iterations, default.photons, 5.0)
     differing = {f.name for f in dataclasses.fields(final) if getattr(final, f.name) != getattr(viewport, f.name)}
-    assert differing == {"iterations", "photons", "time_limit", "passes"}
+    denoising = {"denoising_input_passes", "denoising_prefilter", "denoising_quality"}
+    assert differing == {"iterations", "photons", "time_limit", "passes"} | denoising
+
+
+def test_a_viewport_is_denoised_as_cycles_does_it(scene):
+    names = {"use_preview_denoising", *(f"preview_{name}" for name in VIEWPORT_DENOISING if "use" not in name)}
+    assert names == {viewport_property(name) for name in VIEWPORT_DENOISING} <= {*dir(scene.cycles)}
+    for name in names - {"use_preview_denoising"}:
+        assert getattr(scene.rppm, name) == getattr(scene.cycles, name), name
+    scene.rppm.use_preview_denoising, scene.rppm.preview_denoising_start_sample = True, 5
+    scene.rppm.preview_denoising_quality, scene.rppm.denoising_quality = "FAST", "BALANCED"
+    viewport, final = export_settings(scene, viewport=True), export_settings(scene)
+    assert (viewport.use_denoising, viewport.denoising_start_sample) == (True, 5) and not final.use_denoising
+    assert (viewport.denoising_quality.name, final.denoising_quality.name) == ("FAST", "BALANCED")
+    assert not export_settings(scene, viewport=True, shown_pass="Depth").use_denoising
 
 
 def test_what_scripts_and_presets_set_is_exported(scene):

@@ -15,7 +15,7 @@ from rppm_addon.session.renderer import Progress
 class FakeRenderer:
     made = []
 
-    def __init__(self, device=None):
+    def __init__(self, device=None, denoiser=None):
         self.threads = [threading.current_thread()]
         self.released = False
         FakeRenderer.made.append(self)

@@ -9,6 +9,7 @@ import numpy as np
 from ...scene import RenderSettings
 from ...scene.passes import COMBINED
 from ...scene.setting_info import settings_of
+from ..properties import VIEWPORT_DENOISING, viewport_property
 from .passes import passes_of_layer
 
 
@@ -37,8 +38,11 @@ def export_settings(
             settings.seed = seed_of_frame(stored.seed, scene.frame_current)
         if viewport:
             settings.iterations, settings.photons = stored.preview_samples, stored.preview_photons
+            apart = {name: getattr(stored, viewport_property(name)) for name in VIEWPORT_DENOISING}
+            settings = settings.with_values(**apart)
     if viewport:
         settings.time_limit = 0.0
+        settings.use_denoising &= shown_pass == COMBINED
     return settings
 
 

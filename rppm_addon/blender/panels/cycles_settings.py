@@ -13,6 +13,12 @@ SHARED = {
     "use_animated_seed": "use_animated_seed",
     "filter_width": "filter_width",
     "max_camera_bounces": "max_bounces",
+    **{
+        name: name
+        for what in ("use_{}denoising", "{}denoising_input_passes", "{}denoising_prefilter", "{}denoising_quality")
+        for name in (what.format(""), what.format("preview_"))
+    },
+    "preview_denoising_start_sample": "preview_denoising_start_sample",
 }
 """RPPM's properties and Cycles' that stand for the same; exposure and transparent film are one property for both."""
 _FILTER = "BLACKMAN_HARRIS"
@@ -40,7 +46,7 @@ class _CopySettings(bpy.types.Operator):
 
 
 class RPPM_OT_copy_from_cycles(_CopySettings):
-    """Take samples, bounces, time limit, seed and filter width from Cycles' settings"""
+    """Take samples, denoising, bounces, time limit, seed and filter width from Cycles' settings"""
 
     bl_idname = "rppm.copy_from_cycles"
     bl_label = "Copy from Cycles"
@@ -56,7 +62,7 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
 
 
 class RPPM_OT_copy_to_cycles(_CopySettings):
-    """Give Cycles the samples, bounces, time limit, seed and pixel filter of these settings"""
+    """Give Cycles the samples, denoising, bounces, time limit, seed and pixel filter of these settings"""
 
     bl_idname = "rppm.copy_to_cycles"
     bl_label = "Copy to Cycles"

@@ -3,9 +3,11 @@
 
 import bpy
 
+from ...denoising.places import REMEDY
 from ...scene.quantities import count_text
+from ..denoising_libraries import denoising_libraries
 from ..export.settings import export_settings
-from .base import RppmPanel, rendered_size
+from .base import RppmPanel, letters_across, paragraph, rendered_size
 from .cycles_settings import RPPM_OT_copy_from_cycles, RPPM_OT_copy_to_cycles
 from .presets import RPPM_PT_presets
 from .switches import draw_setting
@@ -53,6 +55,38 @@ class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
         draw_setting(column, context.scene, "time_limit", "Time Limit")
 
 
+class _DenoisePanel(RppmPanel):
+    """Denoising of viewports or of final renders, laid out as Cycles' panels are."""
+
+    bl_label = "Denoise"
+    bl_options = {"DEFAULT_CLOSED"}
+    prefix = ""
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.prop(context.scene.rppm, f"use_{self.prefix}denoising", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        if not denoising_libraries():
+            paragraph(self.layout, f"Open Image Denoise is not there: {REMEDY}", letters_across(context), icon="ERROR")
+        column = self.column()
+        column.active = getattr(settings, f"use_{self.prefix}denoising")
+        column.prop(settings, f"{self.prefix}denoising_input_passes", text="Passes")
+        column.prop(settings, f"{self.prefix}denoising_prefilter", text="Prefilter")
+        column.prop(settings, f"{self.prefix}denoising_quality", text="Quality")
+        if self.prefix:
+            column.prop(settings, f"{self.prefix}denoising_start_sample", text="Start Sample")
+
+
+class RPPM_PT_sampling_viewport_denoise(_DenoisePanel, bpy.types.Panel):
+    bl_parent_id = "RPPM_PT_sampling_viewport"
+    prefix = "preview_"
+
+
+class RPPM_PT_sampling_final_denoise(_DenoisePanel, bpy.types.Panel):
+    bl_parent_id = "RPPM_PT_sampling_final"
+
+
 class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
     bl_label = "Advanced"
     bl_parent_id = "RPPM_PT_sampling"
@@ -69,4 +103,11 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         column.prop(settings, "use_splat_roulette")
 
 
-CLASSES = (RPPM_PT_sampling, RPPM_PT_sampling_viewport, RPPM_PT_sampling_final, RPPM_PT_advanced)
+CLASSES = (
+    RPPM_PT_sampling,
+    RPPM_PT_sampling_viewport,
+    RPPM_PT_sampling_viewport_denoise,
+    RPPM_PT_sampling_final,
+    RPPM_PT_sampling_final_denoise,
+    RPPM_PT_advanced,
+)
