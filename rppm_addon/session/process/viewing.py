@@ -13,9 +13,10 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
-from ...scene.errors import RppmError
+from ...scene.errors import DenoiserError, RppmError
 from ...scene.scene import Scene
 from ..renderer import exposed_passes, log, read_combined
+from .background_denoising import BackgroundDenoising
 from .frames import FrameWriter
 from .sessions import SessionStatus
 from .sharpness import Sharpness, at_level
@@ -32,6 +33,9 @@ BRIGHTEST = 65000.0
 
 FRAME_SECONDS = 1.0 / 60.0
 """Pictures that follow each other faster are not given out: nobody would see them, and reading them costs time."""
+
+DENOISING_POLL_SECONDS = 0.02
+"""Between two looks at a picture that is being denoised, when there is nothing else to do."""
 
 Send = Callable[..., None]
 """send(kind, **content): a message to Blender about this session."""
@@ -58,7 +62,13 @@ class Viewing:
     def __init__(self, context: Context, library: ProgramLibrary, denoiser: Denoiser, send: Send) -> None:
         self._context = context
         self._library = library
-        self._denoiser = denoiser
+        self._denoising = BackgroundDenoising(denoiser)
+        self._pictures = 0
+        """Series of pictures of one scene and resolution so far: each has a number."""
+        self._denoised = 0
+        """The series of which a denoised picture was given out last."""
+        self._left_noisy = 0
+        """The series that could not be denoised."""
         self._send = send
         self._frames = FrameWriter()
         self._mapper: ProgressivePhotonMapper | None = None
@@ -116,6 +126,7 @@ class Viewing:
         mapper, settings = self._mapper, scene.settings
         mapper.update(at_level(scene, level), center_tolerance=math.inf if level < 1.0 else 0.0)
         built = time.perf_counter()
+        self._pictures += 1
         yield
         while mapper.iteration < settings.iterations:
             yield from mapper.steps()
@@ -124,10 +135,13 @@ class Viewing:
             at_once = last or self._first_picture_pending or now - self._given_out_at >= FRAME_SECONDS
             if last or (at_once and mapper.iteration % settings.iterations_per_frame == 0):
                 self._given_out_at = now
-                self._give_out(scene, generation)
+                self._show_picture(scene, generation)
                 if self._first_picture_pending:
                     self._sharpness.measure(mapper.film.width * mapper.film.height, now - started)
                     self._first_picture_pending = False
+            self._show_denoised(scene, generation)
+            if last:
+                yield from self._finish_denoising(scene, generation)
             self._tell(
                 SessionStatus(
                     generation=generation,
@@ -152,9 +166,64 @@ class Viewing:
             if level < 1.0 and at_rest and not self._first_picture_pending:
                 return
 
-    def _give_out(self, scene: Scene, generation: int) -> None:
-        """Write the picture so far to a slot."""
-        combined = shown_picture(self._mapper.film, scene)
+    def _is_denoised(self, scene: Scene) -> bool:
+        """Whether the picture so far is to be denoised."""
+        settings = scene.settings
+        starts = settings.use_denoising and self._mapper.iteration >= settings.denoising_start_sample
+        return starts and self._left_noisy != self._pictures
+
+    def _show_picture(self, scene: Scene, generation: int) -> None:
+        """Give the picture so far out, or have it denoised. Until there is a denoised picture, noisy ones are shown,
+        so that none is waited for; from then on, only denoised ones."""
+        denoise = self._is_denoised(scene) and self._denoising.is_due
+        show = self._denoised != self._pictures
+        if denoise or show:
+            combined = shown_picture(self._mapper.film, scene)
+            if denoise:
+                self._start_denoising(combined, scene)
+            if show:
+                self._give_out(combined.copy(), scene, generation)
+
+    def _start_denoising(self, combined: np.ndarray, scene: Scene) -> None:
+        key = self._pictures, self._mapper.iteration
+        try:
+            self._denoising.start(key, combined, self._mapper.film.read_passes(), scene.settings)
+        except DenoiserError as error:
+            self._leave_noisy(error)
+
+    def _show_denoised(self, scene: Scene, generation: int, seconds: float = 0.0) -> int:
+        """Give out what has been denoised within so many seconds, if it is of this series; returns its iteration."""
+        try:
+            found = self._denoising.take(seconds)
+        except DenoiserError as error:
+            self._leave_noisy(error)
+            return 0
+        if found is None or found[0][0] != self._pictures:
+            return 0
+        (_, iteration), combined = found
+        self._give_out(combined, scene, generation)
+        self._denoised = self._pictures
+        return iteration
+
+    def _finish_denoising(self, scene: Scene, generation: int) -> Iterator[None]:
+        """See to it that the last picture is denoised."""
+        iteration = 0
+        while self._is_denoised(scene) and iteration < self._mapper.iteration:
+            if self._denoising.is_idle:
+                self._start_denoising(shown_picture(self._mapper.film, scene), scene)
+            yield
+            iteration = max(iteration, self._show_denoised(scene, generation, DENOISING_POLL_SECONDS))
+
+    def _leave_noisy(self, error: DenoiserError) -> None:
+        """Go on without denoising, and say so."""
+        self._left_noisy = self._pictures
+        self._denoised = 0
+        warnings, text = self._mapper.scene.warnings, f"the viewport is not denoised: {error}"
+        if text not in warnings:
+            warnings.append(text)
+
+    def _give_out(self, combined: np.ndarray, scene: Scene, generation: int) -> None:
+        """Write a picture, which is changed, to a slot."""
         # Done here, where no window waits for it.
         np.nan_to_num(combined, copy=False, nan=0.0, posinf=BRIGHTEST, neginf=0.0)
         np.minimum(combined, BRIGHTEST, out=combined)
@@ -187,4 +256,5 @@ class Viewing:
     def release(self) -> None:
         """Give memory and frames back."""
         self._release_mapper()
+        self._denoising.release()
         self._frames.release()
