@@ -26,6 +26,13 @@ METHODS = {
     method.name: method
     for method in (
         Method(OWN, "RPPM", "rppm", why="the defaults of the add-on"),
+        Method(
+            "rppm_denoised",
+            "RPPM, denoised",
+            "rppm",
+            {"use_denoising": True},
+            "Open Image Denoise by albedo and normal, its time beside the seconds asked for",
+        ),
         Method("cycles", "Cycles", "cycles", why="path tracing; clamping and adaptive sampling off"),
         Method(
             "cycles_caustics",

@@ -10,7 +10,15 @@ import pytest
 from benchmarks.peers.description import AreaLight, Counts, Diffuse, Glass, SphereLight, SunLight, frame_of
 from benchmarks.peers.jobs import Job
 from benchmarks.peers.methods import METHODS, OWN, REFERENCES
-from benchmarks.peers.metrics import caustic_ratio, convergence_rate, displayed, exposure_of, mean_ratio, relative_mse
+from benchmarks.peers.metrics import (
+    caustic_ratio,
+    convergence_rate,
+    displayed,
+    exposure_of,
+    gradients_kept,
+    mean_ratio,
+    relative_mse,
+)
 from benchmarks.peers.references import Agreement, combine
 from benchmarks.peers.report import page_text
 from benchmarks.peers.results import Curve, Point, Results, SceneResult
@@ -26,6 +34,20 @@ def gray(value, size=40):
 
 def test_relative_mse_of_an_even_difference():
     assert relative_mse(gray(0.6), gray(0.5)) == pytest.approx(0.01 / (0.25 + 0.01), rel=1e-5)
+
+
+def test_blur_takes_gradients_and_noise_only_adds_energy():
+    mask = np.ones((40, 40), bool)
+    stripes = gray(0.5) + 0.2 * np.sin(np.arange(40) * 0.8)[None, :, None].astype(np.float32)
+    assert gradients_kept(stripes, stripes, mask) == pytest.approx((1.0, 1.0))
+    assert gradients_kept(0.5 + 0.6 * (stripes - 0.5), stripes, mask) == pytest.approx((0.6, 0.36), rel=1e-5)
+    noise = np.random.default_rng(2).normal(0.0, 0.1, stripes.shape[:2])
+    kept, energy = gradients_kept(stripes + noise[..., None], stripes, mask)
+    # Of 3200 differences, each of noise 0.07, against stripes whose gradient is 0.1.
+    assert kept == pytest.approx(1.0, abs=0.05) and energy > 1.3
+    mask[:, 20:] = False
+    half = np.where(mask[..., None], stripes, 0.5)
+    assert gradients_kept(half, stripes, mask & (np.arange(40) < 18))[0] == pytest.approx(1.0)
 
 
 def test_relative_mse_leaves_out_a_thousandth_of_the_pixels():
