@@ -2,6 +2,7 @@
 """Renders that are denoised: in this process, in the renderer's, and merged of parts."""
 
 import dataclasses
+import threading
 
 import numpy as np
 import pytest
@@ -11,12 +12,16 @@ from rppm_addon.commands.checkpoints import still_render
 from rppm_addon.commands.merging import merge_parts
 from rppm_addon.denoising.denoiser import Denoiser
 from rppm_addon.denoising.places import library_places
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene.passes import NOISY_IMAGE
 from rppm_addon.scene.settings import DenoisingInputPasses
 from rppm_addon.session.checkpoint_file import write_checkpoint
 from rppm_addon.session.continuation import Continuation
+from rppm_addon.session.process.arrays import unpack
 from rppm_addon.session.process.remote_rendering import RemoteRenderer
+from rppm_addon.session.process.rendering import Rendering
 from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
 from rppm_addon.session.renderer import Renderer
@@ -130,6 +135,44 @@ def test_in_the_renderers_process(renderer, start):
     np.testing.assert_array_equal(found.frame.combined, here.combined)
     np.testing.assert_array_equal(found.frame.passes["Noisy Image"], here.passes["Noisy Image"])
     assert "denoising" in found.statistics.stage_seconds
+
+
+def test_a_render_in_the_process_is_stopped_while_it_is_denoised():
+    """And what is denoised then is not waited for."""
+    begun, let = threading.Event(), threading.Event()
+
+    class Slow(Denoiser):
+        def denoise(self, combined, passes, settings):
+            begun.set()
+            let.wait(60.0)
+            return combined * 0.0
+
+    sent = []
+    context = Context.create()
+    library = ProgramLibrary(context)
+    with context.moderngl:
+        rendering = Rendering(context, library, Slow([]), lambda kind, **content: sent.append((kind, content)))
+        for stop in (False, True):
+            begun.clear(), let.clear()
+            rendering.show(floor(iterations=2, denoising_input_passes="RGB"), 1 + stop, False)
+            while not begun.wait(0.0):
+                rendering.run_slice()
+            rendering.run_slice()
+            assert rendering.busy and sent[-1][0] == "progress"  # it answers meanwhile
+            if stop:
+                rendering.stop(2)
+            else:
+                let.set()
+            while rendering.busy:
+                rendering.run_slice()
+            kind, content = sent[-1]
+            combined, *_ = unpack(content["arrays"])
+            assert (kind, content["stopped"], bool(combined.any())) == ("result", stop, stop)
+            rendering.received()
+        let.set()
+        rendering.release()
+        library.release()
+    context.release()
 
 
 def test_a_process_that_knows_no_library_says_so(start):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of a viewport denoised in a thread of their own: iterations go on meanwhile."""
+"""Denoising in a thread of its own: iterations go on meanwhile, messages are answered, and renders can be stopped."""
 
 import concurrent.futures
 import time
@@ -9,13 +9,17 @@ import numpy as np
 
 from ...denoising.denoiser import Denoiser
 from ...scene.settings import RenderSettings
+from ..denoised_pictures import finished_result, noisy_frame
+from ..results import RenderResult
 
 MOST_TIME = 0.2
 """Of all time, that denoising may take: without a GPU it takes the processor from the iterations."""
+POLL_SECONDS = 0.02
+"""Between two looks at a picture that is being denoised, when there is nothing else to do."""
 
 
 class BackgroundDenoising:
-    """One picture at a time; the thread that renders starts it and takes it back."""
+    """Pictures of a viewport, one at a time; the thread that renders starts it and takes it back."""
 
     def __init__(self, denoiser: Denoiser) -> None:
         self._denoiser = denoiser
@@ -61,3 +65,22 @@ class BackgroundDenoising:
         if self._executor is not None:
             self._executor.shutdown(wait=False)
             self._executor = self._work = None
+
+
+class BackgroundFinish:
+    """The result of a render on its way to be handed out (finished_result)."""
+
+    def __init__(self, result: RenderResult, settings: RenderSettings, denoiser: Denoiser) -> None:
+        self._result = result
+        self._settings = settings
+        executor = concurrent.futures.ThreadPoolExecutor(1, "RPPM denoising")
+        self._work = executor.submit(finished_result, result, settings, denoiser)
+        executor.shutdown(wait=False)
+
+    def take(self, stopping: bool) -> RenderResult | None:
+        """The finished result, once there is one; with ``stopping`` what there is, noisy if need be."""
+        if concurrent.futures.wait([self._work], POLL_SECONDS).done:
+            return self._work.result()
+        if not stopping:
+            return None
+        return RenderResult(noisy_frame(self._result.frame, self._settings), self._result.statistics, stopped=True)

@@ -11,10 +11,11 @@ from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...scene.errors import RppmError
 from ...scene.scene import Scene
-from ..denoised_pictures import finished_frame, finished_result, wanted_frame
+from ..denoised_pictures import finished_frame, wanted_frame
 from ..renderer import SlicedRender, log
-from ..results import Frame
+from ..results import Frame, RenderResult
 from .arrays import pack
+from .background_denoising import BackgroundFinish
 from .shared_memory import SharedBlock
 
 
@@ -36,6 +37,8 @@ class Rendering:
         self._mapper: ProgressivePhotonMapper | None = None
         self._render: SlicedRender | None = None
         self._slices: Iterator[None] | None = None
+        self._finish: BackgroundFinish | None = None
+        """Of a render that has all its iterations."""
         self._generation = 0
         self._stopped = 0
         """The newest generation that is to end."""
@@ -51,7 +54,7 @@ class Rendering:
         """Render this scene."""
         self._scene = scene
         self._generation = generation
-        self._slices = None
+        self._slices = self._finish = None
         self._picture_wanted = False
 
     def stop(self, generation: int) -> None:
@@ -80,10 +83,15 @@ class Rendering:
         try:
             if self._slices is None:
                 self._begin()
-            if not self._stopping and next(self._slices, self) is not self:
-                self._send_wanted_picture()
-                return
-            self._end()
+            if self._finish is None:
+                if not self._stopping and next(self._slices, self) is not self:
+                    self._send_wanted_picture()
+                    return
+                result = self._render.result(self._stopping)
+                self._finish = BackgroundFinish(result, self._scene.settings, self._denoiser)
+            finished = self._finish.take(self._stopping)
+            if finished is not None:
+                self._end(finished)
         except BrokenPipeError:
             raise
         except Exception as error:
@@ -118,9 +126,8 @@ class Rendering:
             self._blocks.append(block)
         self._send(kind, arrays=description, passes=list(frame.passes), **content)
 
-    def _end(self) -> None:
-        result = finished_result(self._render.result(self._stopping), self._scene.settings, self._denoiser)
-        self._scene = self._slices = None
+    def _end(self, result: RenderResult) -> None:
+        self._scene = self._slices = self._finish = None
         self._send_frame("result", result.frame, statistics=result.statistics.as_dict(), stopped=result.stopped)
 
     def _fail(self, error: Exception) -> None:
@@ -132,7 +139,7 @@ class Rendering:
         self._send("failed", error=kind, text=text)
 
     def _release_mapper(self) -> None:
-        self._scene = self._slices = self._render = None
+        self._scene = self._slices = self._render = self._finish = None
         if self._mapper is not None:
             self._mapper.release()
             self._mapper = None

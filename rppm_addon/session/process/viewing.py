@@ -16,7 +16,7 @@ from ...integrator.stages.film import Film
 from ...scene.errors import DenoiserError, RppmError
 from ...scene.scene import Scene
 from ..renderer import exposed_passes, log, read_combined
-from .background_denoising import BackgroundDenoising
+from .background_denoising import POLL_SECONDS, BackgroundDenoising
 from .frames import FrameWriter
 from .sessions import SessionStatus
 from .sharpness import Sharpness, at_level
@@ -33,9 +33,6 @@ BRIGHTEST = 65000.0
 
 FRAME_SECONDS = 1.0 / 60.0
 """Pictures that follow each other faster are not given out: nobody would see them, and reading them costs time."""
-
-DENOISING_POLL_SECONDS = 0.02
-"""Between two looks at a picture that is being denoised, when there is nothing else to do."""
 
 Send = Callable[..., None]
 """send(kind, **content): a message to Blender about this session."""
@@ -212,7 +209,7 @@ class Viewing:
             if self._denoising.is_idle:
                 self._start_denoising(shown_picture(self._mapper.film, scene), scene)
             yield
-            iteration = max(iteration, self._show_denoised(scene, generation, DENOISING_POLL_SECONDS))
+            iteration = max(iteration, self._show_denoised(scene, generation, POLL_SECONDS))
 
     def _leave_noisy(self, error: DenoiserError) -> None:
         """Go on without denoising, and say so."""
