@@ -20,7 +20,7 @@ from rppm_addon.scene.settings import DenoisingInputPasses, DenoisingPrefilter, 
 from rppm_addon.session.renderer import Renderer
 from rppm_addon.session.results import Frame
 
-from .peers.metrics import caustic_mask, exposure_of, flip, gradients_kept, relative_mse
+from .peers.metrics import caustic_mask, displayed, exposure_of, flip, gradients_kept, relative_mse
 
 WAYS = {
     "noisy": None,
@@ -78,7 +78,8 @@ def main() -> None:
                 if options.save is not None:
                     options.save.mkdir(parents=True, exist_ok=True)
                     np.save(options.save / f"{options.scene.stem}_{count}_{name}.npy", pixels)
-                kept, energy = gradients_kept(pixels, reference, mask)
+                shown = displayed(pixels, exposure), displayed(reference, exposure)
+                kept, energy = gradients_kept(*shown, mask)
                 print(
                     f"| {count} | {name} | {relative_mse(pixels, reference):.5f} "
                     f"| {flip(pixels, reference, exposure):.4f} | {kept:.2f} | {energy:.2f} "
