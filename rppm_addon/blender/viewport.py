@@ -144,6 +144,8 @@ class Viewport:
             text = f"Exporting {self._exporting.objects} of {self._exporting.of}"
         elif starting:
             text = "Starting the renderer"
+        elif not status.iterations and status.programs_started:
+            text = f"Compiling {status.programs_started} of {status.programs}"
         elif not status.iterations:
             text = "Compiling shaders and building the scene"
         else:
@@ -177,7 +179,7 @@ class Viewport:
         """What a drawing depends on that comes from the renderer process."""
         process, status, frame = renderer_process(), self._session.status, self._session.newest()
         shown = None if frame is None else frame.sequence
-        return process.state, status.generation, status.iteration, status.error, shown
+        return process.state, status.generation, status.programs_started, status.iteration, status.error, shown
 
     def poll(self) -> None:
         """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""

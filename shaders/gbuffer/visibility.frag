@@ -4,16 +4,14 @@
 
 #include "gbuffer/projections.glsl"
 layout(std430, binding = 0) readonly buffer Camera;
+#include "gbuffer/rasterize.glsl"
 
 flat in uint triangle;
 in float view_depth;
 layout(location = 0) out vec2 visible;
 
 void main() {
-    // Logarithmic in perspective: the same relative resolution near and far.
-    gl_FragDepth = camera.projection == PROJECTION_ORTHOGRAPHIC
-        ? (view_depth - camera.clip_start) / (camera.clip_end - camera.clip_start)
-        : log(view_depth / camera.clip_start) / log(camera.clip_end / camera.clip_start);
+    gl_FragDepth = fragment_depth(view_depth);
     uint number = triangle + 1u;
     visible = vec2(float(number & 0xffffu), float(number >> 16u));
 }

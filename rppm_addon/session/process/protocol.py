@@ -27,6 +27,7 @@ unusable text                         the device cannot be used: another child w
 taken session, number                 a snapshot is decoded: its shared memory is free
 slots session, block, capacity        where the session's frames are from now on (frames.py)
 frame session, slot, generation, sequence, width, height, progress
+                                      progress 0 is a first look
 status session, status                a SessionStatus
 progress session, progress            a render's Progress
 picture session, arrays, progress     as it was wanted

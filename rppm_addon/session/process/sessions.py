@@ -19,6 +19,10 @@ class SessionStatus:
 
     generation: int = 0
     """Of the scene that this is about."""
+    programs_started: int = 0
+    """Until the first iteration: programs that are compiled."""
+    programs: int = 0
+    """And those that are known to be needed."""
     iteration: int = 0
     iterations: int = 0
     photons: int = 0

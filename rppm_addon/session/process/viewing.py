@@ -11,6 +11,8 @@ import numpy as np
 from ...denoising.denoiser import Denoiser
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
+from ...gl.sources import ShaderError
+from ...integrator.first_look import FirstLook
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
 from ...scene.errors import DenoiserError, RppmError
@@ -18,6 +20,7 @@ from ...scene.scene import Scene
 from ..renderer import exposed_passes, log, read_combined
 from .background_denoising import POLL_SECONDS, BackgroundDenoising
 from .frames import FrameWriter
+from .known_programs import KnownPrograms
 from .sessions import SessionStatus
 from .sharpness import Sharpness, at_level
 
@@ -33,6 +36,9 @@ BRIGHTEST = 65000.0
 
 FRAME_SECONDS = 1.0 / 60.0
 """Pictures that follow each other faster are not given out: nobody would see them, and reading them costs time."""
+
+COMPILING_SECONDS = 0.1
+"""Between two words about how far compiling is."""
 
 Send = Callable[..., None]
 """send(kind, **content): a message to Blender about this session."""
@@ -56,7 +62,10 @@ def shown_picture(film: Film, scene: Scene) -> np.ndarray:
 class Viewing:
     """Renders the newest scene that it was shown, slice by slice, and gives frames out."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, denoiser: Denoiser, send: Send) -> None:
+    def __init__(
+        self, context: Context, library: ProgramLibrary, denoiser: Denoiser, send: Send, programs: KnownPrograms
+    ) -> None:
+        """programs: what all viewports of the process know to be ready."""
         self._context = context
         self._library = library
         self._denoising = BackgroundDenoising(denoiser)
@@ -67,12 +76,22 @@ class Viewing:
         self._left_noisy = 0
         """The series that could not be denoised."""
         self._send = send
+        self._programs = programs
         self._frames = FrameWriter()
         self._mapper: ProgressivePhotonMapper | None = None
         self._slices: Iterator[None] | None = None
         self._shown: tuple[Scene, int, bool] | None = None
         self._shown_at = 0.0
         self._first_picture_pending = False
+        self._first_look: FirstLook | None = None
+        """Until there is a first frame to be seen."""
+        self._coming: tuple[Scene, int] | None = None
+        """The newest scene that the reading thread has, which is shown once the renderer takes messages again."""
+        self._newest_sent = 0
+        """Generation of the last frame."""
+        self._rendered = False
+        """Whether there has been a frame of the renderer's own."""
+        self._told_at = 0.0
         self._given_out_at = 0.0
         self._sharpness = Sharpness()
         self._paused = False
@@ -85,6 +104,10 @@ class Viewing:
         """
         self._shown = (scene, generation, navigating)
         self._shown_at = time.perf_counter()
+
+    def expect(self, scene: Scene, generation: int) -> None:
+        """This scene will be shown soon; called in another thread."""
+        self._coming = scene, generation
 
     def pause(self, paused: bool) -> None:
         """Stop improving the picture, or go on."""
@@ -101,12 +124,16 @@ class Viewing:
             self._slices = self._render(*self._shown)
             self._shown = None
         try:
+            if not self._rendered:
+                self._library.on_start = self._while_compiling
             if next(self._slices, self) is self:  # ended
                 self._slices = None
         except BrokenPipeError:
             raise
         except Exception as error:
             self._fail(error)
+        finally:
+            self._library.on_start = None
 
     def _render(self, scene: Scene, generation: int, navigating: bool) -> Iterator[None]:
         """Pictures of a scene, first a coarse one and then sharper ones."""
@@ -121,6 +148,9 @@ class Viewing:
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
         mapper, settings = self._mapper, scene.settings
+        if not self._rendered and self._newest_sent < generation and not self._programs.cover(scene):
+            self._look_at(scene, generation)
+            yield
         mapper.update(at_level(scene, level), center_tolerance=math.inf if level < 1.0 else 0.0)
         built = time.perf_counter()
         self._pictures += 1
@@ -133,6 +163,10 @@ class Viewing:
             if last or (at_once and mapper.iteration % settings.iterations_per_frame == 0):
                 self._given_out_at = now
                 self._show_picture(scene, generation)
+                if not self._rendered:
+                    self._rendered = True
+                    self._programs.add(mapper.device_scene.materials)
+                    self._release_first_look()
                 if self._first_picture_pending:
                     self._sharpness.measure(mapper.film.width * mapper.film.height, now - started)
                     self._first_picture_pending = False
@@ -219,7 +253,36 @@ class Viewing:
         if text not in warnings:
             warnings.append(text)
 
+    def _look_at(self, scene: Scene, generation: int) -> None:
+        """Give a first look at a scene out, unless it fails: what is wrong then the renderer says later."""
+        if scene.camera.panorama is not None or len(scene.settings.passes) == 1:
+            return
+        try:
+            if self._first_look is None:
+                self._first_look = FirstLook(self._context, self._library, self._mapper.device_scene.geometry)
+            combined = self._first_look.draw(scene)
+        except (RppmError, ShaderError):
+            log.info("there is no first look", exc_info=True)
+            return
+        self._send_frame(combined, generation, 0.0)
+
+    def _while_compiling(self) -> None:
+        """Between two programs of the first frame: follow the view, and say how far it is."""
+        if self._first_look is not None and self._coming is not None:
+            scene, generation = self._coming
+            if generation > self._newest_sent and self._first_look.shows_parts_of(scene):
+                self._look_at(scene, generation)
+        now = time.perf_counter()
+        if now - self._told_at >= COMPILING_SECONDS:
+            self._told_at = now
+            self._tell(replace(self._status, programs_started=self._library.started, programs=self._library.made))
+
     def _give_out(self, combined: np.ndarray, scene: Scene, generation: int) -> None:
+        """Send a picture, which is changed, unless a newer view was looked at meanwhile."""
+        if generation >= self._newest_sent:
+            self._send_frame(combined, generation, self._mapper.iteration / scene.settings.iterations)
+
+    def _send_frame(self, combined: np.ndarray, generation: int, progress: float) -> None:
         """Write a picture, which is changed, to a slot."""
         # Done here, where no window waits for it.
         np.nan_to_num(combined, copy=False, nan=0.0, posinf=BRIGHTEST, neginf=0.0)
@@ -228,8 +291,8 @@ class Viewing:
         slots = self._frames.reserve(width * height)
         if slots is not None:
             self._send("slots", **slots)
-        announcement = self._frames.write(generation, combined)
-        self._send("frame", **announcement, progress=self._mapper.iteration / scene.settings.iterations)
+        self._newest_sent = generation
+        self._send("frame", **self._frames.write(generation, combined), progress=progress)
 
     def _tell(self, status: SessionStatus) -> None:
         self._status = status
@@ -244,8 +307,14 @@ class Viewing:
         self._release_mapper()
         self._tell(replace(self._status, error=text, settled=True))
 
+    def _release_first_look(self) -> None:
+        if self._first_look is not None:
+            self._first_look.release()
+            self._first_look = None
+
     def _release_mapper(self) -> None:
         self._slices = None
+        self._release_first_look()
         if self._mapper is not None:
             self._mapper.release()
             self._mapper = None

@@ -19,6 +19,7 @@ from ...gl.programs import ProgramLibrary
 from ...scene.errors import RppmError
 from .arrays import unpack
 from .fair_share import FairShare
+from .known_programs import KnownPrograms
 from .protocol import VERSION, ProtocolError, read_message, write_message
 from .rendering import Rendering
 from .sessions import SessionKind
@@ -64,6 +65,7 @@ class Worker:
         self._receiver = SceneReceiver()
         self._inbox: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
         self._sessions: dict[int, tuple[SessionKind, Viewing | Rendering]] = {}
+        self._programs = KnownPrograms()
         self._share = FairShare()
         self._whole = threading.Event()
         """Not set while a scene is coming in: the drivers leave the reading thread little of the interpreter."""
@@ -113,6 +115,9 @@ class Worker:
             self._receiver.learn(message["document"], unpack(message["arrays"]))
         elif kind == "show":
             message["scene"] = self._receiver.receive(message.pop("document"), unpack(message.pop("arrays")))
+            _, session = self._sessions.get(message["session"], (None, None))
+            if isinstance(session, Viewing):
+                session.expect(message["scene"], message["generation"])
             self._send("taken", session=message["session"], number=message.pop("number"))
             self._whole.set()
         self._receiver.forget(message.pop("dead", ()))
@@ -136,9 +141,13 @@ class Worker:
             self._send("pong")
         elif kind == "open":
             session_kind = SessionKind[message["session_kind"]]
-            serve = Viewing if session_kind is SessionKind.VIEWPORT else Rendering
             send = functools.partial(self._send, session=number)
-            self._sessions[number] = session_kind, serve(self._context, self._library, self._denoiser, send)
+            session: Viewing | Rendering
+            if session_kind is SessionKind.VIEWPORT:
+                session = Viewing(self._context, self._library, self._denoiser, send, self._programs)
+            else:
+                session = Rendering(self._context, self._library, self._denoiser, send)
+            self._sessions[number] = session_kind, session
         elif kind == "close":
             self._close(number)
         elif kind in _FOR_SESSIONS:

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a node graph comes to without being evaluated: one plain surface."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..scene.images import Image
+from ..scene.node_graphs import Link, NodeGraph, ShaderNode
+from .node_kinds import SocketType
+from .nodes import KINDS
+
+GLASS_OPACITY = 0.3
+"""Of what lets light through by refraction: what is behind it has to be seen."""
+_GRAY = np.full(3, 0.8)
+_MOST_PIXELS = 64
+"""Along a side of an image, of which the mean is taken."""
+_DEEPEST = 16
+"""Nodes that are followed one behind the other."""
+_GLOSSY = {"bsdf_glossy", "bsdf_metallic"}
+_REFRACTIVE = {"bsdf_glass", "bsdf_refraction"}
+_LIGHTS = {"emission", "background"}
+
+
+@dataclass(frozen=True)
+class PlainSurface:
+    """The inputs of the shaders that a surface is mixed of, in the mean."""
+
+    color: np.ndarray
+    """(3,) float64, linear Rec.709."""
+    metallic: float
+    roughness: float
+    emission: np.ndarray
+    """(3,) float64 radiance, W/(m^2 sr)."""
+    opacity: float
+    """1 hides what is behind it."""
+
+
+def plain_surface(graph: NodeGraph, images: Sequence[Image]) -> PlainSurface:
+    """The plain surface of a graph: constants as they are, images by their mean, other textures by that of their
+    colors. No graph is too broken for it."""
+    return _Mean(graph, images).surface()
+
+
+class _Mean:
+    """Sums over the shaders of a graph, by their weights."""
+
+    def __init__(self, graph: NodeGraph, images: Sequence[Image]) -> None:
+        self._graph = graph
+        self._images = images
+        self._weight = self._metallic = self._roughness = self._transparent = 0.0
+        self._color, self._emission = np.zeros(3), np.zeros(3)
+
+    def surface(self) -> PlainSurface:
+        if self._graph.surface is not None:
+            self._add(self._graph.surface, 1.0, _DEEPEST)
+        weight = self._weight or 1.0
+        return PlainSurface(
+            np.clip(self._color / weight, 0.0, 1.0),
+            float(np.clip(self._metallic / weight, 0.0, 1.0)),
+            float(np.clip(self._roughness / weight, 0.0, 1.0)) if self._weight else 1.0,
+            np.maximum(self._emission, 0.0),
+            float(np.clip(1.0 - self._transparent, 0.0, 1.0)),
+        )
+
+    def _add(self, shader: Link, weight: float, depth: int) -> None:
+        node = self._node(shader)
+        if node is None or depth == 0:
+            return
+        inputs = [node.inputs.get(name) for name in ("shader", "shader_001")]
+        if node.kind == "mix_shader":
+            share = float(np.clip(self._number(node, "fac", 0.5), 0.0, 1.0))
+            weights = [weight * (1.0 - share), weight * share]
+        elif node.kind == "add_shader":
+            weights = [weight, weight]
+        else:
+            self._add_shader(node, weight)
+            return
+        for linked, part in zip(inputs, weights, strict=True):
+            if isinstance(linked, Link):
+                self._add(linked, part, depth - 1)
+
+    def _add_shader(self, node: ShaderNode, weight: float) -> None:
+        if node.kind in _LIGHTS:
+            self._emission += weight * self._number(node, "strength", 1.0) * self._color_of(node, "color")
+            return
+        if node.kind == "bsdf_transparent":
+            self._transparent += weight * float(np.clip(self._color_of(node, "color"), 0.0, 1.0).mean())
+            return
+        metallic, opacity = float(node.kind in _GLOSSY), GLASS_OPACITY if node.kind in _REFRACTIVE else 1.0
+        color = self._color_of(node, "base_color" if "base_color" in KINDS[node.kind].inputs else "color")
+        if node.kind == "bsdf_principled":
+            metallic = self._number(node, "metallic", 0.0)
+            glass = (1.0 - metallic) * self._number(node, "transmission_weight", 0.0)
+            alpha = self._number(node, "alpha", 1.0)
+            opacity = alpha * (1.0 + glass * (GLASS_OPACITY - 1.0))
+            strength = self._number(node, "emission_strength", 0.0)
+            self._emission += weight * alpha * strength * self._color_of(node, "emission_color")
+        self._transparent += weight * (1.0 - opacity)
+        self._weight += weight
+        self._color += weight * color
+        self._metallic += weight * metallic
+        self._roughness += weight * self._number(node, "roughness", 1.0)
+
+    def _node(self, link: Link) -> ShaderNode | None:
+        nodes = self._graph.nodes
+        node = nodes[link.node] if 0 <= link.node < len(nodes) else None
+        return node if node is not None and node.kind in KINDS else None
+
+    def _number(self, node: ShaderNode, name: str, otherwise: float) -> float:
+        """An input; what is linked has its default."""
+        _, default = KINDS[node.kind].inputs.get(name, (None, otherwise))
+        value = node.inputs.get(name, default)
+        number = float(np.asarray(default if isinstance(value, Link) else value, np.float64).mean())
+        return number if np.isfinite(number) else otherwise
+
+    def _color_of(self, node: ShaderNode, name: str, depth: int = _DEEPEST) -> np.ndarray:
+        """(3,) of an input; what is linked is found among what the linked node mixes."""
+        _, default = KINDS[node.kind].inputs.get(name, (None, _GRAY))
+        value = node.inputs.get(name, default)
+        if isinstance(value, Link):
+            return self._output(value, depth - 1)
+        color = np.broadcast_to(np.asarray(value, np.float64), 3)
+        return color if np.isfinite(color).all() else _GRAY
+
+    def _output(self, link: Link, depth: int) -> np.ndarray:
+        node = self._node(link)
+        if node is None or depth <= 0:
+            return _GRAY
+        if 0 <= node.image < len(self._images):
+            return mean_color(self._images[node.image])
+        if node.table is not None and node.table.ndim == 2 and node.table.shape[1] >= 3:
+            return node.table[:, :3].mean(axis=0, dtype=np.float64)
+        colors = [name for name, (kind, _) in KINDS[node.kind].inputs.items() if kind is SocketType.COLOR]
+        return np.mean([self._color_of(node, name, depth) for name in colors], axis=0) if colors else _GRAY
+
+
+def mean_color(image: Image) -> np.ndarray:
+    """(3,) float64, linear Rec.709: the mean of some pixels that lie evenly."""
+    height, width = image.pixels.shape[:2]
+    steps = (max(1, -(-size // _MOST_PIXELS)) for size in (height, width))
+    pixels = image.pixels[tuple(slice(step // 2, None, step) for step in steps)][..., :3]
+    colors = pixels / 255.0 if pixels.dtype == np.uint8 else pixels.astype(np.float64)
+    if image.encoding == "SRGB":
+        colors = np.where(colors <= 0.04045, colors / 12.92, ((np.maximum(colors, 0.0) + 0.055) / 1.055) ** 2.4)
+    return np.nan_to_num(colors.reshape(-1, 3), posinf=0.0, neginf=0.0).mean(axis=0)

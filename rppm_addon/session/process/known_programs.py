@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which scenes the programs of this process serve already."""
+
+from ...materials.compiler import NEUTRAL_TEXT, GraphError, compile_graph
+from ...materials.tables import MaterialTables, default_material
+from ...scene.node_graphs import NodeGraph
+from ...scene.scene import Scene
+
+MOST_TRIANGLES = 100_000
+"""With more, building the scene takes longer than a first look, compiled or not."""
+
+
+class KnownPrograms:
+    """The texts of materials that frames were rendered with; the other programs are the same for all scenes."""
+
+    def __init__(self) -> None:
+        self._texts: set[str] = set()
+
+    def add(self, materials: MaterialTables) -> None:
+        """A frame was rendered with these."""
+        self._texts.update(materials.programs)
+
+    def cover(self, scene: Scene) -> bool:
+        """Whether the first frame of a scene takes little more than a first look at it: nothing is to be compiled and
+        little to be built."""
+        triangles = [mesh.triangle_count for mesh in scene.meshes]
+        known = range(len(triangles))
+        if sum(triangles[instance.mesh] for instance in scene.instances if instance.mesh in known) > MOST_TRIANGLES:
+            return False
+        return bool(self._texts) and all(
+            _text(material.graph) in self._texts for material in (*scene.materials, default_material())
+        )
+
+
+def _text(graph: NodeGraph) -> str:
+    try:
+        return compile_graph(graph).text
+    except GraphError:
+        return NEUTRAL_TEXT

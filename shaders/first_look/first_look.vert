@@ -1,0 +1,38 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene's triangles with the plain surfaces of their materials.
+
+#include "gbuffer/projections.glsl"
+#include <FirstLookParameters>
+#include "common/geometry.glsl"
+
+layout(std140, binding = 0) uniform Parameters { FirstLookParameters parameters; };
+layout(std430, binding = 0) readonly buffer Camera;
+layout(std430, binding = 1) readonly buffer Triangles;
+layout(std430, binding = 2) readonly buffer Attributes;
+layout(std430, binding = 3) readonly buffer PlainSurfaces;
+layout(std430, binding = 4) readonly buffer InstanceOpacities;
+#include "gbuffer/rasterize.glsl"
+
+flat out uint material;
+flat out float opacity;
+out float view_depth;
+out vec3 to_viewer;
+out vec3 normal;
+
+void main() {
+    uint triangle = uint(gl_VertexID) / 3u, corner = uint(gl_VertexID) % 3u;
+    TriangleAttributes shading = attributes[triangle];
+    material = shading.material;
+    float instance_opacity = instance_opacities[shading.instance];
+    opacity = plain_surfaces[material].opacity * instance_opacity;
+    vec3 point = triangle_vertices[gl_VertexID].xyz;
+    normal = unpack_unit_vector(corner == 0u ? shading.normal0 : corner == 1u ? shading.normal1 : shading.normal2);
+    to_viewer = camera.projection == PROJECTION_ORTHOGRAPHIC ? -camera.forward : camera.position - point;
+    vec3 p = camera_space(point);
+    view_depth = p.z;
+    gl_Position = clip_position(p);
+    // A holdout, of opacity 0, hides what is behind it; what is transparent is drawn when all else is there.
+    bool solid = opacity >= 1.0 || instance_opacity == 0.0;
+    if (instance_opacity < 0.0 || solid != (parameters.blended == 0u)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+}
