@@ -124,7 +124,7 @@ class Viewing:
             self._slices = self._render(*self._shown)
             self._shown = None
         try:
-            if not self._rendered:
+            if self._mapper is not None and not self._rendered:  # the programs of the first look are there
                 self._library.on_start = self._while_compiling
             if next(self._slices, self) is self:  # ended
                 self._slices = None
