@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The first look covers what the renderer's picture covers, in the colors of the materials."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import scenes
+from support.lobes import Lobe, LobeKind, material
+
+from rppm_addon.integrator.first_look import FirstLook
+from rppm_addon.scene import RenderSettings, Scene, World
+from rppm_addon.scene.meshes import Instance, RayVisibility
+
+SIZE = 96
+RED, GREEN = (0.8, 0.05, 0.05), (0.05, 0.8, 0.05)
+
+
+@pytest.fixture
+def draw(mapper, context, library):
+    look = FirstLook(context, library, mapper.device_scene.geometry)
+    yield look.draw
+    look.release()
+
+
+def balls(**changes: object) -> Scene:
+    """A red ball to the left, in front of a green one in the middle; nothing is there to the right."""
+    camera = dataclasses.replace(scenes.room(SIZE).camera, height=SIZE // 2, window=(-0.4, 0.4, -0.2, 0.2))
+    settings = RenderSettings(
+        iterations=32, photons=64, film_transparent=True, camera_path_length=2, photon_path_length=2
+    )
+    materials = [scenes.diffuse(*RED), scenes.diffuse(*GREEN)]
+    instances = [
+        Instance(0, scenes.placed(-0.6, -1.0, 0.0, 0.4), [0]), Instance(0, scenes.placed(0.0, 0.5, 0.1, 0.6), [1])
+    ]  # fmt: skip
+    world = World(np.ones(3))
+    scene = Scene(camera, [scenes.sphere("ball")], instances, materials, world=world, settings=settings)
+    return dataclasses.replace(scene, **changes)
+
+
+def camera_of(name: str):
+    camera = balls().camera
+    if name == "orthographic":
+        return dataclasses.replace(camera, orthographic=True, window=(-1.4, 1.4, -0.7, 0.7))
+    if name == "crop":
+        return dataclasses.replace(camera, crop=(10, 5, 70, 40))
+    return camera
+
+
+@pytest.mark.parametrize("name", ["perspective", "orthographic", "crop"])
+def test_the_first_look_covers_what_the_picture_covers(draw, mapper, name):
+    scene = balls(camera=camera_of(name))
+    look = draw(scene)
+    mapper.update(scene)
+    for _ in range(scene.settings.iterations):
+        mapper.iterate()
+    alpha = mapper.film.read_radiance()[..., 3]
+    assert look.shape == (*alpha.shape, 4) and look.dtype == np.float32
+    inside, outside = alpha > 0.999, alpha < 0.001
+    assert inside.mean() > 0.1 and outside.mean() > 0.1 and (inside | outside).mean() > 0.8
+    assert (look[..., 3][inside] == 1.0).all() and not look[outside].any()
+
+
+def test_colors_and_depth(draw):
+    look = draw(balls())
+    red, green = look[..., 0] > 2.0 * look[..., 1], look[..., 1] > 2.0 * look[..., 0]
+    assert (red | green)[look[..., 3] == 1.0].mean() > 0.95
+    row, column = np.argwhere(red & (look[..., 3] == 1.0)).mean(axis=0)
+    assert abs(row - 0.5 * (SIZE // 2)) < 2.0 and column < 0.4 * SIZE
+    middle = look[SIZE // 4, SIZE // 2]
+    assert green[SIZE // 4, SIZE // 2] and 0.2 < middle[1] < 1.5
+
+
+def test_the_background_is_the_worlds_unless_the_film_is_transparent(draw):
+    settings = dataclasses.replace(balls().settings, film_transparent=False)
+    look = draw(balls(settings=settings, world=World(np.array([0.1, 0.2, 0.4])), exposure=2.0))
+    np.testing.assert_allclose(look[-1, -1], (0.2, 0.4, 0.8, 1.0), rtol=1e-6)
+
+
+def test_emission_goes_with_the_exposure(draw):
+    glowing = [material("lamp", Lobe(LobeKind.EMISSION, color=(1.0, 0.5, 0.25), strength=4.0)), scenes.diffuse(*GREEN)]
+    dark = draw(balls(materials=glowing))
+    bright = draw(balls(materials=glowing, exposure=2.0))
+    at = np.argwhere(dark[..., 0] > 3.0).mean(axis=0).astype(int)
+    # What it reflects besides is far less.
+    np.testing.assert_allclose(bright[*at, :3] - dark[*at, :3], (4.0, 2.0, 1.0), rtol=0.05, atol=0.05)
+
+
+def test_what_is_transparent_shows_what_is_behind(draw):
+    scene = balls()
+    clear = [material("clear", Lobe(LobeKind.TRANSPARENT)), scenes.diffuse(*GREEN)]
+    glass = [material("glass", Lobe(LobeKind.GLASS)), scenes.diffuse(*GREEN)]
+    alone = draw(dataclasses.replace(scene, instances=scene.instances[1:]))
+    np.testing.assert_array_equal(draw(dataclasses.replace(scene, materials=clear)), alone)
+    through = draw(dataclasses.replace(scene, materials=glass))
+    assert ((through[..., 3] > 0.0) & (through[..., 3] < 1.0)).any()
+    assert (through[..., 3] >= alone[..., 3]).all()
+
+
+def test_what_the_camera_does_not_see(draw):
+    scene = balls()
+    alone = draw(dataclasses.replace(scene, instances=scene.instances[1:]))
+    unseen = dataclasses.replace(scene.instances[0], visibility=RayVisibility.ALL & ~RayVisibility.CAMERA)
+    catcher = dataclasses.replace(scene.instances[0], shadow_catcher=True)
+    for instance in (unseen, catcher):
+        shown = dataclasses.replace(scene, instances=[instance, scene.instances[1]])
+        np.testing.assert_array_equal(draw(shown), alone)
+    hole = dataclasses.replace(
+        scene, instances=[dataclasses.replace(scene.instances[0], holdout=True), *scene.instances[1:]]
+    )
+    with_hole, both = draw(hole), draw(scene)
+    red = both[..., 0] > 2.0 * both[..., 1]
+    assert not with_hole[red].any()
+
+
+def test_a_scene_without_triangles_is_its_background(draw):
+    assert not draw(balls(instances=[])).any()
+
+
+def test_the_pictures_after_a_first_look_are_the_same(draw, mapper, other_mapper):
+    scene = scenes.room(24, photons=256)
+    draw(scene)
+    pictures = []
+    for renderer in (mapper, other_mapper):
+        renderer.update(scene)
+        renderer.iterate()
+        pictures.append(renderer.film.read_radiance())
+    np.testing.assert_array_equal(*pictures)

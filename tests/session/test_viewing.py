@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a viewport sees before the renderer's first frame."""
+
+import dataclasses
+
+import pytest
+from support.floor import floor_scene
+
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.scene import Panorama, PanoramaKind
+from rppm_addon.session.process.known_programs import MOST_TRIANGLES, KnownPrograms
+from rppm_addon.session.process.viewing import Viewing
+
+
+class Sent:
+    """What viewings have sent."""
+
+    def __init__(self):
+        self.messages = []
+
+    def __call__(self, kind, **content):
+        self.messages.append((kind, content))
+
+    @property
+    def frames(self):
+        """Generation and progress of each."""
+        return [(content["generation"], content["progress"]) for kind, content in self.messages if kind == "frame"]
+
+    @property
+    def compiled(self):
+        statuses = [content["status"] for kind, content in self.messages if kind == "status"]
+        return [status["programs_started"] for status in statuses if status["iteration"] == 0]
+
+
+@pytest.fixture
+def open_viewing():
+    """A function that opens viewports of one process; they share what is compiled."""
+    context = Context.create()
+    library, known, opened = ProgramLibrary(context), KnownPrograms(), []
+
+    def open_viewing():
+        sent = Sent()
+        opened.append(Viewing(context, library, sent, known))
+        return opened[-1], sent
+
+    yield open_viewing
+    for viewing in opened:
+        viewing.release()
+    library.release()
+    context.release()
+
+
+def scene_of(**changes):
+    scene = floor_scene()
+    scene.settings = dataclasses.replace(scene.settings, iterations=2)
+    return dataclasses.replace(scene, **changes)
+
+
+def run(viewing):
+    while viewing.busy:
+        viewing.run_slice()
+
+
+def test_a_first_look_comes_before_anything_is_compiled(open_viewing):
+    viewing, sent = open_viewing()
+    viewing.show(scene_of(), 1, False)
+    viewing.run_slice()
+    assert sent.frames == [(1, 0.0)]
+    assert viewing._library.started == 2  # what gathers triangles, and what draws
+    look = viewing._frames._slots.pixels[1][: 4 * 16 * 12].reshape(12, 16, 4)
+    # The floor covers the left half.
+    assert (look[:, :8, :3] > 0.1).all() and not look[:, 8:, :3].any()
+    run(viewing)
+    assert sent.frames[-1] == (1, 1.0) and sorted(sent.frames) == sent.frames
+    assert [progress for _, progress in sent.frames].count(0.0) == 1
+    assert sent.compiled == sorted(sent.compiled) and sent.compiled[-1] > 2
+    assert viewing._first_look is None
+
+
+def test_there_is_none_once_there_was_a_frame(open_viewing):
+    viewing, sent = open_viewing()
+    viewing.show(scene_of(), 1, False)
+    run(viewing)
+    seen = len(sent.frames)
+    viewing.show(scene_of(exposure=0.5), 2, False)
+    run(viewing)
+    assert 0.0 not in [progress for _, progress in sent.frames[seen:]] and sent.frames[-1] == (2, 1.0)
+
+
+def test_there_is_none_when_the_programs_are_ready(open_viewing):
+    for expected in (1, 0):
+        viewing, sent = open_viewing()
+        viewing.show(scene_of(), 1, False)
+        run(viewing)
+        assert [progress for _, progress in sent.frames].count(0.0) == expected
+
+
+def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewing):
+    viewing, _ = open_viewing()
+    viewing.show(scene_of(), 1, False)
+    run(viewing)
+    scene = scene_of()
+    assert viewing._programs.cover(scene)
+    glossy = dataclasses.replace(scene.materials[0], graph=dataclasses.replace(scene.materials[0].graph))
+    glossy.graph.nodes = [dataclasses.replace(node, kind="bsdf_glossy") for node in glossy.graph.nodes]
+    assert not viewing._programs.cover(dataclasses.replace(scene, materials=[glossy]))
+    many = MOST_TRIANGLES // scene.meshes[0].triangle_count + 1
+    assert not viewing._programs.cover(dataclasses.replace(scene, instances=scene.instances * many))
+
+
+def test_panoramas_have_none(open_viewing):
+    viewing, sent = open_viewing()
+    camera = dataclasses.replace(
+        scene_of().camera, panorama=Panorama(PanoramaKind.EQUIRECTANGULAR), window=(0.0, 1.0, 0.0, 1.0)
+    )
+    viewing.show(scene_of(camera=camera), 1, False)
+    run(viewing)
+    assert 0.0 not in [progress for _, progress in sent.frames] and sent.frames[-1] == (1, 1.0)
+
+
+def test_it_follows_the_view_while_programs_are_compiled(open_viewing):
+    viewing, sent = open_viewing()
+    scene = scene_of()
+    viewing.show(scene, 1, False)
+    viewing.run_slice()
+    moved = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, window=(-0.6, 0.4, -0.375, 0.375)))
+    viewing.expect(moved, 2)  # as the reading thread says, while the renderer takes no messages
+    viewing.run_slice()
+    assert sent.frames == [(1, 0.0), (2, 0.0)]
+    viewing.show(moved, 2, False)
+    run(viewing)
+    assert sorted(sent.frames) == sent.frames, "the view jumps back"
+    assert sent.frames[-1] == (2, 1.0)
