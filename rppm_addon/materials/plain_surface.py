@@ -16,8 +16,8 @@ GLASS_OPACITY = 0.3
 _GRAY = np.full(3, 0.8)
 _MOST_PIXELS = 64
 """Along a side of an image, of which the mean is taken."""
-_DEEPEST = 16
-"""Nodes that are followed one behind the other."""
+_MOST_NODES = 200
+"""Looked at in a graph, those that are used twice counted twice: ways through a graph can be without number."""
 _GLOSSY = {"bsdf_glossy", "bsdf_metallic"}
 _REFRACTIVE = {"bsdf_glass", "bsdf_refraction"}
 _LIGHTS = {"emission", "background"}
@@ -49,12 +49,13 @@ class _Mean:
     def __init__(self, graph: NodeGraph, images: Sequence[Image]) -> None:
         self._graph = graph
         self._images = images
+        self._nodes_left = _MOST_NODES
         self._weight = self._metallic = self._roughness = self._transparent = 0.0
         self._color, self._emission = np.zeros(3), np.zeros(3)
 
     def surface(self) -> PlainSurface:
         if self._graph.surface is not None:
-            self._add(self._graph.surface, 1.0, _DEEPEST)
+            self._add(self._graph.surface, 1.0)
         weight = self._weight or 1.0
         return PlainSurface(
             np.clip(self._color / weight, 0.0, 1.0),
@@ -64,9 +65,9 @@ class _Mean:
             float(np.clip(1.0 - self._transparent, 0.0, 1.0)),
         )
 
-    def _add(self, shader: Link, weight: float, depth: int) -> None:
+    def _add(self, shader: Link, weight: float) -> None:
         node = self._node(shader)
-        if node is None or depth == 0:
+        if node is None:
             return
         inputs = [node.inputs.get(name) for name in ("shader", "shader_001")]
         if node.kind == "mix_shader":
@@ -79,7 +80,7 @@ class _Mean:
             return
         for linked, part in zip(inputs, weights, strict=True):
             if isinstance(linked, Link):
-                self._add(linked, part, depth - 1)
+                self._add(linked, part)
 
     def _add_shader(self, node: ShaderNode, weight: float) -> None:
         if node.kind in _LIGHTS:
@@ -105,6 +106,9 @@ class _Mean:
 
     def _node(self, link: Link) -> ShaderNode | None:
         nodes = self._graph.nodes
+        self._nodes_left -= 1
+        if self._nodes_left < 0:
+            return None
         node = nodes[link.node] if 0 <= link.node < len(nodes) else None
         return node if node is not None and node.kind in KINDS else None
 
@@ -115,25 +119,27 @@ class _Mean:
         number = float(np.asarray(default if isinstance(value, Link) else value, np.float64).mean())
         return number if np.isfinite(number) else otherwise
 
-    def _color_of(self, node: ShaderNode, name: str, depth: int = _DEEPEST) -> np.ndarray:
+    def _color_of(self, node: ShaderNode, name: str) -> np.ndarray:
         """(3,) of an input; what is linked is found among what the linked node mixes."""
         _, default = KINDS[node.kind].inputs.get(name, (None, _GRAY))
         value = node.inputs.get(name, default)
         if isinstance(value, Link):
-            return self._output(value, depth - 1)
+            return self._output(value)
         color = np.broadcast_to(np.asarray(value, np.float64), 3)
         return color if np.isfinite(color).all() else _GRAY
 
-    def _output(self, link: Link, depth: int) -> np.ndarray:
+    def _output(self, link: Link) -> np.ndarray:
         node = self._node(link)
-        if node is None or depth <= 0:
+        if node is None:
             return _GRAY
         if 0 <= node.image < len(self._images):
             return mean_color(self._images[node.image])
-        if node.table is not None and node.table.ndim == 2 and node.table.shape[1] >= 3:
-            return node.table[:, :3].mean(axis=0, dtype=np.float64)
         colors = [name for name, (kind, _) in KINDS[node.kind].inputs.items() if kind is SocketType.COLOR]
-        return np.mean([self._color_of(node, name, depth) for name in colors], axis=0) if colors else _GRAY
+        if colors:
+            return np.mean([self._color_of(node, name) for name in colors], axis=0)
+        if node.table is not None and node.table.ndim == 2 and node.table.shape[1] >= 3:  # a color ramp
+            return node.table[:, :3].mean(axis=0, dtype=np.float64)
+        return _GRAY
 
 
 def mean_color(image: Image) -> np.ndarray:

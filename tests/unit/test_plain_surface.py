@@ -81,7 +81,7 @@ def test_bytes_are_decoded():
 def test_links_are_followed_to_colors():
     def make(graph):
         noise = graph.add("tex_noise", "fac")
-        ramp = graph.add("valtorgb", "color", table=np.array([[*RED, 1.0], [*BLUE, 1.0]], np.float32), fac=noise)
+        ramp = graph.add("val_to_rgb", "color", table=np.array([[*RED, 1.0], [*BLUE, 1.0]], np.float32), fac=noise)
         return principled(graph, base_color=ramp, roughness=noise)
 
     found = surface_of(make)
