@@ -18,11 +18,19 @@ from rppm_addon.scene.settings import DenoisingInputPasses
 from rppm_addon.session.process import viewing as viewing_module
 from rppm_addon.session.process.background_denoising import MOST_TIME, BackgroundDenoising
 from rppm_addon.session.process.client_session import ViewportSession
+from rppm_addon.session.process.known_programs import KnownPrograms
 from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.process.sharpness import Sharpness
 from rppm_addon.session.process.viewing import Viewing
 
 MARK = 77.0
+
+
+class AllKnown(KnownPrograms):
+    """Nothing but the renderer's own pictures is shown."""
+
+    def cover(self, scene):
+        return True
 
 
 class Marking(Denoiser):
@@ -83,7 +91,7 @@ def viewport(device, denoiser, monkeypatch):
     monkeypatch.setattr("rppm_addon.session.process.background_denoising.MOST_TIME", 1.0)
     shown = Shown()
     with device[0].moderngl:
-        shown.viewing = Viewing(*device, denoiser, shown.send)
+        shown.viewing = Viewing(*device, denoiser, shown.send, AllKnown())
         yield shown
         denoiser.let.set()
         shown.viewing.release()
@@ -165,7 +173,7 @@ def test_without_a_library(device, monkeypatch):
     monkeypatch.setattr(Sharpness, "levels", lambda *_: [1.0])
     shown = Shown()
     with device[0].moderngl:
-        shown.viewing = Viewing(*device, Denoiser([]), shown.send)
+        shown.viewing = Viewing(*device, Denoiser([]), shown.send, AllKnown())
         render(shown, scene_of(2))
         shown.viewing.release()
     assert [which for _, which in shown] == [False, False]

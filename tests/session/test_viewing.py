@@ -6,6 +6,7 @@ import dataclasses
 import pytest
 from support.floor import floor_scene
 
+from rppm_addon.denoising.denoiser import Denoiser
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.scene import Panorama, PanoramaKind
@@ -41,7 +42,7 @@ def open_viewing():
 
     def open_viewing():
         sent = Sent()
-        opened.append(Viewing(context, library, sent, known))
+        opened.append(Viewing(context, library, Denoiser([]), sent, known))
         return opened[-1], sent
 
     yield open_viewing
