@@ -63,6 +63,12 @@ def run(viewing):
         viewing.run_slice()
 
 
+def last(viewing):
+    """The bytes of the last frame."""
+    height, width = 12, 16
+    return viewing._frames._slots.pixels[viewing._frames._sequence % 3][: 4 * width * height].tobytes()
+
+
 def test_a_first_look_comes_before_anything_is_compiled(open_viewing):
     viewing, sent = open_viewing()
     viewing.show(scene_of(), 1, False)
@@ -133,3 +139,7 @@ def test_it_follows_the_view_while_programs_are_compiled(open_viewing):
     run(viewing)
     assert sorted(sent.frames) == sent.frames, "the view jumps back"
     assert sent.frames[-1] == (2, 1.0)
+    other, other_sent = open_viewing()
+    other.show(moved, 1, False)
+    run(other)
+    assert (0.0 not in [progress for _, progress in other_sent.frames]) and last(viewing) == last(other)

@@ -275,7 +275,7 @@ class Viewing:
         now = time.perf_counter()
         if now - self._told_at >= COMPILING_SECONDS:
             self._told_at = now
-            self._tell(replace(self._status, programs_started=self._library.started, programs=self._library.made))
+            self._tell(SessionStatus(programs_started=self._library.started, programs=self._library.made))
 
     def _give_out(self, combined: np.ndarray, scene: Scene, generation: int) -> None:
         """Send a picture, which is changed, unless a newer view was looked at meanwhile."""
