@@ -34,6 +34,7 @@ def left_over(folder):
     return [path.name for path in (folder / "####.farm").iterdir() if path.name != "job.json"]
 
 
+@pytest.mark.long
 def test_a_killed_worker_costs_no_frame(tmp_path, rppm, blend_files):
     farmed, single = tmp_path / "farmed", tmp_path / "single.exr"
     with start_rppm(*farm(blend_files[0], farmed, "-o", farmed / "####.png")) as process:
@@ -54,6 +55,7 @@ def test_a_killed_worker_costs_no_frame(tmp_path, rppm, blend_files):
     assert np.array_equal(read_exr(farmed / "0001.exr").combined, read_exr(single).combined)
 
 
+@pytest.mark.long
 def test_a_killed_farm_goes_on_where_it_was(tmp_path, rppm, blend_files):
     with start_rppm(*farm(blend_files[0], tmp_path)) as process:
         wait_for("two frames", lambda: len(pictures(tmp_path)) >= 2)

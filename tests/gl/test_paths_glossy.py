@@ -57,6 +57,13 @@ CLASSES: dict[str, Build] = {
 }
 FOUND = {"LGDE stored", "LDGE stored", "LGDGE stored", "LGGE stored stored"}
 """Where the last surface gets indirect light: from one that stores photons."""
+OFTEN = {*FOUND, "LGE traced", "LGE stored"}
+"""Tried each time: where the last surface finds no indirect light, the gather has nothing to add."""
+GATHERING = [
+    pytest.param(name, mode, id=f"{name}-{mode.value}", marks=[] if name in OFTEN else [pytest.mark.long])
+    for name in CLASSES
+    for mode in MODES
+]
 WITHOUT_EXTENT: dict[str, Build] = {
     "LGE point": lambda mode: straight(TRACED, mode),
     "LGGE point": lambda mode: two_bounces(TRACED, TRACED, mode),
@@ -111,8 +118,7 @@ def test_a_light_without_extent_is_found_by_rays(mapper, name):
     compare(mapper, name, WITHOUT_EXTENT[name](RAYS))
 
 
-@pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.value)
-@pytest.mark.parametrize("name", CLASSES)
+@pytest.mark.parametrize(("name", "mode"), GATHERING)
 def test_glossy_paths_are_gathered_once(mapper, monkeypatch, name, mode):
     case = gathering(CLASSES[name](mode), monkeypatch, name in FOUND)
     if name == "LGDGE stored":

@@ -40,7 +40,7 @@ def test_mirror(renderer, mode):
     compare(f"mirror_{mode.lower()}", result.pictures, reference, CONVERGED)
 
 
-@pytest.mark.parametrize("roughness", [0.2, 0.5, pytest.param(0.9, marks=pytest.mark.long)])
+@pytest.mark.parametrize("roughness", [0.2, *(pytest.param(more, marks=pytest.mark.long) for more in (0.5, 0.9))])
 def test_rough_metal(renderer, roughness):
     """A metal ball: traced as specular at 0.2, storing photons at 0.5 and 0.9."""
     new_scene()

@@ -27,8 +27,8 @@ MODES = {
 }
 OBJECTS = [
     ("visible_camera", "RAYS"),
-    ("visible_diffuse", "RAYS"),
-    ("visible_glossy", "RAYS"),
+    pytest.param("visible_diffuse", "RAYS", marks=pytest.mark.long),
+    pytest.param("visible_glossy", "RAYS", marks=pytest.mark.long),
     ("visible_shadow", "RAYS"),
     pytest.param("visible_shadow", "PHOTONS", marks=pytest.mark.long),
 ]

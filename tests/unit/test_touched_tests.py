@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which tests a change asks for."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+from touched_tests import ROOMS, touched  # noqa: E402
+
+sys.path.remove(str(ROOT / "tools"))
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    files = {
+        "tests/support/floor.py": "",
+        "tests/parity/scenes.py": "from support.floor import lay",
+        "tests/parity/test_lights.py": "from .scenes import light",
+        "tests/parity/features/measure.py": "from ..scenes import light",
+        "tests/parity/features/test_features.py": "from . import measure",
+        "tests/gl/scenes.py": "",
+        "tests/gl/test_bsdf.py": "import scenes",
+        "tests/gl/test_seeds.py": "import math",
+        "tests/gl/conftest.py": "",
+        "tests/cli/test_info.py": "",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+FEATURES, LIGHTS = "tests/parity/features/test_features.py", "tests/parity/test_lights.py"
+BSDF, SEEDS, INFO = "tests/gl/test_bsdf.py", "tests/gl/test_seeds.py", "tests/cli/test_info.py"
+
+
+@pytest.mark.parametrize(
+    ("changed", "expected"),
+    [
+        ("tests/gl/test_seeds.py", [SEEDS]),
+        ("tests/gl/scenes.py", [BSDF]),  # not those of the module's namesake
+        ("tests/support/floor.py", [FEATURES, LIGHTS]),
+        ("tests/parity/features/measure.py", [FEATURES]),
+        ("tests/gl/conftest.py", [BSDF, SEEDS]),
+        ("shaders/film/passes.comp", [BSDF, SEEDS, LIGHTS]),
+        ("shaders/materials/nodes/math.glsl", [FEATURES, LIGHTS]),
+        ("rppm_addon/commands/info.py", [INFO]),
+        ("tests/parity/references/test_lights.npz", [LIGHTS]),
+        ("README.md", []),
+    ],
+)
+def test_what_a_change_asks_for(checkout, changed, expected):
+    assert touched([changed], checkout) == expected
+
+
+def test_rooms_are_there():
+    """What the table names is in the checkout, and a room before the one that it is part of."""
+    rooms = list(ROOMS)
+    for number, room in enumerate(rooms):
+        assert (ROOT / room).is_dir()
+        assert not any(room.startswith(earlier) for earlier in rooms[:number])
+        assert all(list(ROOT.glob(pattern)) for pattern in ROOMS[room])

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Print the tests whose long ones a change asks for: ``python tools/touched_tests.py [commit]``, since that commit.
+
+Without one, since the branch left main, or on main since the commit before. A changed test, or a module of tests, asks
+for the test files that import it; all else asks for folders by the room that it is in (``ROOMS``), as nearly all tests
+import nearly all of the package. Nothing is printed where git knows no history.
+"""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PICTURES = ("tests/gl", "tests/parity/test_*.py")
+ROOMS: dict[str, tuple[str, ...]] = {
+    "shaders/materials/": ("tests/gl/test_closures.py", "tests/parity"),
+    "rppm_addon/materials/": ("tests/gl/test_closures.py", "tests/parity"),
+    "rppm_addon/blender/export/": ("tests/blender", "tests/parity"),
+    "rppm_addon/blender/": ("tests/blender",),
+    "shaders/": PICTURES,
+    "rppm_addon/gl/": PICTURES,
+    "rppm_addon/integrator/": PICTURES,
+    "rppm_addon/scene/": (*PICTURES, "tests/blender"),
+    "rppm_addon/session/": ("tests/session", "tests/cli", "tests/farm", "tests/blender"),
+    "rppm_addon/commands/": ("tests/cli", "tests/farm"),
+    "benchmarks/": ("tests/benchmarks",),
+}
+"""Test files and folders by the beginning of a changed path; the first that fits counts."""
+
+
+def touched(changed: list[str], root: Path = ROOT) -> list[str]:
+    """Test files of the checkout, sorted, that changed paths ask for."""
+    files = {path.relative_to(root).as_posix(): path for path in (root / "tests").rglob("*.py")}
+    files = {name: path for name, path in files.items() if not name.startswith("tests/gui/")}
+    found: set[str] = set()
+    for name in changed:
+        patterns = next((asked for room, asked in ROOMS.items() if name.startswith(room)), ())
+        for pattern in patterns:
+            found |= {
+                path.relative_to(root).as_posix()
+                for given in root.glob(pattern)
+                for path in (given.rglob("test_*.py") if given.is_dir() else [given])
+            }
+    found |= _importing({name for name in changed if name in files}, files)
+    kept = {
+        "tests/parity/" + Path(name).stem + ".py" for name in changed if name.startswith("tests/parity/references/")
+    }
+    return sorted(name for name in found | (kept & files.keys()) if Path(name).name.startswith("test_"))
+
+
+def _importing(modules: set[str], files: dict[str, Path]) -> set[str]:
+    """The modules of tests and those that import them, one by way of another.
+
+    Modules are known in their folder and below, those of tests/support in all; a conftest.py counts for its folder.
+    """
+    imports = {name: _imported(path) for name, path in files.items()}
+    found, new = set(modules), set(modules)
+    while new:
+        more = set()
+        for module in new:
+            path = Path(module)
+            room = "tests/" if path.parent.name == "support" else f"{path.parent.as_posix()}/"
+            for name in files:
+                if name.startswith(room) and (path.stem == "conftest" or path.stem in imports[name]):
+                    more.add(name)
+        new = more - found
+        found |= more
+    return found
+
+
+def _imported(path: Path) -> set[str]:
+    """Last names of the modules that a file imports, and of what it imports from them."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.rpartition(".")[2] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {(node.module or "").rpartition(".")[2], *(alias.name for alias in node.names)}
+    return names
+
+
+def _git(*arguments: str) -> str | None:
+    result = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+    return result.stdout.strip() if result.returncode == 0 else None
+
+
+def changed_since(commit: str | None) -> list[str]:
+    """Paths that differ from a commit, uncommitted ones too; empty where git cannot tell."""
+    head = _git("rev-parse", "HEAD")
+    base = commit or _git("merge-base", "HEAD", "origin/main") or _git("merge-base", "HEAD", "main")
+    if commit is None and base == head:
+        base = _git("rev-parse", "--verify", "--quiet", "HEAD^")
+    if head is None or not base:
+        print("no history: no long tests are chosen", file=sys.stderr)
+        return []
+    return (_git("diff", "--name-only", base) or "").splitlines()
+
+
+if __name__ == "__main__":
+    print(" ".join(touched(changed_since(sys.argv[1] if len(sys.argv) > 1 else None))))
