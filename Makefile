@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-long test-gui lint pairs parity bench bench-tools bench-export bench-peers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched test-gui lint pairs references parity bench bench-tools bench-export bench-peers clean
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
@@ -26,16 +26,24 @@ extension: setup ## Build the zip that Blender installs, to build/extension/ (EX
 # Each of their tests compiles programs and renders next to nothing, which the system's older Mesa does in a third of
 # the time while nothing is cached.
 COMPILE_BOUND = tests/parity/features tests/parity/test_node_values.py tests/parity/test_texture_values.py \
+	tests/parity/test_shader_nodes.py tests/parity/test_thin_wall.py tests/parity/test_texture_export.py \
 	tests/blender/test_bad_materials.py tests/blender/test_material_fuzz.py tests/gl/test_material_programs.py
 # Two at a time: most tests compile, or wait for one of the two engines, on a single core.
 PYTEST = timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=2 --dist=worksteal
 
-test: setup ## Run the tests, but for those that take half a minute and more
+test: setup ## Run the tests, but for those that take long
 	RPPM_MESA=system $(PYTEST) -m 'not long' $(COMPILE_BOUND)
 	$(PYTEST) -m 'not long' $(COMPILE_BOUND:%=--ignore=%)
 
+test-unit: ## Run what needs neither OpenGL nor Blender
+	.venv/bin/python -m pytest -q tests/unit
+
 test-long: setup ## Run the tests that take long
 	$(PYTEST) -m long
+
+test-touched: setup ## Run of the tests that take long what changed files ask for (SINCE=commit)
+	files="$$(.venv/bin/python tools/touched_tests.py $(SINCE))" && if [ -n "$$files" ]; then \
+		$(PYTEST) -m long $$files || [ $$? -eq 5 ]; else echo "no long tests are asked for"; fi
 
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
 	timeout --kill-after=10 2400 .venv/bin/python -m pytest tests/gui
@@ -50,7 +58,12 @@ lint: setup ## Check Python, types, imports, license lines and shaders
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
 
-parity: setup ## Compare each feature with Cycles: table, contact sheets in out/parity/, docs/compatibility.md
+TESTS ?= tests/parity
+references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/test_lights.py)
+	.venv/bin/python -m pytest -q $(TESTS) --cycles=write --timeout=3600
+
+parity: setup ## Compare the references with Cycles, and each feature: table, contact sheets in out/parity/, docs/compatibility.md
+	.venv/bin/python -m pytest -q $(TESTS) --cycles=compare --timeout=3600
 	.venv/bin/python -m tests.parity.features.report $(ROWS)
 
 bench-tools: setup

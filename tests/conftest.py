@@ -4,6 +4,16 @@
 import pytest
 
 
+def pytest_addoption(parser):
+    parser.addoption(
+        "--cycles",
+        choices=("kept", "render", "compare", "write"),
+        default="kept",
+        help="parity tests: take Cycles' side from tests/parity/references, render it, render it and compare it with "
+        "the references, or write these; the last two leave RPPM out",
+    )
+
+
 @pytest.fixture(scope="session")
 def registered():
     """RPPM registered in Blender as a module, once, and taken out again before the process ends.

@@ -15,7 +15,6 @@ import bpy
 import numpy as np
 import OpenEXR
 
-from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator.common import records  # noqa: F401  declares Closure
@@ -39,6 +38,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ClosureTestParameters parameters; };
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };
 layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430, binding = 2) readonly buffer Inputs { float inputs[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
@@ -144,38 +144,53 @@ def by_cycles(
     return points, picture.reshape(-1, 3)
 
 
-def _literal(name: str, socket_type: object, value: object) -> str:
-    if value == "normal":
-        return "normal" if name == "normal" else "up"
-    if value == "tangent":
-        return f"vec3({', '.join(map(str, TANGENT))})"
-    if socket_type is FLOAT:
-        return f"float({float(value)!r})"
-    numbers = (value,) * 3 if np.isscalar(value) else value
-    return f"vec3({', '.join(repr(float(number)) for number in numbers)})"
+def node_call(kind: str, options: dict) -> str:
+    """The call of a node's GLSL function with the numbers of node_inputs in the buffer ``inputs``.
 
-
-def node_call(kind: str, options: dict, inputs: dict) -> str:
-    """The call of a node's GLSL function, options and inputs by name."""
+    So nodes of the same options share a program.
+    """
     node = KINDS[kind]
     function, literals = node.call(kind, options)
-    arguments = ["builder", "1.0", *literals]
-    arguments += [_literal(name, socket, inputs.get(name, default)) for name, (socket, default) in node.inputs.items()]
+    arguments, start = ["builder", "1.0", *literals], 0
+    for name, (socket, default) in node.inputs.items():
+        if default == "normal":
+            arguments.append("normal" if name == "normal" else "up")
+        elif default == "tangent":
+            arguments.append(f"vec3({', '.join(map(str, TANGENT))})")
+        elif socket is FLOAT:
+            arguments.append(f"inputs[{start}]")
+            start += 1
+        else:
+            arguments.append(f"vec3(inputs[{start}], inputs[{start + 1}], inputs[{start + 2}])")
+            start += 3
     return f"{function}({', '.join(arguments)});"
 
 
+def node_inputs(kind: str, inputs: dict) -> np.ndarray:
+    """(n,) float32 numbers of a node's inputs, those given by name and the defaults."""
+    node = KINDS[kind]
+    unknown = [name for name in inputs if name not in node.inputs or isinstance(node.inputs[name][1], str)]
+    assert not unknown, f"{kind} has no numbers {unknown}"
+    numbers = [0.0]
+    for name, (socket, default) in reversed(node.inputs.items()):
+        if not isinstance(default, str):
+            value = inputs.get(name, default)
+            numbers[:0] = [value] if socket is FLOAT else ((value,) * 3 if np.isscalar(value) else value)
+    return np.array(numbers, np.float32)
+
+
 def by_closure(
-    context: Context, folder: Path, kind: str, view: View, points: np.ndarray, options: dict, inputs: dict,
+    library: ProgramLibrary, folder: Path, kind: str, view: View, points: np.ndarray, options: dict, inputs: dict,
     normal: tuple | None = None, choices: int = 64,
 ) -> np.ndarray:  # fmt: skip
-    """Radiance (pixels, 3) that the node's closure scatters of 1 W/sr."""
-    file = folder / "closure.comp"
-    file.write_text(_SHADER.replace("CALL", node_call(kind, options, inputs)), encoding="utf-8")
-    library = ProgramLibrary(context)
+    """Radiance (pixels, 3) that the node's closure scatters of 1 W/sr. ``folder`` is for the shaders of the library."""
+    file = folder / f"{'_'.join([kind, *(f'{name}_{value}' for name, value in sorted(options.items()))])}.comp"
+    file.write_text(_SHADER.replace("CALL", node_call(kind, options)), encoding="utf-8")
     padded = np.zeros((len(points), 4), np.float32)
     padded[:, :3] = np.nan_to_num(points)
-    gl = context.moderngl
+    gl = library.context.moderngl
     buffers = {
+        "Inputs": gl.buffer(node_inputs(kind, inputs).tobytes()),
         "Points": gl.buffer(padded.tobytes()),
         "Results": gl.buffer(reserve=16 * len(points)),
         "AlbedoTables": gl.buffer(albedo_tables.load().tobytes()),
@@ -192,5 +207,4 @@ def by_closure(
     results = np.frombuffer(buffers["Results"].read(), np.float32).reshape(-1, 4)[:, :3].astype(np.float64)
     for buffer in buffers.values():
         buffer.release()
-    library.release()
     return results

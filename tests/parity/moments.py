@@ -22,7 +22,7 @@ def render_blurred(renderer: Renderer, seeds: int = 3, **settings: object) -> np
 
 
 def cycles_at_moments(samples: int, times: np.ndarray, seeds: int = 2) -> np.ndarray:
-    """Brute force: the mean of Cycles' pictures without blur, at times in frames from FRAME."""
+    """Brute force: the mean of Cycles without blur, at times from FRAME, in frames. Ends at FRAME, with blur."""
     scene = bpy.context.scene
     scene.render.use_motion_blur = False
     pictures = []
@@ -30,4 +30,6 @@ def cycles_at_moments(samples: int, times: np.ndarray, seeds: int = 2) -> np.nda
         whole = int(np.floor(FRAME + time))
         scene.frame_set(whole, subframe=FRAME + time - whole)
         pictures.append(render_cycles(samples, seeds))
+    scene.render.use_motion_blur = True
+    scene.frame_set(FRAME)
     return np.mean(pictures, axis=0)

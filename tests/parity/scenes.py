@@ -5,6 +5,7 @@ Both engines get the same Blender scene: Cycles through bpy.ops.render.render, R
 extension's exporter and a Renderer.
 """
 
+import functools
 import math
 import os
 import tempfile
@@ -20,14 +21,24 @@ from rppm_addon.blender.export import export_scene
 from rppm_addon.scene import Scene
 from rppm_addon.session.renderer import Renderer, RenderStatistics
 
+from . import references
+
 RESOLUTION = 64
+FIRST_SEED = 1000
 DIFFUSE, GLOSSY, GLASS = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfGlass"
 PRINCIPLED, EMISSION = "ShaderNodeBsdfPrincipled", "ShaderNodeEmission"
 
 
+@functools.cache
+def _take_factory_preferences() -> None:
+    """Once: with the preferences Blender brings up its add-ons anew, which takes five times as long as a scene."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
 def new_scene(resolution: int = RESOLUTION, world: float = 0.0) -> bpy.types.Scene:
     """An empty scene whose Cycles settings leave nothing out and clamp nothing."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    _take_factory_preferences()
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     cycles = scene.cycles
     cycles.use_adaptive_sampling = cycles.use_denoising = False
@@ -192,13 +203,21 @@ def render_cycles_over(background: float, samples: int, seeds: int = 2) -> np.nd
 
 
 def _cycles_pictures(samples: int, seeds: int) -> np.ndarray:
-    """(seeds, height, width, 4) float64, premultiplied by alpha."""
+    """(seeds, height, width, 4) float64, premultiplied by alpha; without noise if of a single sample."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.samples = samples
+    scene.cycles.seed = FIRST_SEED
+    if samples == 1:
+        return _render_seeds(seeds)
+    return references.light(lambda: _render_seeds(seeds), seeds)
+
+
+def _render_seeds(seeds: int) -> np.ndarray:
+    scene = bpy.context.scene
     pictures = []
     for seed in range(seeds):
-        scene.cycles.seed = 1000 + seed
+        scene.cycles.seed = FIRST_SEED + seed
         with tempfile.TemporaryDirectory() as folder:
             scene.render.filepath = os.path.join(folder, "cycles.exr")
             bpy.ops.render.render(write_still=True)

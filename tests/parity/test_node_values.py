@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
-from rppm_addon.gl.context import Context
 from rppm_addon.materials.node_kinds import BOOLEAN
 from rppm_addon.materials.nodes import color, curves, math, spectrum, view
 
@@ -417,13 +416,6 @@ CASES = [
     *view_cases(),
     *spectrum_cases(),
 ]
-
-
-@pytest.fixture(scope="module")
-def context():
-    context = Context.create()
-    yield context
-    context.release()
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,6 @@
 import numpy as np
 import pytest
 
-from rppm_addon.gl.context import Context
-
 from . import closures
 from .closures import ABOVE, GRAZING, INSIDE, INSIDE_OUT, THROUGH, View
 
@@ -35,13 +33,6 @@ BL_IDNAMES = {
 }
 
 
-@pytest.fixture(scope="module")
-def context():
-    context = Context.create()
-    yield context
-    context.release()
-
-
 def brightest_beside(pixels: np.ndarray) -> np.ndarray:
     """The maximum of each pixel and its eight neighbors."""
     square = pixels.reshape(closures.SIZE, closures.SIZE, 3)
@@ -51,15 +42,15 @@ def brightest_beside(pixels: np.ndarray) -> np.ndarray:
 
 
 def assert_alike(
-    context, folder, kind: str, view: View, options: dict, inputs: dict, tolerance: float, normal=None, choices=1
+    library, folder, kind: str, view: View, options: dict, inputs: dict, tolerance: float, normal=None, choices=1
 ) -> None:
     """Every pixel's channels agree within a share of the brightest beside it, or of a fiftieth of all.
 
     The neighbors count because Cycles looks anywhere in a pixel's middle hundredth.
     """
     points, cycles = closures.by_cycles(kind, BL_IDNAMES[kind], view, options, inputs, normal)
-    with context.moderngl:
-        ours = closures.by_closure(context, folder, kind, view, points, options, inputs, normal, choices)
+    with library.context.moderngl:
+        ours = closures.by_closure(library, folder, kind, view, points, options, inputs, normal, choices)
     seen = np.isfinite(points).all(axis=1)
     cycles, ours, brightest = cycles[seen], ours[seen], brightest_beside(cycles)[seen]
     assert len(cycles) > 300 and cycles.max() > 0.0
@@ -119,34 +110,34 @@ SINGLE = {
 
 @pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
 @pytest.mark.parametrize("name", SINGLE)
-def test_single_lobes(context, tmp_path, name, view):
+def test_single_lobes(library, folder, name, view):
     kind, options, inputs = SINGLE[name]
-    assert_alike(context, tmp_path, kind, view, options, inputs, EXACT)
+    assert_alike(library, folder, kind, view, options, inputs, EXACT)
 
 
 @pytest.mark.parametrize("view", [ABOVE, THROUGH, INSIDE, INSIDE_OUT], ids=["above", "through", "inside", "inside_out"])
 @pytest.mark.parametrize("distribution", ["BECKMANN", "GGX", "MULTI_GGX"])
-def test_glass(context, tmp_path, view, distribution):
+def test_glass(library, folder, view, distribution):
     inputs = {"color": COLOR, "roughness": 0.5, "ior": 1.5}
-    assert_alike(context, tmp_path, "bsdf_glass", view, {"distribution": distribution}, inputs, EXACT)
+    assert_alike(library, folder, "bsdf_glass", view, {"distribution": distribution}, inputs, EXACT)
     if distribution == "BECKMANN":
         return
     inputs = {"base_color": COLOR, "roughness": 0.4, "ior": 1.3, "transmission_weight": 1.0, "specular_tint": TINT}
-    assert_alike(context, tmp_path, "bsdf_principled", view, {"distribution": distribution}, inputs, EXACT)
+    assert_alike(library, folder, "bsdf_principled", view, {"distribution": distribution}, inputs, EXACT)
 
 
 @pytest.mark.parametrize("view", [THROUGH, INSIDE_OUT], ids=["through", "inside_out"])
-def test_refraction_and_translucency(context, tmp_path, view):
+def test_refraction_and_translucency(library, folder, view):
     inputs = {"color": COLOR, "roughness": 0.4, "ior": 1.4}
     for distribution in ("BECKMANN", "GGX"):
-        assert_alike(context, tmp_path, "bsdf_refraction", view, {"distribution": distribution}, inputs, EXACT)
-    assert_alike(context, tmp_path, "bsdf_translucent", view, {}, {"color": COLOR}, EXACT)
+        assert_alike(library, folder, "bsdf_refraction", view, {"distribution": distribution}, inputs, EXACT)
+    assert_alike(library, folder, "bsdf_translucent", view, {}, {"color": COLOR}, EXACT)
 
 
 @pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
-def test_physical_conductor(context, tmp_path, view):
+def test_physical_conductor(library, folder, view):
     options = {"distribution": "MULTI_GGX", "fresnel_type": "PHYSICAL_CONDUCTOR"}
-    assert_alike(context, tmp_path, "bsdf_metallic", view, options, {"roughness": 0.6}, F82_FOR_CONDUCTORS)
+    assert_alike(library, folder, "bsdf_metallic", view, options, {"roughness": 0.6}, F82_FOR_CONDUCTORS)
 
 
 LAYERS = {
@@ -165,22 +156,20 @@ LAYERS = {
 @pytest.mark.parametrize("view", [ABOVE, GRAZING, INSIDE], ids=["above", "grazing", "inside"])
 @pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])
 @pytest.mark.parametrize("name", LAYERS)
-def test_principled_layers(context, tmp_path, name, distribution, view):
+def test_principled_layers(library, folder, name, distribution, view):
     inputs = {"base_color": COLOR, "roughness": 0.4, **LAYERS[name]}
-    assert_alike(context, tmp_path, "bsdf_principled", view, {"distribution": distribution}, inputs, TABLES)
+    assert_alike(library, folder, "bsdf_principled", view, {"distribution": distribution}, inputs, TABLES)
 
 
 @pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
-def test_all_of_principled(context, tmp_path, view):
+def test_all_of_principled(library, folder, view):
     """Six lobes, of which the closure holds three: choices make the mean."""
     inputs = {
         "base_color": COLOR, "metallic": 0.3, "roughness": 0.5, "transmission_weight": 0.4, "coat_weight": 0.6,
         "coat_roughness": 0.2, "sheen_weight": 0.5, "diffuse_roughness": 0.5, "anisotropic": 0.4,
         "specular_tint": (0.9, 0.7, 0.8),
     }  # fmt: skip
-    assert_alike(
-        context, tmp_path, "bsdf_principled", view, {"distribution": "MULTI_GGX"}, inputs, TABLES, choices=1000
-    )
+    assert_alike(library, folder, "bsdf_principled", view, {"distribution": "MULTI_GGX"}, inputs, TABLES, choices=1000)
 
 
 MAPPED = {
@@ -196,27 +185,27 @@ MAPPED = {
 
 @pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
 @pytest.mark.parametrize("name", MAPPED)
-def test_normals(context, tmp_path, name, view):
+def test_normals(library, folder, name, view):
     """A normal off the surface's own, which diffuse light is shadowed for."""
     kind, options, inputs = MAPPED[name]
-    assert_alike(context, tmp_path, kind, view, options, inputs, EXACT, TILTED)
+    assert_alike(library, folder, kind, view, options, inputs, EXACT, TILTED)
 
 
-def test_translucency_with_a_normal(context, tmp_path):
-    assert_alike(context, tmp_path, "bsdf_translucent", THROUGH, {}, {"color": COLOR}, EXACT, TILTED)
+def test_translucency_with_a_normal(library, folder):
+    assert_alike(library, folder, "bsdf_translucent", THROUGH, {}, {"color": COLOR}, EXACT, TILTED)
 
 
 @pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
-def test_normals_are_bent_until_they_reflect(context, tmp_path, view):
+def test_normals_are_bent_until_they_reflect(library, folder, view):
     inputs = {"roughness": 0.5}
-    assert_alike(context, tmp_path, "bsdf_glossy", view, {"distribution": "GGX"}, inputs, EXACT, BENT)
+    assert_alike(library, folder, "bsdf_glossy", view, {"distribution": "GGX"}, inputs, EXACT, BENT)
 
 
 @pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
-def test_layers_with_a_normal(context, tmp_path, view):
+def test_layers_with_a_normal(library, folder, view):
     """The coat keeps the surface's normal, the sheen is between both."""
     inputs = {"base_color": COLOR, "coat_weight": 0.5, "coat_roughness": 0.4, "sheen_weight": 0.7}
-    assert_alike(context, tmp_path, "bsdf_principled", view, {"distribution": "MULTI_GGX"}, inputs, TABLES, TILTED)
+    assert_alike(library, folder, "bsdf_principled", view, {"distribution": "MULTI_GGX"}, inputs, TABLES, TILTED)
 
 
 FILMS = {
@@ -228,7 +217,7 @@ FILMS = {
 
 @pytest.mark.parametrize("thickness", [200.0, 400.0])
 @pytest.mark.parametrize("name", FILMS)
-def test_thin_films(context, tmp_path, name, thickness):
+def test_thin_films(library, folder, name, thickness):
     """The mean of each channel: one angle stands for all microfacets, and Gaussians for the eye's sensitivities.
 
     On black glass a bare surface would be gray; the film's colors part by more than the tolerance.
@@ -236,8 +225,8 @@ def test_thin_films(context, tmp_path, name, thickness):
     kind, inputs = FILMS[name]
     inputs = inputs | {"thin_film_thickness": thickness}
     points, cycles = closures.by_cycles(kind, BL_IDNAMES[kind], ABOVE, {"distribution": "GGX"}, inputs)
-    with context.moderngl:
-        ours = closures.by_closure(context, tmp_path, kind, ABOVE, points, {"distribution": "GGX"}, inputs, choices=1)
+    with library.context.moderngl:
+        ours = closures.by_closure(library, folder, kind, ABOVE, points, {"distribution": "GGX"}, inputs, choices=1)
     seen = np.isfinite(points).all(axis=1)
     ratio, hue = ours[seen].mean(axis=0) / cycles[seen].mean(axis=0), cycles[seen].mean(axis=0) / cycles[seen].mean()
     print(f"film {name} {thickness}: ratio {np.round(ratio, 4)}, Cycles' hue {np.round(hue, 3)}")

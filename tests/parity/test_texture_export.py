@@ -49,5 +49,6 @@ def test_tiles_of_all_textures(renderer):
         column, row = number % 3 - 1, number // 3 - 1
         plane(0.4, _material(*tile), place(at=(1.1 * column, 1.1 * row, 0.0), turn=(0.0, 0.0, 4.0 * number)))
     camera((0.0, 0.0, 6.0), (0.0, 0.0, 0.0), 32.0)
+    reference = render_cycles(samples=256)
     result = render_rppm(renderer, photons=256, photon_path_length=1, iterations=64)
-    compare("textures", result.pictures, render_cycles(samples=256), CONVERGED)
+    compare("textures", result.pictures, reference, CONVERGED)

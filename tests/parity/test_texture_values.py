@@ -7,8 +7,6 @@ import bpy
 import numpy as np
 import pytest
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.materials.node_kinds import BOOLEAN, FLOAT
 from rppm_addon.materials.nodes.textures import KINDS
 
@@ -23,16 +21,6 @@ PERIODIC = {("tex_gabor", "phase")}
 """Outputs where 0 and 1 are the same."""
 BRICK_PROPERTIES = {"offset", "offset_frequency", "squash", "squash_frequency"}
 """Properties of the node in Blender, inputs of our kind."""
-
-
-@pytest.fixture(scope="module")
-def library():
-    context = Context.create()
-    library = ProgramLibrary(context)
-    yield library
-    with context.moderngl:
-        library.release()
-    context.release()
 
 
 def node_name(kind: str) -> str:

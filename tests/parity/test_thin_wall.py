@@ -8,8 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.gl.records import Record
 from rppm_addon.materials import albedo_tables
 
@@ -36,6 +34,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { SheetTestParameters parameters; };
 layout(std430, binding = 0) readonly buffer Cosines { float cosines[]; };
 layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430, binding = 2) readonly buffer Inputs { float inputs[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
@@ -61,13 +60,6 @@ void main() {
 """
 
 
-@pytest.fixture(scope="module")
-def context():
-    context = Context.create()
-    yield context
-    context.release()
-
-
 def named(cases: list[dict]) -> list:
     ids = ["-".join(case[key] for key in ("name", "camera", "lamp") if key in case) for case in cases]
     return [pytest.param(case, id=name) for case, name in zip(cases, ids, strict=True)]
@@ -80,13 +72,13 @@ def tolerance(case: dict) -> float:
 
 
 @pytest.mark.parametrize("case", named(MEASURED["lit"]))
-def test_lit(context, tmp_path, case):
+def test_lit(library, folder, case):
     """Every point's radiance agrees within a share of it, or of a fiftieth of the brightest."""
     view = View(CAMERAS[case["camera"]], LAMPS[case["lamp"]])
     points, cycles = np.array(POINTS[case["camera"]]), np.array(case["radiance"])
-    with context.moderngl:
+    with library.context.moderngl:
         ours = closures.by_closure(
-            context, tmp_path, "bsdf_principled", view, points, OPTIONS, case["inputs"], choices=256
+            library, folder, "bsdf_principled", view, points, OPTIONS, case["inputs"], choices=256
         )
     if not cycles.any():
         assert not ours.any()
@@ -96,16 +88,18 @@ def test_lit(context, tmp_path, case):
     assert error.max() < tolerance(case)
 
 
-def shares(context, folder, case: dict, seen_by_camera: bool) -> np.ndarray:
+def shares(library, folder, case: dict, seen_by_camera: bool) -> np.ndarray:
     """(n, 3, 4): what a smooth sheet reflects, what its lobes pass and what is transparent; in the first's last
     component, how far the lobes bend rays."""
     file = folder / "sheet.comp"
-    call = closures.node_call("bsdf_principled", OPTIONS, case["inputs"] | {"roughness": 0.0})
+    call = closures.node_call("bsdf_principled", OPTIONS)
     file.write_text(_SHADER.replace("CALL", call), encoding="utf-8")
-    library, cosines, gl = ProgramLibrary(context), np.array(case["cosines"], np.float32), context.moderngl
-    with context.moderngl:
+    cosines, gl = np.array(case["cosines"], np.float32), library.context.moderngl
+    inputs = closures.node_inputs("bsdf_principled", case["inputs"] | {"roughness": 0.0})
+    with library.context.moderngl:
         buffers = {
             "Cosines": gl.buffer(cosines.tobytes()),
+            "Inputs": gl.buffer(inputs.tobytes()),
             "Results": gl.buffer(reserve=48 * len(cosines)),
             "AlbedoTables": gl.buffer(albedo_tables.load().tobytes()),
         }
@@ -119,16 +113,15 @@ def shares(context, folder, case: dict, seen_by_camera: bool) -> np.ndarray:
         results = np.frombuffer(buffers["Results"].read(), np.float32).reshape(-1, 3, 4).astype(np.float64)
         for buffer in buffers.values():
             buffer.release()
-        library.release()
     return results
 
 
 @pytest.mark.parametrize("case", named(MEASURED["shares"]))
-def test_smooth_sheets(context, tmp_path, case):
+def test_smooth_sheets(library, folder, case):
     """The camera's rays meet a lobe that bends none, all others what is transparent; both pass as much as in Cycles."""
     reflected, passed = np.array(case["reflected"]), np.array(case["passed"])
     for seen_by_camera in (True, False):
-        found = shares(context, tmp_path, case, seen_by_camera)
+        found = shares(library, folder, case, seen_by_camera)
         through, none = (1, 2) if seen_by_camera else (2, 1)
         cycles = np.stack([reflected, passed], axis=1)
         error = np.abs(found[:, [0, through], :3] - cycles)

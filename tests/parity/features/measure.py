@@ -2,6 +2,7 @@
 """How far RPPM and Cycles differ in a row."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import bpy
 import numpy as np
@@ -40,16 +41,27 @@ class Measurement:
     """Of the mean over 8 x 8 pixels, in the block where it is largest beyond four standard errors."""
     block_excess: float
     """What of that is beyond four standard errors."""
-    flip: float
-    """Mean FLIP of the pictures, noise included."""
-    flip_noise: float
-    """Mean FLIP of Cycles' pictures of two seeds, 0 for values."""
     wrong: float
     """Of values: the share of pixels that differ visibly."""
     rppm: np.ndarray
     cycles: np.ndarray
     """(H, W, 3) the means over the seeds, row 0 at the bottom."""
+    cycles_seeds: np.ndarray
+    """(seeds, H, W, 3)"""
     warnings: tuple[str, ...]
+
+    @cached_property
+    def flip(self) -> float:
+        """Mean FLIP of the pictures, noise included."""
+        return self._flip(self.cycles, self.rppm)
+
+    @cached_property
+    def flip_noise(self) -> float:
+        """Mean FLIP of Cycles' pictures of two seeds, 0 for values."""
+        return self._flip(*self.cycles_seeds[:2]) if len(self.cycles_seeds) > 1 else 0.0
+
+    def _flip(self, *pictures: np.ndarray) -> float:
+        return float(flip(*(encoded(picture, white_of(self.cycles)) for picture in pictures)).mean())
 
 
 def encoded(picture: np.ndarray, white: float) -> np.ndarray:
@@ -73,8 +85,8 @@ def measure(row: Row, renderer: Renderer) -> Measurement:
     scene = export_scene(bpy.context.evaluated_depsgraph_get())
     settings = (VALUES if values else LIGHT) | row.settings
     scene.settings = scene.settings.with_values(**settings | {"iterations": settings["iterations"] * row.effort})
-    pictures = _batches(renderer, scene, 1 if values else BATCHES)
     reference = render_cycles(1, 1) if values else render_cycles(SAMPLES * row.effort, CYCLES_SEEDS)
+    pictures = _batches(renderer, scene, 1 if values else BATCHES)
     return compared(pictures, reference, values, tuple(scene.warnings))
 
 
@@ -107,20 +119,15 @@ def compared(rppm: np.ndarray, cycles: np.ndarray, values: bool, warnings: tuple
         # A channel that is nearly black is judged by the picture.
         by_channel = np.abs(ours.mean(axis=(0, 1)) - channels) / np.maximum(channels, 0.2 * level)
         mean = by_channel.max()
-    shown = [encoded(picture, white) for picture in (reference, ours)]
-    noise = 0.0
-    if len(cycles) > 1:
-        noise = float(flip(encoded(cycles[0], white), encoded(cycles[1], white)).mean())
     return Measurement(
         mean=float(mean),
         mean_error=float(np.sqrt(squared_error.sum()) / squared_error.size / level),
         block=float(difference[worst] / blocks[worst]),
         block_excess=float(max(excess[worst], 0.0)),
-        flip=float(flip(*shown).mean()),
-        flip_noise=noise,
         wrong=float((np.abs(ours - reference).max(axis=-1) > WRONG * np.maximum(reference.max(axis=-1), white)).mean()),
         rppm=ours,
         cycles=reference,
+        cycles_seeds=cycles,
         warnings=warnings,
     )
 

@@ -2,7 +2,8 @@
 """Features of materials, lights, worlds and cameras against Cycles.
 
 `make parity` measures, prints and draws the same. Rows that need more samples than the others run with the long tests,
-and so do all but a few of those in which a node drives an input of the Principled BSDF: they take long to compile.
+and so do all but a few of those in which a node drives an input of the Principled BSDF, as they take long to compile,
+and all but the first of those kinds of nodes whose values have tests of their own.
 """
 
 import numpy as np
@@ -15,19 +16,32 @@ from .suite import ROWS
 DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", "Driven: Normal by a bump")
 
 
-def takes_long(row) -> bool:
+VALUES_ELSEWHERE = {
+    "Textures", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range", "Vector Transform",
+}  # fmt: skip
+"""Groups of nodes each of whose options test_texture_values.py and test_node_values.py compare over more values."""
+
+
+def takes_long(row, first_of_group: bool) -> bool:
+    if row.group in VALUES_ELSEWHERE and not first_of_group:
+        return True
     return row.effort > 1 or (row.id.startswith("Driven: ") and row.id not in DRIVEN_OFTEN)
 
 
-PARAMETERS = [pytest.param(row, id=row.id, marks=[pytest.mark.long] if takes_long(row) else []) for row in ROWS]
+def parameters():
+    groups = set()
+    for row in ROWS:
+        long = takes_long(row, row.group not in groups)
+        groups.add(row.group)
+        yield pytest.param(row, id=row.id, marks=[pytest.mark.long] if long else [])
 
 
-@pytest.mark.parametrize("row", PARAMETERS)
+@pytest.mark.parametrize("row", parameters())
 def test_feature(renderer, row):
     found = measure(row, renderer)
     print(
-        f"{row.id}: mean {found.mean:.2%} +- {found.mean_error:.2%}, block {found.block:.2%}, FLIP {found.flip:.3f} "
-        f"(noise {found.flip_noise:.3f}), pixels that differ {found.wrong:.2%}"
+        f"{row.id}: mean {found.mean:.2%} +- {found.mean_error:.2%}, block {found.block:.2%}, "
+        f"pixels that differ {found.wrong:.2%}"
     )
     assert not shortcomings(row, found)
 
