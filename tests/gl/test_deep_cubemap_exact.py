@@ -4,7 +4,6 @@
 Scenes of 200 to a million triangles, made and real ones; rays of all kinds that are hard for either.
 """
 
-import sys
 from collections import Counter
 from pathlib import Path
 
@@ -16,10 +15,8 @@ from deep_cubemap_files import blend_triangles, ply_triangles
 from deep_cubemap_hard_rays import KINDS, HardRays
 from deep_cubemap_scenes import box, furnished_room, room_with_meshes, sphere, torus
 
+from benchmarks.device.bounding_volumes import BoundingVolumes, build_nodes
 from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE
-
-sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
-from bounding_volumes import BoundingVolumes, build_nodes
 
 RAYS = 6600
 """Of each kind about each center: more than two million in all."""
