@@ -3,7 +3,8 @@
 
 Without one, since the branch left main, or on main since the commit before. A changed test, or a module of tests, asks
 for the test files that import it; all else asks for folders by the room that it is in (``ROOMS``), as nearly all tests
-import nearly all of the package. Nothing is printed where git knows no history.
+import nearly all of the package. Nothing is printed where git knows no history, nor for a change that touches more long
+tests than CI has time for: ``make test-long`` is for these.
 """
 
 import ast
@@ -12,6 +13,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+MOST_FILES = 6
+"""With long tests, that CI has time for."""
 PICTURES = ("tests/gl", "tests/parity/test_*.py")
 ROOMS: dict[str, tuple[str, ...]] = {
     "shaders/materials/": ("tests/gl/test_closures.py", "tests/parity"),
@@ -97,5 +100,14 @@ def changed_since(commit: str | None) -> list[str]:
     return (_git("diff", "--name-only", base) or "").splitlines()
 
 
+def bounded(names: list[str], root: Path = ROOT) -> list[str]:
+    """Those of the files that have long tests, or none where these are too many."""
+    long = [name for name in names if "mark.long" in (root / name).read_text(encoding="utf-8")]
+    if len(long) <= MOST_FILES:
+        return long
+    print(f"the change asks for the long tests of {len(long)} files: run make test-long", file=sys.stderr)
+    return []
+
+
 if __name__ == "__main__":
-    print(" ".join(touched(changed_since(sys.argv[1] if len(sys.argv) > 1 else None))))
+    print(" ".join(bounded(touched(changed_since(sys.argv[1] if len(sys.argv) > 1 else None)))))

@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
-from touched_tests import ROOMS, touched  # noqa: E402
+from touched_tests import MOST_FILES, ROOMS, bounded, touched  # noqa: E402
 
 sys.path.remove(str(ROOT / "tools"))
 
@@ -63,3 +63,11 @@ def test_rooms_are_there():
         assert (ROOT / room).is_dir()
         assert not any(room.startswith(earlier) for earlier in rooms[:number])
         assert all(list(ROOT.glob(pattern)) for pattern in ROOMS[room])
+
+
+def test_more_than_ci_has_time_for_is_left_to_hand(tmp_path, capsys):
+    names = [f"test_{number}.py" for number in range(MOST_FILES + 2)]
+    for name in names:
+        (tmp_path / name).write_text("@pytest.mark.long" if name != names[0] else "", encoding="utf-8")
+    assert bounded(names[:-1], tmp_path) == names[1:-1] and not capsys.readouterr().err
+    assert bounded(names, tmp_path) == [] and "make test-long" in capsys.readouterr().err

@@ -83,7 +83,6 @@ class Film(BufferSet):
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Of those wanted, the ones that iterations find."""
 
-
     def add_passes(
         self,
         context: StageContext,
