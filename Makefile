@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched test-gui lint pairs references parity bench bench-tools bench-export bench-peers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched coverage test-gui lint pairs references parity bench bench-tools bench-export bench-peers clean
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
@@ -44,6 +44,9 @@ test-long: setup ## Run the tests that take long
 test-touched: setup ## Run of the tests that take long what changed files ask for (SINCE=commit)
 	files="$$(.venv/bin/python tools/touched_tests.py $(SINCE))" && if [ -n "$$files" ]; then \
 		$(PYTEST) -m long $$files || [ $$? -eq 5 ]; else echo "no long tests are asked for"; fi
+
+coverage: setup ## Report which lines tests/unit, gl, session and cli reach (TESTS=...: others)
+	$(PYTEST) -m 'not long' --cov --cov-report=term $(or $(TESTS),tests/unit tests/gl tests/session tests/cli)
 
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
 	timeout --kill-after=10 2400 .venv/bin/python -m pytest tests/gui
