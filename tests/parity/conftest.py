@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One renderer for all parity tests, and Blender with RPPM registered while they run."""
 
+from pathlib import Path
+
 import pytest
 
 pytest.importorskip("bpy", reason="the parity tests render with Cycles in the bpy wheel")
@@ -27,7 +29,7 @@ def pytest_configure(config):
 def reference_file(request):
     """Of the module. Written, it loses what no test asked for, unless only some of the tests ran or one failed."""
     failed = request.session.testsfailed
-    references.begin(request.path.relative_to(request.config.rootpath))
+    references.begin(request.path.relative_to(Path(__file__).parents[2]))
     yield
     arguments = [str(argument) for argument in request.config.invocation_params.args]
     some = any("::" in argument or argument.startswith(("-k", "-m", "--lf")) for argument in arguments)
