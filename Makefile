@@ -49,7 +49,7 @@ coverage: setup ## Report which lines tests/unit, gl, session and cli reach (TES
 	$(PYTEST) -m 'not long' --cov --cov-report=term $(or $(TESTS),tests/unit tests/gl tests/session tests/cli)
 
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
-	timeout --kill-after=10 2400 .venv/bin/python -m pytest tests/gui
+	timeout --kill-after=10 2400 .venv/bin/python -m pytest -m 'not long' tests/gui
 
 lint: setup ## Check Python, types, imports, license lines and shaders
 	.venv/bin/ruff check .

@@ -39,6 +39,7 @@ def test_many_objects_are_exported_in_slices(open_blender):
     blender.quit()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["bathroom", "bmw27"])
 @pytest.mark.parametrize("engine", ENGINES)
 def test_the_longest_gap_while_a_scene_is_switched_to_rendered(open_blender, session_folder, name, engine):
