@@ -2,7 +2,6 @@
 """What a benchmark ran on, and the clock that means something there."""
 
 import datetime
-import os
 import platform
 import re
 import statistics
@@ -15,13 +14,9 @@ import moderngl
 import numpy as np
 
 from rppm_addon.gl.context import Context
+from rppm_addon.processors import usable_cores
 
 from . import ROOT
-
-
-def usable_cores() -> int:
-    """Processor cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class Clock:

@@ -14,7 +14,9 @@ import time
 
 import numpy as np
 
-from ..machine import checkout_commit, processor_name, usable_cores
+from rppm_addon.processors import usable_cores
+
+from ..machine import checkout_commit, processor_name
 from . import plain
 from .description import Scene
 from .environments import OUT, ROOT, install, run_job

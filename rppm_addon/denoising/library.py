@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..processors import usable_cores
 from ..scene.errors import DenoiserError
 from ..scene.settings import DenoisingQuality
 
@@ -55,7 +56,7 @@ class OpenImageDenoise:
         self._lock = threading.Lock()
         self._device = self._calls["oidnNewDevice"](_DEVICE_CPU)
         self._check("cannot be used on this processor")  # without a device as well
-        self._calls["oidnSetDeviceInt"](self._device, b"numThreads", threads or _cores())
+        self._calls["oidnSetDeviceInt"](self._device, b"numThreads", threads or usable_cores())
         # Else it would bind its threads, and the one that calls, to processors that the renderer uses too.
         self._calls["oidnSetDeviceBool"](self._device, b"setAffinity", False)
         self._calls["oidnCommitDevice"](self._device)
@@ -143,8 +144,3 @@ def _loaded(path: Path) -> dict:
     for name, (result, *arguments) in _FUNCTIONS.items():
         calls[name].restype, calls[name].argtypes = result, arguments
     return calls
-
-
-def _cores() -> int:
-    """Processors that this process may run on."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

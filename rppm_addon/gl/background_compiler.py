@@ -15,6 +15,7 @@ from collections.abc import Callable
 
 import moderngl
 
+from ..processors import usable_cores
 from .context import Context
 from .sources import Source
 from .textures import TextureKind
@@ -61,11 +62,7 @@ class EmptyDispatch:
 def is_of_use(context: Context) -> bool:
     """Whether a driver compiles programs at their first run and keeps them, and there is a core to spare."""
     kept = os.environ.get("MESA_SHADER_CACHE_DISABLE", "").lower() not in {"1", "true", "yes", "y", "t"}
-    return context.is_software and kept and _cores() > 1
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return context.is_software and kept and usable_cores() > 1
 
 
 class BackgroundCompiler:
@@ -84,7 +81,7 @@ class BackgroundCompiler:
         """A program that will be run, but not at once."""
         with self._condition:
             self._waiting.append(source)
-            if self._threads < min(_cores() - 1, _MOST_THREADS):
+            if self._threads < min(usable_cores() - 1, _MOST_THREADS):
                 self._threads += 1
                 threading.Thread(target=self._run, name="RPPM compiler").start()
 

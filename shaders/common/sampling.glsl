@@ -7,6 +7,15 @@ float power_heuristic(float pdf, float other_pdf) {
     return pdf > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 0.0;
 }
 
+// Whether the newest of several candidates is taken in place of those before, by its weight; weights: the sum with it.
+// u: uniform in [0, 1), before as after (weighted reservoir sampling with one random number).
+bool takes_candidate(float weight, float weights, inout float u) {
+    u *= weights;
+    bool taken = u < weight;
+    u = taken ? u / weight : (u - weight) / max(weights - weight, 1e-30);
+    return taken;
+}
+
 // Concentric map of the unit square to the unit disk (Shirley and Chiu 1997).
 vec2 sample_disk(vec2 u) {
     vec2 p = 2.0 * u - 1.0;

@@ -36,18 +36,14 @@ bool can_be_lit(Closure closure, bool gathered) {
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
 // choice of the light included.
-vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, bool gathers, vec3 wo, vec3 wi, bool front,
-                      uint visibility,
-                      bool environment, float light_pdf) {
-    vec4 shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, false),
-        gathering_shares = vec4(0.0);
-    if (gathers) gathering_shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, true);
-    float total = sum(shares) + sum(gathering_shares);
+vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers, vec3 wo,
+                      vec3 wi, bool front, uint visibility, bool environment, float light_pdf) {
     vec3 value = (visibility & RAY_DIFFUSE) != 0u ? diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
     if (gathers && environment) {
         float cosine = abs(dot(unpack_unit_vector(closure.diffuse_normal), wi));
         float part = largest(throughput * (front ? closure.diffuse : closure.translucent));
-        value *= power_heuristic(light_pdf, part * path_survival(total) / max(total, 1e-20) * cosine / PI);
+        float probability = part * path_survival(shares.total) / max(shares.total, 1e-20);
+        value *= power_heuristic(light_pdf, probability * cosine / PI);
     }
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
@@ -56,7 +52,8 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, bool gathered, bool gath
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = 1.0;
         if (light_pdf > 0.0 && parameters.last_segment == 0u && (specular || (gathers && environment)))
-            weight = power_heuristic(light_pdf, lobe_probability(specular ? shares : gathering_shares, total, k)
+            weight = power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.gathering,
+                                                                 shares.total, k)
                                                     * lobe_pdf(lobe, lobe_normal(lobe), wo, wi));
         value += weight * lobe_scattered(closure, lobe, wo, wi, front);
     }
@@ -75,21 +72,18 @@ struct Arriving { vec3 radiance; vec3 direction; float distance; uint triangle; 
 const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, NO_TRIANGLE);
 
 // Of light objects, where smooth lobes that reflect little reflect them. A path would go there as seldom.
-Arriving arriving_reflected(Closure closure, vec3 throughput, vec3 wo, bool gathers, uvec4 choices) {
+Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares, vec3 wo, uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
     for (int k = 0; k < CLOSURE_LOBES; ++k) looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
     Arriving arriving = NOTHING_ARRIVES;
     if (!looks) return arriving;
-    vec4 shares = camera_path_shares(closure, throughput, wo, parameters.specular_alpha, false);
-    float total = sum(shares);
-    if (gathers) total += sum(camera_path_shares(closure, throughput, wo, parameters.specular_alpha, true));
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u));
     float weights = 0.0, u = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).x;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (!looks_for_reflected_lights(lobe, shares, total, k, wo, alpha)) continue;
+        if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, u_lobe, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
@@ -100,17 +94,17 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, vec3 wo, bool gath
         float weight = largest(radiance);
         if (!(weight > 0.0)) continue;
         weights += weight;
-        u = passed.u * weights;
-        bool taken = u < weight;
-        u = taken ? u / weight : (u - weight) / max(weights - weight, 1e-30);
-        if (taken) arriving = Arriving(radiance / weight, sampled.direction, passed.distance, NO_TRIANGLE);
+        u = passed.u;
+        if (takes_candidate(weight, weights, u))
+            arriving = Arriving(radiance / weight, sampled.direction, passed.distance, NO_TRIANGLE);
     }
     arriving.radiance *= weights;
     return arriving;
 }
 
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(Closure closure, vec3 throughput, vec3 wo, bool gathered, bool gathers, uvec4 choices) {
+Arriving arriving_from_light(Closure closure, vec3 throughput, PathShares shares, vec3 wo, bool gathered, bool gathers,
+                             uvec4 choices) {
     if (!can_be_lit(closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices),
                   scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
@@ -128,7 +122,7 @@ Arriving arriving_from_light(Closure closure, vec3 throughput, vec3 wo, bool gat
     // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
     float light_pdf = sampled.pdf * light.selection_probability;
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
-    vec3 scattered = evaluate_closure(closure, throughput, gathered, gathers, wo, sampled.direction,
+    vec3 scattered = evaluate_closure(closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, light.kind == LIGHT_WORLD, light_pdf);
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
                     sampled.triangle);
@@ -150,16 +144,18 @@ void main() {
     vec3 throughput = camera_paths[index].throughput * segment_transmittance(flags, closure);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
-    Arriving arriving = arriving_from_light(closure, throughput, -ray.direction, gathered, gathers, choices);
+    vec3 viewer = -ray.direction;
+    PathShares shares = path_shares(closure, throughput, viewer, parameters.specular_alpha, gathers);
+    Arriving arriving = arriving_from_light(closure, throughput, shares, viewer, gathered, gathers, choices);
     Arriving reflected = NOTHING_ARRIVES;
-    if (!gathered) reflected = arriving_reflected(closure, throughput, -ray.direction, gathers, choices);
+    if (!gathered) reflected = arriving_reflected(closure, throughput, shares, viewer, choices);
     // One ray for both: by what they would add.
     float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);
     if (!(weight + reflected_weight > 0.0)) return;
     if (reflected_weight > 0.0) {
         float total = weight + reflected_weight;
         float u = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).y;
-        bool takes_reflected = u * total < reflected_weight;
+        bool takes_reflected = takes_candidate(reflected_weight, total, u);
         if (takes_reflected) arriving = reflected;
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
     }

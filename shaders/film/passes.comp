@@ -28,6 +28,7 @@ layout(std430, binding = 11) readonly buffer Materials;
 const float MOSTLY_TRANSPARENT = 0.5;
 // Lobes up to this alpha, and what is specular by more than this share, denoisers see through. As in Cycles.
 const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;
+const uint DENOISING_DATA = 1u << PASS_DENOISING_ALBEDO | 1u << PASS_DENOISING_NORMAL | 1u << PASS_DENOISING_DEPTH;
 
 uint pixel;
 uvec2 counts;      // with this iteration
@@ -131,23 +132,26 @@ void main() {
     if (index == NO_PATH) return;
     pixel = parameters.first_pixel + index;
     if (parameters.segment == 0u) begin_iteration();
-    CameraPath path = camera_paths[index];
+    bool keeps_paths = parameters.keeps_paths != 0u;
     if (!(rays[index].maximum_distance > 0.0)) {
-        if (parameters.keeps_paths != 0u) pass_paths[index].w = 0.0;
+        if (keeps_paths) pass_paths[index].w = 0.0;
         return;
     }
+    CameraPath path = camera_paths[index];
+    bool straight = (path.flags & PATH_STRAIGHT) != 0u, looks = straight && (path.flags & PATH_SURFACE_FOUND) == 0u;
+    bool denoised = (parameters.passes & DENOISING_DATA) == 0u
+                 || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
+    if (!keeps_paths && !looks && denoised) return;
     Closure closure = closures[index];
     hit = closure_hit(closure);
-    bool straight = (path.flags & PATH_STRAIGHT) != 0u;
-    bool denoised = (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
     uint kind = (hit ? PASS_PATH_HIT : 0u) | (straight ? PASS_PATH_STRAIGHT : 0u)
               | (denoised ? 0u : PASS_PATH_DENOISED);
-    if (parameters.keeps_paths != 0u) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
+    if (keeps_paths) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
     if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
         path.flags |= PATH_DENOISING_DATA_FOUND;
     vec3 transparent = closure.transparent;
     bool passes_by = hit && (transparent.r + transparent.g + transparent.b) / 3.0 > MOSTLY_TRANSPARENT;
-    if (straight && (path.flags & PATH_SURFACE_FOUND) == 0u && !passes_by) {
+    if (looks && !passes_by) {
         path.flags |= PATH_SURFACE_FOUND;
         write_first_surface(closure);
     }

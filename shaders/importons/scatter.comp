@@ -40,8 +40,7 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radi
         float share = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
         if (share <= 0.0) continue;
         total += share;
-        if (u * total < share) {
-            u = u * total / share;
+        if (takes_candidate(share, total, u)) {
             importon.lobe_weight = throughput * lobe.weight / share;
             importon.lobe_kind = pack_kind(lobe.kind, lobe.tint);
             importon.lobe_f0 = passes_by_f0(lobe.kind) ? throughput * lobe.f0 / share : lobe.f0;
@@ -49,7 +48,7 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radi
             importon.lobe_ior = lobe.ior;
             importon.lobe_normal = lobe.normal;
             importon.lobe_anisotropy = lobe.anisotropy;
-        } else u = (u * total - share) / (total - share);
+        }
     }
     importon.lobe_weight *= total;
     uint kind = unpack_kind(importon.lobe_kind);
@@ -181,11 +180,8 @@ Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec3 u_
 void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, float radius, float caustic_radius,
            uvec4 choices, float u) {
     vec3 viewer = -ray.direction;
-    vec4 shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, false);
-    vec4 gathering_shares = vec4(0.0);
-    if (gathers)
-        gathering_shares = camera_path_shares(closure, path.throughput, viewer, parameters.specular_alpha, true);
-    float gathering = sum(gathering_shares), total = sum(shares) + gathering;
+    PathShares all = path_shares(closure, path.throughput, viewer, parameters.specular_alpha, gathers);
+    float gathering = sum(all.gathering), total = all.total;
     if (total <= 0.0) return;
     float survival = path_survival(total);
     if (u >= survival) return;
@@ -195,8 +191,8 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, 
     bool sets_out = u < gathering, gathered = (path.flags & PATH_GATHERED) != 0u;
     if (sets_out) {
         path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED | (gathered ? PATH_GATHERED_AGAIN : 0u);
-        shares = gathering_shares;
     } else u -= gathering;
+    vec4 shares = sets_out ? all.gathering : all.specular;
     Event event;
     bool diffuse = sets_out && u < shares.x;
     vec3 found_weight = vec3(1.0);

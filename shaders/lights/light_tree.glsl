@@ -143,9 +143,7 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
     float weight = largest(radiance);
     if (!(weight > 0.0)) return;
     passed.weights += weight;
-    float u = passed.u * passed.weights;
-    passed.u = u < weight ? u / weight : (u - weight) / max(passed.weights - weight, 1e-30);
-    if (u >= weight) return;
+    if (!takes_candidate(weight, passed.weights, passed.u)) return;
     passed.chosen = radiance / weight;
     passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }

@@ -36,7 +36,7 @@ class Driver:
 
 @pytest.fixture
 def driver(monkeypatch):
-    monkeypatch.setattr(background_compiler, "_cores", lambda: 2)
+    monkeypatch.setattr(background_compiler, "usable_cores", lambda: 2)
     monkeypatch.setattr(background_compiler, "_KEEPING_SECONDS", 0.0)
     monkeypatch.setattr(TextureKind, "by_unit", {})
     return Driver()

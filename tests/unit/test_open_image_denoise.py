@@ -189,7 +189,7 @@ def test_threads_are_those_of_the_process(monkeypatch):
     if not hasattr(os, "sched_getaffinity"):
         pytest.skip("this system does not say on which processors a process may run")
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 2, 5})
-    assert library_module._cores() == 3
+    assert library_module.usable_cores() == 3
 
 
 def test_signatures_are_complete():

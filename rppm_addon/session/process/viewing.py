@@ -213,7 +213,7 @@ class Viewing:
             if denoise:
                 self._start_denoising(combined, scene)
             if show:
-                self._give_out(combined.copy(), scene, generation)
+                self._give_out(combined.copy() if denoise else combined, scene, generation)
 
     def _start_denoising(self, combined: np.ndarray, scene: Scene) -> None:
         key = self._pictures, self._mapper.iteration
@@ -249,9 +249,7 @@ class Viewing:
         """Go on without denoising, and say so."""
         self._left_noisy = self._pictures
         self._denoised = 0
-        warnings, text = self._mapper.scene.warnings, f"the viewport is not denoised: {error}"
-        if text not in warnings:
-            warnings.append(text)
+        self._mapper.scene.warn(f"the viewport is not denoised: {error}")
 
     def _look_at(self, scene: Scene, generation: int) -> None:
         """Give a first look at a scene out, unless it fails: what is wrong then the renderer says later."""

@@ -115,6 +115,18 @@ vec4 camera_path_shares(Closure closure, vec3 throughput, vec3 viewer, float spe
 
 float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
 
+// All of a path's shares; gathering: of a path that may set out to gather, else 0; total: of both.
+struct PathShares { vec4 specular; vec4 gathering; float total; };
+
+PathShares path_shares(Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool gathers) {
+    PathShares shares;
+    shares.specular = camera_path_shares(closure, throughput, viewer, specular_alpha, false);
+    shares.gathering = vec4(0.0);
+    if (gathers) shares.gathering = camera_path_shares(closure, throughput, viewer, specular_alpha, true);
+    shares.total = sum(shares.specular) + sum(shares.gathering);
+    return shares;
+}
+
 // Roulette sets in once the path's throughput has fallen; total: of all shares by which it may go on.
 float path_survival(float total) { return min(1.0, 4.0 * total); }
 
