@@ -40,6 +40,8 @@ class Agreement:
     """Relative mean square difference of the two; the sum of the noise where they agree."""
     mean_ratio: float
     """Mean radiance of the first over that of the second."""
+    seconds: float
+    """That each rendered."""
 
     @property
     def floor(self) -> float:
@@ -56,8 +58,8 @@ class Reference:
     agreement: Agreement
 
 
-def combine(halves: dict[str, tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, Agreement]:
-    """The weighted mean of two methods, of which each gave two pictures."""
+def combine(halves: dict[str, tuple[np.ndarray, np.ndarray]], seconds: float) -> tuple[np.ndarray, Agreement]:
+    """The weighted mean of two methods, of which each gave two pictures in these seconds together."""
     names = list(halves)
     means = [0.5 * (first + second) for first, second in halves.values()]
     # The mean of two pictures has half of the variance of one, their difference twice.
@@ -67,28 +69,33 @@ def combine(halves: dict[str, tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarra
     pixels = sum(weight * mean for weight, mean in zip(weights, means))
     ratio = float(means[0].mean(dtype=np.float64) / means[1].mean(dtype=np.float64))
     difference = relative_mse(means[0], means[1])
-    return pixels.astype(np.float32), Agreement(names, noise, weights, difference, ratio)
+    return pixels.astype(np.float32), Agreement(names, noise, weights, difference, ratio, seconds)
+
+
+def _read(path: Path) -> Reference:
+    with np.load(path) as arrays:
+        return Reference(arrays["pixels"], arrays.get("without"), Agreement(**json.loads(str(arrays["agreement"]))))
 
 
 class ReferenceStore:
     """Renders references once and keeps them in out/peers/references/."""
 
     def __init__(self, files: SceneFiles, resolution: int, seconds: float) -> None:
-        """seconds: for each of the two methods."""
+        """seconds: for each of the two methods, at least."""
         self._files = files
         self._resolution = resolution
         self._seconds = seconds
 
     def get(self, scene: Scene) -> Reference:
         """The reference of a scene. Raises PeersError."""
-        folder = OUT / "references" / f"{scene.name}_{scene.fingerprint}_{self._resolution}_{self._seconds:g}s"
-        path = folder / "reference.npz"
-        if not path.exists():
-            self._make(scene, folder)
-        with np.load(path) as arrays:
-            without = arrays.get("without")
-            agreement = Agreement(**json.loads(str(arrays["agreement"])))
-            return Reference(arrays["pixels"], without, agreement)
+        stem = f"{scene.name}_{scene.fingerprint}_{self._resolution}"
+        kept = [_read(path) for path in sorted((OUT / "references").glob(f"{stem}_*s/reference.npz"))]
+        kept = [reference for reference in kept if reference.agreement.seconds >= self._seconds]
+        if kept:
+            return min(kept, key=lambda reference: reference.agreement.floor)
+        folder = OUT / "references" / f"{stem}_{self._seconds:g}s"
+        self._make(scene, folder)
+        return _read(folder / "reference.npz")
 
     def _make(self, scene: Scene, folder: Path) -> None:
         halves = {}
@@ -96,7 +103,7 @@ class ReferenceStore:
             half = 0.5 * self._seconds
             pictures = [self._render(scene, METHODS[name], folder / f"{name}_{seed}", half, seed) for seed in _SEEDS]
             halves[name] = tuple(pictures)
-        pixels, agreement = combine(halves)
+        pixels, agreement = combine(halves, self._seconds)
         arrays = {"pixels": pixels, "agreement": np.array(json.dumps(dataclasses.asdict(agreement)))}
         if scene.caustic:
             without = Method("without", "", "cycles", {"no_caustics": True})

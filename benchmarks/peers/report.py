@@ -83,9 +83,9 @@ def scene_words(scene: SceneResult) -> str:
     first, second = (METHODS[name].label for name in agreement.methods)
     words = (
         f"{scene.triangles} triangles, lights: {scene.lights}. Reference: {first} ({agreement.weights[0]:.0%}) and "
-        f"{second} ({agreement.weights[1]:.0%}), whose means differ by {abs(agreement.mean_ratio - 1.0):.2%} and whose "
-        f"pixels by {_error(agreement.difference)} where their noise explains {_error(sum(agreement.noise))}. Errors "
-        f"near {_error(agreement.floor)} are the reference's own."
+        f"{second} ({agreement.weights[1]:.0%}), {agreement.seconds:g} s each, whose means differ by "
+        f"{abs(agreement.mean_ratio - 1.0):.2%} and whose pixels by {_error(agreement.difference)} where their noise "
+        f"explains {_error(sum(agreement.noise))}. Errors near {_error(agreement.floor)} are the reference's own."
     )
     if abs(agreement.mean_ratio - 1.0) > 0.02:
         words += " **The two do not agree: take this scene's figures with care.**"
@@ -129,8 +129,8 @@ def _method_words(results: Results) -> str:
         "- Energy: mean radiance over the reference's. Caustic's energy: what the picture has within the caustic's "
         "mask beyond a render without caustics, over what the reference has.",
         "- Memory: the most that the process held, Python and Blender included where the renderer lives in them.",
-        f"- References: two methods, {results.reference_seconds:g} s each, in two runs with seeds of their own whose "
-        "difference tells the noise; weighted by its inverse.",
+        "- References: two methods, each in two runs with seeds of their own whose difference tells "
+        "the noise; weighted by its inverse.",
         "- All filter pixels by Blackman-Harris of 1.5 pixels or the Gauss curve nearest to it, and take paths of up "
         "to 16 segments (RPPM 8 + 8).",
     ]

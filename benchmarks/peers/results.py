@@ -83,7 +83,6 @@ class Results:
     machine: dict[str, object]
     seconds: list[float]
     resolution: int
-    reference_seconds: float
     scenes: list[SceneResult] = field(default_factory=list)
 
     def write(self, path: Path) -> None:

@@ -116,7 +116,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--scenes", nargs="*", choices=tuple(SCENES), metavar="SCENE", help=", ".join(SCENES))
     parser.add_argument("--methods", nargs="*", choices=tuple(METHODS), metavar="METHOD", help=", ".join(METHODS))
     parser.add_argument("--seconds", type=lambda text: sorted(float(part) for part in text.split(",")))
-    parser.add_argument("--reference-seconds", type=float, help="for each of the two methods of a reference")
+    parser.add_argument("--reference-seconds", type=float, help="for each of the two methods of a reference, at least")
     parser.add_argument("--resolution", type=int, default=256)
     parser.add_argument("--publish", action="store_true", help=f"write {PAGE.relative_to(ROOT)} too")
     parser.add_argument("--page", action="store_true", help="only write the page of out/peers/results.json anew")
@@ -151,7 +151,7 @@ def main() -> int:
             methods = [method for method in methods if method.adapter != adapter]
     files = SceneFiles(options.resolution)
     store = ReferenceStore(files, options.resolution, options.reference_seconds)
-    results = Results(describe_machine(), options.seconds, options.resolution, options.reference_seconds)
+    results = Results(describe_machine(), options.seconds, options.resolution)
     for name in options.scenes:
         try:
             measure(make_scene(name), methods, files, store, results)

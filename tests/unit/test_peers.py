@@ -95,7 +95,7 @@ def test_references_are_weighted_by_the_inverse_of_their_noise():
     def halves(deviation):
         return tuple(true + deviation * random.standard_normal(true.shape) for _ in range(2))
 
-    pixels, agreement = combine({"a": halves(deviations[0]), "b": halves(deviations[1])})
+    pixels, agreement = combine({"a": halves(deviations[0]), "b": halves(deviations[1])}, 300.0)
     # Each mean of two has half the variance; 12288 values give it within a few percent.
     for noise, deviation in zip(agreement.noise, deviations):
         assert noise == pytest.approx(0.5 * deviation**2 / 0.26, rel=0.1)
@@ -119,10 +119,10 @@ def test_late_pictures_count_for_their_error_on_the_way():
 
 
 def results(own, peer):
-    agreement = Agreement(["cycles", "mitsuba_path"], [1e-4, 1e-4], [0.5, 0.5], 2e-4, 1.001)
+    agreement = Agreement(["cycles", "mitsuba_path"], [1e-4, 1e-4], [0.5, 0.5], 2e-4, 1.001, 300.0)
     scene = SceneResult("interior", "Room", 12, 2, agreement, 1.0, "", [own, peer])
     machine = {"processor": "P", "cores": 2, "system": "S", "commit": "c", "date": "d", "load": 0.0}
-    return Results(machine, [2.0, 8.0], 256, 60.0, [scene])
+    return Results(machine, [2.0, 8.0], 256, [scene])
 
 
 def test_the_page_tells_losses_as_plainly_as_wins(tmp_path):
