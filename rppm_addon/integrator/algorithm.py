@@ -3,7 +3,6 @@
 
 from collections.abc import Iterator
 
-from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
@@ -32,7 +31,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.resolve(context, iteration, segment)
             yield
             stages.shadow_catcher.cast(context, importons, band, iteration, segment)
-            stages.direct_light.add(context, importons, stages.final_gather, band, iteration, segment, radii)
+            stages.direct_light.add(context, importons, stages.direct_light_blocks, band, iteration, segment, radii)
             yield
             film.add_passes(context, camera_hits.camera.buffer, importons, band, iteration, segment)
             importons.scatter(context, stages.scatter_blocks, band, iteration, segment, radii)
@@ -66,10 +65,7 @@ def trace_photons(context: StageContext, photons: Photons, iteration: Iteration)
 def store_photons(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Radii:
     """Offer the photons that were stored to the importons; returns the radii within which these take them."""
     estimator = stages.density_estimator
-    # With shadow rays direct photons would count direct light twice.
-    indirect_only = context.settings.direct_light is DirectLight.RAYS
-    buffer, slots = stages.photons.photons.buffer, stages.photons.slots
-    listed = estimator.collect(buffer, slots, indirect_only, context.timers)
+    listed = stages.photons.list_stored(context, estimator.photon_list, iteration)
     radii = learning.radii_for(iteration, listed)
-    estimator.begin(context.settings, stages.photons.stored(context, listed, radii), iteration)
+    estimator.begin(context.settings, stages.photons.stored(context, iteration, listed, radii), iteration)
     return radii

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .common.known import known
 from .common.photon_counts import PhotonCounts, later_photons
@@ -23,15 +24,25 @@ from .density_estimation.radii import (
 )
 from .density_estimation.stored_photons import PhotonList
 from .device_scene.stage_context import StageContext
-from .pilot_view import at_pixels
+from .lights.lights import Lights
+from .pilot_view import PilotView, at_pixels
 from .stages.photons import Photons
+
+_MOST_LEAVING = 0.25
+"""Of gathering rays: where more leave the scene, rays find the world's light as well as photons or better."""
+
+
+def may_share_world_light(context: StageContext) -> bool:
+    """Whether photons may bring a part of the world's direct light."""
+    by_rays = context.settings.direct_light is DirectLight.RAYS and context.gathers
+    return by_rays and context.lights.world_photon_flux > 0.0
 
 
 class Learning:
     """The radii of a picture's iterations. They begin with what the pilot view shows."""
 
-    def __init__(self, context: StageContext, footprints: np.ndarray) -> None:
-        """footprints: the pilot view's, (rows, columns) meters."""
+    def __init__(self, context: StageContext, pilot: PilotView) -> None:
+        footprints = pilot.footprints
         settings, camera, geometry = context.settings, context.scene.camera, context.geometry
         self._geometry = geometry
         self._alpha = settings.alpha
@@ -47,6 +58,7 @@ class Learning:
         self.widest_radius = widest_radius(footprints, geometry.bounds_low, geometry.bounds_high)
         self._automatic = settings.photons == 0
         self.photon_counts = PhotonCounts(context.scene.photon_count, context.scene.photon_count)
+        self._shares_world_light = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
         self.wide_radius = 0.0
         """Of the first iteration, meters: what diffused photons are spread over. Known once its photons are."""
         self.diffused_photons_found: float | None = None
@@ -72,6 +84,10 @@ class Learning:
     def fewer(self, iteration: Iteration) -> float:
         """Photons of the next iteration over those of this one."""
         return self.photon_counts.of(iteration.number + 1) / iteration.photon_count
+
+    def direct_world_flux(self, lights: Lights) -> float:
+        """Iteration's, of the next one: where few rays leave the scene, and photons find in."""
+        return lights.world_photon_flux if self._shares_world_light else 0.0
 
     def tally(self, context: StageContext, photons: Photons, photons_taken: list[np.ndarray]) -> None:
         """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band."""

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pilot view: the camera's with fewer pixels than it has. It tells the radii of a render before it begins."""
+"""The pilot view: the camera's with fewer pixels than it has. What a render has to know before it begins."""
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ..scene.camera import Camera
 from .common.band import Band
 from .common.camera_view import camera_view
 from .common.iteration import Iteration
+from .common.records import GATHERING_VERTEX, HIT, NO_TRIANGLE, RAY
 from .density_estimation.radii import Radii, radius_in_pixels
 from .device_scene.stage_context import StageContext
 from .stages.stage_set import StageSet
@@ -18,6 +20,18 @@ MOST_PIXELS = 1 << 14
 """Of the first one: the percentiles of so many footprints are those of all within a percent."""
 FEWEST_HITS = 1 << 8
 """With less, what is seen is small in the picture, and all pixels have to look for it."""
+MOST_GATHERING_RAYS = 1 << 11
+"""That are followed to where they end."""
+
+
+@dataclass(frozen=True)
+class PilotView:
+    """What the camera sees first."""
+
+    footprints: np.ndarray
+    """(rows, columns) Eq. 3 radii of the camera's first hits, meters; 0 where there is no importon."""
+    leaving_fraction: float
+    """Of the gathering rays from there, those that leave the scene; nan where none was followed."""
 
 
 def pilot_sizes(width: int, height: int) -> list[tuple[int, int]]:
@@ -52,20 +66,38 @@ def at_pixels(pilot: np.ndarray, width: int, height: int) -> np.ndarray:
     return pilot[nearest_row[:, None], nearest_column].reshape(-1)
 
 
-def first_footprints(context: StageContext, stages: StageSet) -> np.ndarray:
-    """(rows, columns) Eq. 3 radii of the camera's first hits, meters; 0 where there is no importon."""
+def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> PilotView:
+    """Look at the scene; follows_rays: along the gathering rays as well."""
     camera, settings = context.scene.camera, context.settings
     importons, iteration = stages.importons, Iteration(0, settings.seed)
     unlimited = Radii(0.0, 1e30, 0.0, radius_in_pixels(settings, camera), 1.0, 1.0)
     for columns, rows in pilot_sizes(*camera.resolution):
-        footprints = []
+        footprints, ends = [], []
         for view in pilot_views(camera, columns, rows, stages.bands[0].rows):
             band = Band(columns, 0, int(view["height"][0]))
             stages.camera_hits.find(context, importons, view, band, iteration)
             importons.resolve(context, iteration, 0)
             importons.scatter(context, stages.scatter_blocks, band, iteration, 0, unlimited)
             footprints.append(importons.footprints(band.pixel_count))
+            if follows_rays:
+                stride = -(-columns * rows // MOST_GATHERING_RAYS)
+                ends.append(_ends_of_gathering_rays(context, stages, band.pixel_count, stride))
         pilot = np.concatenate(footprints).reshape(rows, columns)
         if np.count_nonzero(pilot) >= FEWEST_HITS:
             break
-    return pilot
+    triangles = np.concatenate(ends) if ends else np.zeros(0)
+    return PilotView(pilot, float(np.mean(triangles == NO_TRIANGLE)) if len(triangles) else math.nan)
+
+
+def _ends_of_gathering_rays(context: StageContext, stages: StageSet, pixels: int, stride: int) -> np.ndarray:
+    """(n,) uint32 triangles that every so manieth of the gathering rays hits that have just set out."""
+    importons = stages.importons
+    rays = importons.rays.read(RAY.dtype, pixels).copy()
+    gathers = stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, pixels)["shared_radius"] >= 0.0
+    followed = np.flatnonzero(gathers & (rays["maximum_distance"] > 0.0))[::stride]
+    distances = np.zeros(pixels, np.float32)
+    distances[followed] = rays["maximum_distance"][followed]
+    rays["maximum_distance"] = distances
+    importons.rays.write(rays)
+    importons.trace(context)
+    return importons.hits.read(HIT.dtype, pixels)["triangle"][followed]

@@ -18,9 +18,9 @@ from .common.known import known
 from .deep_cubemap.deep_cubemap import DeepCubemap
 from .deep_cubemap.inspection import inspect_deep_cubemap
 from .device_scene.device_scene import DeviceScene
-from .learning import Learning
+from .learning import Learning, may_share_world_light
 from .memory import Memory, compute_memory
-from .pilot_view import first_footprints
+from .pilot_view import view_pilot
 from .stages.film import Film
 from .stages.stage_set import StageSet
 from .state import RenderState, read_state, restore_state
@@ -62,8 +62,8 @@ class ProgressivePhotonMapper:
             self._stages = StageSet(self.context, self._library, scene)
         self.device_scene.update(scene, center_tolerance)
         context = self.device_scene.context
-        footprints = first_footprints(context, self.stages)
-        self._learning = Learning(context, footprints)
+        pilot = view_pilot(context, self.stages, follows_rays=may_share_world_light(context))
+        self._learning = Learning(context, pilot)
         self.build_seconds = time.perf_counter() - start
 
     def _begin(self, scene: Scene) -> None:
@@ -85,9 +85,10 @@ class ProgressivePhotonMapper:
         """
         self.iteration += 1
         photons = self.learning.photon_counts.of(self.iteration)
-        iteration = Iteration(self.iteration, self.scene.settings.seed, photons, self._skipped)
         if self.iteration > 1 and learns_after(self.iteration - 1):
             self.learning.learn(self.device_scene.context, self.iteration - 1)
+        direct_world_flux = self.learning.direct_world_flux(self.device_scene.lights)
+        iteration = Iteration(self.iteration, self.scene.settings.seed, photons, self._skipped, direct_world_flux)
         if self.device_scene.moves:
             self.device_scene.move_to(iteration)
             yield

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer declares before the members photon_count, photon_flux and most_scattered of its parameters.
+// The includer declares before the members photon_count, photon_flux, direct_world_flux and most_scattered of its
+// parameters.
 #include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/sampling.glsl"
 #include "common/gathering.glsl"
-#include "common/world_caustics.glsl"
-layout(std430, binding = 6) readonly buffer WorldRadiances;
+#include "common/world_light.glsl"
+layout(std430, binding = 6) readonly buffer WorldDirections;
 
 // Flux arrived by the geometric cosine; a part of the BSDF asks for that of its own normal.
 float shading_correction(float cosine, float geometric_cosine) {
@@ -44,9 +45,16 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
 const float PHOTON_NORMAL_TOLERANCE = 0.7;
 const float PHOTON_PLANE_TOLERANCE = 0.35;
 
+// Of direct light: rays find the rest. All of it where only the photons bring it.
+float direct_share(uint photon_number, float radius) {
+    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+    WorldDirection world = world_directions[photon_number % parameters.photon_count];
+    return world_direct_photon_share(world.radiance, world.pdf, parameters.direct_world_flux, radius);
+}
+
 // The gathering ray finds the rest, unless its path ends before.
 float caustic_share(uint photon_number, float radius) {
-    float radiance = world_radiances[photon_number % parameters.photon_count];
+    float radiance = world_directions[photon_number % parameters.photon_count].radiance;
     bool found = radiance > 0.0 && photon_number / parameters.photon_count <= parameters.most_scattered;
     return found ? world_photon_share(radiance, parameters.photon_flux, radius) : 1.0;
 }
@@ -77,7 +85,7 @@ bool density_estimate(Importon importon, Photon photon, uint photon_number, floa
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     float geometric_cosine = abs(dot(photon_normal, photon.direction));
     radiance = evaluate_importon(importon, photon.direction, alignment > 0.0, geometric_cosine) * photon.flux * kernel;
-    if ((importon.gathers & GATHERS_BY_RAY) != 0u && (photon.flags & PHOTON_DIRECT) == 0u)
-        radiance *= caustic_share(photon_number, importon.radius);
+    if ((photon.flags & PHOTON_DIRECT) != 0u) radiance *= direct_share(photon_number, importon.radius);
+    else if ((importon.gathers & GATHERS_BY_RAY) != 0u) radiance *= caustic_share(photon_number, importon.radius);
     return largest(radiance) > 0.0;
 }

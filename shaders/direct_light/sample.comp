@@ -18,6 +18,9 @@ layout(std430, binding = 2) readonly buffer CameraPaths;
 layout(std430, binding = 3) writeonly buffer ShadowRays;
 layout(std430, binding = 9) writeonly buffer LightTriangles;
 layout(std430, binding = 8) writeonly buffer Contributions;
+layout(std430, binding = 11) readonly buffer Camera;
+layout(std430, binding = 15) readonly buffer RadiusFactors;
+#include "importons/radius.glsl"
 
 // The alpha above which lobes are evaluated toward lights.
 float smoothest_lit(bool gathered) {
@@ -35,10 +38,11 @@ bool can_be_lit(Closure closure, bool gathered) {
 // are followed to all lights with extent: the power heuristic weights both ways, part by part of the closure.
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
-// choice of the light included.
+// choice of the light included. by_rays: what photons leave to rays, of the parts that store them.
 vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers, vec3 wo,
-                      vec3 wi, bool front, uint visibility, bool environment, float light_pdf) {
-    vec3 value = (visibility & RAY_DIFFUSE) != 0u ? diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
+                      vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays) {
+    vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front)
+                                                 : vec3(0.0);
     if (gathers && environment) {
         float cosine = abs(dot(unpack_unit_vector(closure.diffuse_normal), wi));
         float part = largest(throughput * (front ? closure.diffuse : closure.translucent));
@@ -50,11 +54,11 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool 
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (!lobe_stores(lobe, smoothest_lit(gathered))) continue;
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
-        float weight = 1.0;
+        float weight = specular ? 1.0 : by_rays;
         if (light_pdf > 0.0 && parameters.last_segment == 0u && (specular || (gathers && environment)))
-            weight = power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.gathering,
-                                                                 shares.total, k)
-                                                    * lobe_pdf(lobe, lobe_normal(lobe), wo, wi));
+            weight *= power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.gathering,
+                                                                  shares.total, k)
+                                                     * lobe_pdf(lobe, lobe_normal(lobe), wo, wi));
         value += weight * lobe_scattered(closure, lobe, wo, wi, front);
     }
     return value;
@@ -102,9 +106,16 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
     return arriving;
 }
 
+// What photons leave to rays of the environment's direct light along a direction.
+float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 direction, bool gathered) {
+    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+    float radius = caustic_radius_of(parameters.first_pixel + index, vertex_radius(path, -wo, closure), gathered);
+    return 1.0 - direct_photon_share(direction, radius);
+}
+
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(Closure closure, vec3 throughput, PathShares shares, vec3 wo, bool gathered, bool gathers,
-                             uvec4 choices) {
+Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 throughput, PathShares shares, vec3 wo,
+                             bool gathered, bool gathers, uvec4 choices) {
     if (!can_be_lit(closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices),
                   scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
@@ -122,8 +133,10 @@ Arriving arriving_from_light(Closure closure, vec3 throughput, PathShares shares
     // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
     float light_pdf = sampled.pdf * light.selection_probability;
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
+    bool environment = light.kind == LIGHT_WORLD;
+    float by_rays = environment ? left_to_rays(index, path, closure, wo, sampled.direction, gathered) : 1.0;
     vec3 scattered = evaluate_closure(closure, throughput, shares, gathered, gathers, wo, sampled.direction,
-                                      side > 0.0, light.flags, light.kind == LIGHT_WORLD, light_pdf);
+                                      side > 0.0, light.flags, environment, light_pdf, by_rays);
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
                     sampled.triangle);
 }
@@ -137,16 +150,18 @@ void main() {
     Ray ray = rays[index];
     Closure closure = closures[index];
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
-    uint flags = camera_paths[index].flags;
+    CameraPath path = camera_paths[index];
+    uint flags = path.flags;
     bool gathered = (flags & PATH_GATHERED) != 0u;
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(flags, closure.distance, parameters.gathers_again_below);
-    vec3 throughput = camera_paths[index].throughput * segment_transmittance(flags, closure);
+    vec3 throughput = path.throughput * segment_transmittance(flags, closure);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(closure, throughput, viewer, parameters.specular_alpha, gathers);
-    Arriving arriving = arriving_from_light(closure, throughput, shares, viewer, gathered, gathers, choices);
+    Arriving arriving = arriving_from_light(index, path, closure, throughput, shares, viewer, gathered, gathers,
+                                            choices);
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(closure, throughput, shares, viewer, choices);
     // One ray for both: by what they would add.

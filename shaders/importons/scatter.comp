@@ -11,8 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/gathering.glsl"
-#include "common/world_caustics.glsl"
-#include "gbuffer/projections.glsl"
+#include "common/world_light.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -25,6 +24,7 @@ layout(std430, binding = 11) buffer GatheringVertices;
 layout(std430, binding = 8) buffer Radiances;
 layout(std430, binding = 9) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
+#include "importons/radius.glsl"
 
 Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
@@ -60,7 +60,7 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radi
 // In 1/sr, of shadow rays to the environment from a vertex that sends a ray on.
 float environment_shadow_ray_pdf(vec3 direction) {
     bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
-    return left_to_rays ? 0.0 : parameters.world_selection * world_pdf(direction);
+    return left_to_rays ? 0.0 : world_shadow_ray_pdf(direction);
 }
 
 // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left to
@@ -71,6 +71,7 @@ void end_gathering_ray(uint index, CameraPath path, vec3 direction) {
         if (parameters.next_event == 0u) return;
         float weight = scatter_mis_weight(path.scatter_pdf, environment_shadow_ray_pdf(direction));
         vec3 arrived = path.throughput * world * weight;
+        arrived *= 1.0 - direct_photon_share(direction, gathering_vertices[index].radius);
         if ((path.flags & PATH_GATHERED_AGAIN) != 0u) gathering_vertices[index].found = arrived;
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
         return;
@@ -101,22 +102,6 @@ vec4 seen_surface(CameraPath path, Ray ray, Closure closure) {
     if ((path.flags & PATH_STRAIGHT) != 0u)
         seen.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return seen;
-}
-
-// The radius in which photons count at the path's new vertex.
-float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {
-    path.total_length += closure.distance;
-    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC;
-    if (parameters.segment == 0u) {
-        // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
-        float facing = max(abs(dot(unpack_unit_vector(closure.geometric_normal), direction)), 1e-4);
-        path.primary_distance = path.total_length;
-        path.primary_radius *= parameters.radius_scale * (parallel ? 1.0 : path.primary_distance) / sqrt(facing);
-    }
-    // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
-    float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
-    float radius = path.primary_radius * growth;
-    return parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
 }
 
 // How a path may go on.
@@ -254,9 +239,7 @@ void main() {
     radiances[index] += seen + seen_surface(path, ray, closure);
 
     float radius = vertex_radius(path, ray.direction, closure);
-    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor
-                 : radius_factors[parameters.first_pixel + index];
-    float caustic_radius = gathered ? max(radius, parameters.radius_by_ray) : factor * radius;
+    float caustic_radius = caustic_radius_of(parameters.first_pixel + index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_IMPORTONS << 24u));

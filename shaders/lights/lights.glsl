@@ -5,6 +5,7 @@
 #include "lights/light_table.glsl"
 #include "lights/environment.glsl"
 #include "lights/light_maps.glsl"
+#include "common/world_light.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
 layout(std430, binding = 5) readonly buffer EmissiveTriangles;
@@ -40,6 +41,16 @@ float distance_factor(Light light, float distance) {
 
 vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
+}
+
+// In 1/sr, of shadow rays to the environment.
+float world_shadow_ray_pdf(vec3 direction) { return parameters.world_selection * world_pdf(direction); }
+
+// Of direct light of the environment, what photons bring to an importon with this radius; rays find the rest.
+float direct_photon_share(vec3 direction, float radius) {
+    if (!(parameters.direct_world_flux > 0.0)) return 0.0;
+    return world_direct_photon_share(largest(world_radiance(direction)), world_shadow_ray_pdf(direction),
+                                     parameters.direct_world_flux, radius);
 }
 
 // By its selection probability.

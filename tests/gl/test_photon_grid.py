@@ -6,12 +6,17 @@ import pytest
 
 from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import IMPORTON, PHOTON, GatherFlag, PhotonFlag
+from rppm_addon.integrator.common.records import IMPORTON, PHOTON, WORLD_DIRECTION, GatherFlag, PhotonFlag
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.density_estimation.photon_grid import PhotonGrid
 from rppm_addon.integrator.density_estimation.radii import SplatRadii
 from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
-from rppm_addon.integrator.density_estimation.stored_photons import PhotonList, StoredPhotons, TakingImportons
+from rppm_addon.integrator.density_estimation.stored_photons import (
+    DirectPhotons,
+    PhotonList,
+    StoredPhotons,
+    TakingImportons,
+)
 
 UP = 0
 """The packed unit vector (0, 0, 1)."""
@@ -28,20 +33,20 @@ class Device:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(photons,) bool of those that contributed, (importons,) diffused photons taken, (importons,) bool of those
         whose sums are more than 0."""
-        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "world radiances")]
-        radiances = np.zeros(len(photons), np.float32)
-        for buffer, array in zip(buffers, (photons, importons, radiances), strict=True):
+        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "world directions")]
+        directions = WORLD_DIRECTION.zeros(len(photons))
+        for buffer, array in zip(buffers, (photons, importons, directions), strict=True):
             buffer.upload(array)
         sizes = StageSizes(len(importons), 1, photons=len(photons), segments=1)
         listed = PhotonList(self._context, self._library, sizes)
-        listed.collect(buffers[0].buffer, len(photons), indirect_only=False)
+        listed.collect(buffers[0].buffer, buffers[2].buffer, len(photons), len(photons), DirectPhotons.ALL)
         sums = SplatSums(self._context, self._library, sizes)
         sums.count_in(1e-6, 0, True)
         sums.clear()
         grid = PhotonGrid(self._context, self._library, sizes)
         stored = StoredPhotons(
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
-            buffers[2].buffer, len(photons), 1.0, radii, float(np.abs(photons["position"]).max()),
+            buffers[2].buffer, len(photons), 1.0, 0.0, radii, float(np.abs(photons["position"]).max()),
         )  # fmt: skip
         living = LivingPaths(self._context, self._library, "paths", "take fewer")
         living.fill(len(importons))

@@ -23,6 +23,8 @@ class Iteration:
     """Photons that leave the lights; none for the pilot view."""
     skipped: int = 0
     """So many iterations come before those of the film."""
+    direct_world_flux: float = 0.0
+    """W of a photon of the world that is of use, where photons share the world's direct light with rays; else 0."""
 
     @property
     def number_in_film(self) -> int:

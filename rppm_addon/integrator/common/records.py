@@ -162,7 +162,10 @@ PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl)."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
-StorageBlock("WorldRadiances", "float world_radiances[];")
+WORLD_DIRECTION = Record("WorldDirection", radiance="float", pdf="float")
+"""The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
+from where no gathering ray stands for them, 1/sr. 0 for photons of other lights."""
+StorageBlock("WorldDirections", "WorldDirection world_directions[];")
 
 ADJOINT_QUERY = Record(
     "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint"

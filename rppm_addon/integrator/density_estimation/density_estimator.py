@@ -8,8 +8,6 @@ import logging
 from collections.abc import Mapping
 from weakref import WeakKeyDictionary
 
-import moderngl
-
 from ...gl.buffer_sets import BufferSet, Part
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -70,12 +68,6 @@ class DensityEstimator(BufferSet):
         if self._wanted is not DensityEstimation.AUTOMATIC:
             return self._wanted
         return _faster.get(self._library, _UNDECIDED)
-
-    def collect(self, photons: moderngl.Buffer, slots: int, indirect_only: bool, timers: StageTimers) -> PhotonList:
-        """List the photons that importons may take (PhotonList.collect)."""
-        with timers.stage("photon list"):
-            self.photon_list.collect(photons, slots, indirect_only)
-        return self.photon_list
 
     def begin(self, settings: RenderSettings, photons: StoredPhotons, iteration: Iteration) -> None:
         """Take an iteration's photons."""

@@ -21,6 +21,17 @@ CORNER_RADII = 2.0
 """A gathering ray of at most so many wide radii ends in a corner."""
 
 
+RADIUS_PARAMETERS = {
+    "radius_scale": "float",
+    "shrinkage": "float",
+    "radius_minimum": "float",
+    "radius_maximum": "float",
+    "radius_by_ray": "float",
+    "most_radius_factor": "float",
+}
+"""Parameters of shaders/importons/radius.glsl."""
+
+
 @dataclass(frozen=True)
 class SplatRadii:
     """Largest radii of an iteration, meters."""
@@ -74,6 +85,18 @@ class Radii:
     def corner(self) -> float:
         """Meters; a gathering ray shorter than this does not end the search."""
         return CORNER_RADII * self.wide * self.shrinkage
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Values of RADIUS_PARAMETERS."""
+        return {
+            "radius_scale": self.scale,
+            "shrinkage": self.shrinkage,
+            "radius_minimum": self.minimum,
+            "radius_maximum": self.maximum,
+            "radius_by_ray": self.by_ray,
+            "most_radius_factor": self.most_factor,
+        }
 
     @property
     def in_pixels(self) -> float:

@@ -2,12 +2,14 @@
 """What density estimation works with: the stored photons of an iteration, and importons that take of them."""
 
 import dataclasses
+import enum
 from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
@@ -19,11 +21,23 @@ ESTIMATE_PARAMETERS = {
     "wide_radius": "float",
     "photon_count": "uint",
     "photon_flux": "float",
+    "direct_world_flux": "float",
     "most_scattered": "uint",
 }
 """Parameters of programs that estimate densities (shaders/common/importon.glsl)."""
 
-Record("StoredParameters", count="uint", indirect_only="uint")
+Record("StoredParameters", count="uint", photon_count="uint", takes_direct="uint")
+
+
+class DirectPhotons(enum.IntEnum):
+    """The photons straight from lights that are listed."""
+
+    NONE = 0
+    OF_WORLD = 1
+    ALL = 2
+
+
+Constants("DirectPhotons", DIRECT=DirectPhotons)
 
 
 class PhotonList(BufferSet):
@@ -42,13 +56,23 @@ class PhotonList(BufferSet):
         """Two uint32, ``count`` and ``diffused_count``, and the numbers."""
         return self._numbers.buffer
 
-    def collect(self, photons: moderngl.Buffer, slots: int, indirect_only: bool) -> None:
-        """List those of so many slots (PHOTON) that are stored, or those of them that are no direct light."""
+    def collect(
+        self,
+        photons: moderngl.Buffer,
+        world_directions: moderngl.Buffer,
+        emitted_count: int,
+        slots: int,
+        takes_direct: DirectPhotons,
+    ) -> None:
+        """List those of so many slots (PHOTON) that are stored, straight from lights only as ``takes_direct`` says.
+
+        world_directions: WORLD_DIRECTION of the ``emitted_count`` photons that left the lights.
+        """
         self._numbers.write(np.zeros(2, np.uint32))
         self._program.run(
             slots,
-            {"Photons": photons, "StoredPhotons": self._numbers.buffer},
-            {"count": slots, "indirect_only": indirect_only},
+            {"Photons": photons, "StoredPhotons": self._numbers.buffer, "WorldDirections": world_directions},
+            {"count": slots, "photon_count": emitted_count, "takes_direct": takes_direct.value},
         )
         self.count, self.diffused_count = map(int, self._numbers.read(np.uint32, 2))
 
@@ -65,10 +89,12 @@ class StoredPhotons:
     """No more than so many of them have come by specular surfaces or from a light only."""
     diffused_count: int
     """No more than so many of them has a diffuse surface scattered."""
-    world_radiances: moderngl.Buffer
+    world_directions: moderngl.Buffer
     emitted_count: int
     photon_flux: float
     """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
+    direct_world_flux: float
+    """Iteration's."""
     radii: SplatRadii
     largest_coordinate: float
     """Of any position, meters, by its absolute value."""
@@ -90,7 +116,7 @@ class StoredPhotons:
     @property
     def blocks(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of programs that estimate densities."""
-        return {"Photons": self.photons, "WorldRadiances": self.world_radiances}
+        return {"Photons": self.photons, "WorldDirections": self.world_directions}
 
 
 @dataclass(frozen=True)
@@ -130,5 +156,6 @@ class TakingImportons:
             "wide_radius": photons.radii.wide,
             "photon_count": photons.emitted_count,
             "photon_flux": photons.photon_flux,
+            "direct_world_flux": photons.direct_world_flux,
             "most_scattered": self.most_scattered,
         }

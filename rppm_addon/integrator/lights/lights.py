@@ -49,11 +49,12 @@ LIGHT_PARAMETERS = {
     **LIGHT_TREE_PARAMETERS,
     "seed": "uint",
     "iteration": "uint",
+    "direct_world_flux": "float",
 }
 """Parameters of every program that includes shaders/lights/lights.glsl. ``mesh_selection`` and
 ``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
 weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
-give, W/m^2."""
+give, W/m^2, ``direct_world_flux`` Iteration's."""
 
 
 def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
@@ -139,7 +140,12 @@ class Lights(BufferSet):
 
     def parameters(self, iteration: Iteration) -> dict[str, object]:
         """Values of LIGHT_PARAMETERS."""
-        return {**self._parameters, "seed": iteration.seed, "iteration": iteration.number}
+        return {
+            **self._parameters,
+            "seed": iteration.seed,
+            "iteration": iteration.number,
+            "direct_world_flux": iteration.direct_world_flux,
+        }
 
     def build(
         self,
@@ -283,3 +289,12 @@ class Lights(BufferSet):
     def photon_flux(self) -> float:
         """Mean flux of the iteration's photons as they leave their lights, W, the channels' mean."""
         return self._power / self._photons
+
+    @property
+    def world_photon_flux(self) -> float:
+        """Mean flux of those of the world's photons that are of use, W, the channels' mean; 0 where there are none."""
+        worlds = np.flatnonzero((self.table["kind"] == LightShape.WORLD) & (self.table["photon_count"] > 0))
+        return sum(
+            self._powers[index] / int(self.table["photon_count"][index]) / float(self.guide.gains[index])
+            for index in worlds
+        )

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light straight from the sources, by shadow rays from the camera paths' vertices."""
 
+from collections.abc import Mapping
+
+import moderngl
+
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -11,15 +15,15 @@ from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import RAY
 from ..common.stage_sizes import StageSizes, band_pixels
-from ..density_estimation.radii import Radii
+from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
-from .final_gather import FinalGather
 from .importons import Importons
 
 Record(
     "DirectLightParameters",
     **LIGHT_PARAMETERS,
+    **RADIUS_PARAMETERS,
     segment="uint",
     first_pixel="uint",
     last_segment="uint",
@@ -48,7 +52,7 @@ class DirectLight(BufferSet):
         self,
         context: StageContext,
         importons: Importons,
-        final_gather: FinalGather,
+        blocks: Mapping[str, moderngl.Buffer],
         band: Band,
         iteration: Iteration,
         segment: int,
@@ -57,13 +61,14 @@ class DirectLight(BufferSet):
         """Add the direct light of the resolved vertices of the living camera paths to the band's radiance, or to what
         their gathering rays found.
 
+        blocks: the storage blocks of other stages (StageSet.direct_light_blocks).
         To be called before the paths scatter on. Nothing is added where photons bring direct light, or where none of
         it would come to the film.
         """
         if context.settings.direct_light is not DirectLightMode.RAYS or not iteration.enters_film:
             return
         with context.timers.stage("direct light"):
-            self._sample_lights(context, importons, band, iteration, segment, radii)
+            self._sample_lights(context, importons, blocks, band, iteration, segment, radii)
             living = self._living_rays
             living.take(importons.living, self._rays.buffer)
             context.lights.emitters.tint_contributions(
@@ -80,7 +85,7 @@ class DirectLight(BufferSet):
                 {
                     "Visibility": self._visibility.buffer,
                     "Contributions": self._contributions.buffer,
-                    "FoundRadiances": final_gather.radiances.buffer,
+                    "FoundRadiances": blocks["FoundRadiances"],
                     "Radiances": importons.radiances.buffer,
                 },
             )
@@ -89,6 +94,7 @@ class DirectLight(BufferSet):
         self,
         context: StageContext,
         importons: Importons,
+        blocks: Mapping[str, moderngl.Buffer],
         band: Band,
         iteration: Iteration,
         segment: int,
@@ -107,9 +113,12 @@ class DirectLight(BufferSet):
                 "Contributions": self._contributions.buffer,
                 "LightTriangles": self._triangles.buffer,
                 "Materials": context.materials.buffers["Materials"],
+                "Camera": blocks["Camera"],
+                "RadiusFactors": blocks["RadiusFactors"],
             },
             {
                 **context.lights.parameters(iteration),
+                **radii.parameters,
                 "segment": segment,
                 "last_segment": segment == context.settings.camera_path_length - 1,
                 "first_pixel": band.first_pixel,

@@ -16,7 +16,7 @@ from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
 from ..common.stage_sizes import StageSizes, band_pixels
-from ..density_estimation.radii import Radii
+from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..density_estimation.stored_photons import CameraRaster, TakingImportons
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
@@ -31,12 +31,7 @@ Record(
     next_event="uint",
     final_gather="uint",
     specular_alpha="float",
-    radius_scale="float",
-    shrinkage="float",
-    radius_minimum="float",
-    radius_maximum="float",
-    radius_by_ray="float",
-    most_radius_factor="float",
+    **RADIUS_PARAMETERS,
     gathers_again_below="float",
     photon_flux="float",
 )
@@ -126,12 +121,7 @@ class Importons(BufferSet):
                     "next_event": settings.direct_light is DirectLight.RAYS,
                     "final_gather": settings.use_final_gather,
                     "specular_alpha": settings.specular_roughness**2,
-                    "radius_scale": radii.scale,
-                    "shrinkage": radii.shrinkage,
-                    "radius_minimum": radii.minimum,
-                    "radius_maximum": radii.maximum,
-                    "radius_by_ray": radii.by_ray,
-                    "most_radius_factor": radii.most_factor,
+                    **radii.parameters,
                     "gathers_again_below": radii.corner,
                     "photon_flux": lights.photon_flux,
                 },

@@ -24,11 +24,11 @@ class PhotonEmission:
         lights: Lights,
         rays: moderngl.Buffer,
         photon_paths: moderngl.Buffer,
-        world_radiances: moderngl.Buffer,
+        world_directions: moderngl.Buffer,
         count: int,
         iteration: Iteration,
     ) -> None:
-        """Emit ``count`` photons: their first rays, the flux they carry, and how bright the world is there."""
+        """Emit ``count`` photons: their first rays, the flux they carry, and what the world is like there."""
         lights.use_maps()
         self._emit.run(
             count,
@@ -37,7 +37,7 @@ class PhotonEmission:
                 **lights.guide.buffers,
                 "Rays": rays,
                 "PhotonPaths": photon_paths,
-                "WorldRadiances": world_radiances,
+                "WorldDirections": world_directions,
                 "Targets": lights.targets.buffer,
             },
             {**lights.parameters(iteration), "count": count, "target_count": lights.target_count},

@@ -8,6 +8,7 @@ from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...scene.settings import DirectLight
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import (
@@ -20,10 +21,11 @@ from ..common.records import (
     PHOTON,
     PHOTON_PATH,
     RAY,
+    WORLD_DIRECTION,
 )
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
 from ..density_estimation.radii import Radii
-from ..density_estimation.stored_photons import PhotonList, StoredPhotons
+from ..density_estimation.stored_photons import DirectPhotons, PhotonList, StoredPhotons
 from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
 from .photon_emission import PhotonEmission
@@ -47,12 +49,12 @@ def _flux_groups(sizes: StageSizes) -> int:
 
 
 class Photons(BufferSet):
-    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``world_radiances`` tells
-    of each path the world's radiance where it began, the largest channel, 0 from other lights."""
+    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``world_directions``
+    tells of each path what the world is like where it began."""
 
     remedy = "lower the photons per iteration or the photon path length"
     photons = StorageBuffer("photons", PHOTON, photon_slots)
-    world_radiances = StorageBuffer("world radiances", "float", photon_paths)
+    world_directions = StorageBuffer("world directions", WORLD_DIRECTION, photon_paths)
     _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths)
     _rays = StorageBuffer("photon rays", RAY, photon_paths)
     _hits = StorageBuffer("photon hits", HIT, photon_paths)
@@ -94,8 +96,8 @@ class Photons(BufferSet):
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with context.timers.stage("emission"):
             self._living.fill(self.photon_count)
-            radiances = self.world_radiances.buffer
-            self._emission.emit(context.lights, rays, paths, radiances, self.photon_count, iteration)
+            directions = self.world_directions.buffer
+            self._emission.emit(context.lights, rays, paths, directions, self.photon_count, iteration)
             context.lights.emitters.tint_photons(
                 context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
             )
@@ -154,7 +156,18 @@ class Photons(BufferSet):
                 parameters = {"photon_count": self.photon_count, "segment": segment}
                 self._living.run(self._adjoint, self._blocks, parameters)
 
-    def stored(self, context: StageContext, listed: PhotonList, radii: Radii) -> StoredPhotons:
+    def list_stored(self, context: StageContext, listed: PhotonList, iteration: Iteration) -> PhotonList:
+        """List the photons that importons may take. Where shadow rays find direct light, direct ones would count it
+        twice, but for the part of the world's that is left to them."""
+        takes_direct = DirectPhotons.OF_WORLD if iteration.direct_world_flux > 0.0 else DirectPhotons.NONE
+        if context.settings.direct_light is DirectLight.PHOTONS:
+            takes_direct = DirectPhotons.ALL
+        with context.timers.stage("photon list"):
+            directions = self.world_directions.buffer
+            listed.collect(self.photons.buffer, directions, self.photon_count, self.slots, takes_direct)
+        return listed
+
+    def stored(self, context: StageContext, iteration: Iteration, listed: PhotonList, radii: Radii) -> StoredPhotons:
         """Those that are listed, with what their estimate depends on."""
         bounds = context.geometry.bounds_low, context.geometry.bounds_high
         return StoredPhotons(
@@ -163,9 +176,10 @@ class Photons(BufferSet):
             listed.count,
             listed.count - listed.diffused_count,
             listed.diffused_count,
-            self.world_radiances.buffer,
+            self.world_directions.buffer,
             self.photon_count,
             context.lights.photon_flux,
+            iteration.direct_world_flux,
             radii.splats,
             float(np.max(np.abs(bounds))),
         )

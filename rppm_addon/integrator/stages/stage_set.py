@@ -78,6 +78,15 @@ class StageSet(BufferSet):
         }
 
     @property
+    def direct_light_blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of other stages that direct light reads and adds to."""
+        return {
+            "Camera": self.camera_hits.camera.buffer,
+            "RadiusFactors": self.caustic_radii.buffer,
+            "FoundRadiances": self.final_gather.radiances.buffer,
+        }
+
+    @property
     def memory_groups(self) -> dict[str, dict[str, int]]:
         """Bytes on the device by group and buffer."""
         return {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The radii in which photons count where camera paths come to. The includer declares before RADIUS_PARAMETERS
+// (rppm_addon/integrator/density_estimation/radii.py), segment, iteration, and the buffers Camera and RadiusFactors.
+
+#include "gbuffer/projections.glsl"
+
+// The radius in which photons count at the path's new vertex.
+float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {
+    path.total_length += closure.distance;
+    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC;
+    if (parameters.segment == 0u) {
+        // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
+        float facing = max(abs(dot(unpack_unit_vector(closure.geometric_normal), direction)), 1e-4);
+        path.primary_distance = path.total_length;
+        path.primary_radius *= parameters.radius_scale * (parallel ? 1.0 : path.primary_distance) / sqrt(facing);
+    }
+    // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
+    float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
+    float radius = path.primary_radius * growth;
+    return parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
+}
+
+// Of photons that only specular surfaces have scattered, if any; pixel: in the film.
+float caustic_radius_of(uint pixel, float radius, bool gathered) {
+    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor : radius_factors[pixel];
+    return gathered ? max(radius, parameters.radius_by_ray) : factor * radius;
+}
