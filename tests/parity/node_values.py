@@ -151,9 +151,11 @@ def cycles_values(
     return vectors, _pass(channels, w_pass), results
 
 
-def call_shader(name: str, kind: NodeKind, options: dict) -> str:
-    """A compute shader that calls a node's function for each invocation; see our_values."""
-    function, literals = kind.call(name, options)
+def call_shader(function: str, kind: NodeKind, chosen: int) -> str:
+    """A compute shader that calls a node's function for each invocation; see our_values.
+
+    Its ``chosen`` options are numbers of a buffer, not literals as in materials: so all of them share a program.
+    """
     constants = [given for given in kind.inputs if given not in ("vector", "w")]
     fetched = {"vector": "coordinates[3u * i], coordinates[3u * i + 1u], coordinates[3u * i + 2u]"}
     fetched["w"] = "coordinates[3u * count + i]"
@@ -162,7 +164,7 @@ def call_shader(name: str, kind: NodeKind, options: dict) -> str:
         width = 1 if kind.inputs[given][0] is FLOAT else 3
         fetched[given] = ", ".join(f"constants[{place + k}u]" for k in range(width))
         place += width
-    arguments = literals
+    arguments = [f"options[{k}u]" for k in range(chosen)]
     arguments += [f"{kind.inputs[given][0].glsl}({fetched[given]})" for given in kind.inputs]
     declared, stored, place = [], [], 0
     for output, socket in kind.outputs.items():
@@ -181,6 +183,7 @@ def call_shader(name: str, kind: NodeKind, options: dict) -> str:
             "layout(std430, binding = 1) readonly buffer Coordinates { float coordinates[]; };",
             "layout(std430, binding = 2) readonly buffer Constants { float constants[]; };",
             "layout(std430, binding = 3) writeonly buffer Results { float results[]; };",
+            "layout(std430, binding = 4) readonly buffer Options { int options[]; };",
             f'#include "materials/nodes/{kind.source}"',
             "void main() {",
             "uint i = gl_GlobalInvocationID.x;",
@@ -199,8 +202,9 @@ def our_values(
     library: ProgramLibrary, folder: Path, name: str, kind: NodeKind, case: NodeCase, vector: np.ndarray, w: np.ndarray
 ) -> dict[str, np.ndarray]:
     """What our GLSL gives for a case, as cycles_values does."""
-    path = folder / f"{name}_{'_'.join(str(case.options.get(o, v[0])) for o, v in kind.options.items())}.comp"
-    path.write_text(call_shader(name, kind, case.options), encoding="utf-8")
+    function, literals = kind.call(name, case.options)
+    path = folder / f"{function}.comp"
+    path.write_text(call_shader(function, kind, len(literals)), encoding="utf-8")
     gl = library.context.moderngl
     unknown = case.inputs.keys() - kind.inputs.keys()
     assert not unknown, f"{name} has no input {unknown}"
@@ -210,6 +214,7 @@ def our_values(
         "Coordinates": gl.buffer(np.concatenate([vector.reshape(-1), w]).astype(np.float32).tobytes()),
         "Constants": gl.buffer(np.concatenate([*constants, [0.0]]).astype(np.float32).tobytes()),
         "Results": gl.buffer(reserve=4 * width * count),
+        "Options": gl.buffer(np.array([*map(int, literals), 0], np.int32).tobytes()),
     }
     library.compute(str(path)).run(count, buffers)
     table = np.frombuffer(buffers["Results"].read(), np.float32).reshape(width, count)
