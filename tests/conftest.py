@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What tests of several floors share."""
 
+import os
+
 import pytest
 
 
@@ -12,6 +14,16 @@ def pytest_addoption(parser):
         help="parity tests: take Cycles' side from tests/parity/references, render it, render it and compare it with "
         "the references, or write these; the last two leave RPPM out",
     )
+
+
+def pytest_configure(config):
+    """Workers share the cores: none compiles ahead on one that another worker needs, and waits for it."""
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    if workers > 1:
+        from rppm_addon.gl import background_compiler
+
+        usable_cores = background_compiler.usable_cores
+        background_compiler.usable_cores = lambda: max(1, usable_cores() // workers)
 
 
 @pytest.fixture(scope="session")
