@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
 .PHONY: help setup render sample extension test test-unit test-long test-touched coverage test-gui lint pairs references parity bench bench-tools bench-export bench-peers clean
+# Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
+unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
 BLENDER_PYTHON = .venv/bin/python
 SCENES ?= ../shared/scenes
