@@ -92,16 +92,17 @@ def judge(name: str, pictures: np.ndarray, right: np.ndarray) -> None:
     assert (np.abs(difference) <= allowed).all()
 
 
-def gathering(case: Case, monkeypatch: pytest.MonkeyPatch, found: bool) -> Case:
-    """The case with final gather, nothing shared; ``found``: its last surface gets its light by the gathering ray."""
+def gathering(case: Case, monkeypatch: pytest.MonkeyPatch, iterations: int | None) -> Case:
+    """The case with final gather, nothing shared; where its last surface gets its light by the gathering ray, in so
+    many iterations."""
     monkeypatch.setattr(final_gather, "SHARED_RADIUS", 0.0)
     settings = case.scene.settings
     changed = settings.with_values(use_final_gather=True, camera_path_length=settings.camera_path_length + 1)
     scene = dataclasses.replace(case.scene, settings=changed)
-    if found:  # seldom: what the rays look for is small
-        traced_only(scene, 64, 64 if settings.direct_light is DirectLight.RAYS else 2048)
+    if iterations is not None:  # seldom: what the rays look for is small
+        traced_only(scene, iterations, 64 if settings.direct_light is DirectLight.RAYS else 2048)
         scene.settings.radius_scale = 10.0  # photons where the rays end have disks of a few centimeters
-    return dataclasses.replace(case, scene=scene, gathers=None if found else case.gathers)
+    return dataclasses.replace(case, scene=scene, gathers=case.gathers if iterations is None else None)
 
 
 def compare(mapper: ProgressivePhotonMapper, name: str, case: Case) -> None:

@@ -86,5 +86,5 @@ def test_diffuse_paths_are_rendered_once(mapper, name, mode):
 @pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.value)
 @pytest.mark.parametrize("name", CLASSES)
 def test_diffuse_paths_are_gathered_once(mapper, monkeypatch, name, mode):
-    case = gathering(CLASSES[name](mode), monkeypatch, name in FOUND)
+    case = gathering(CLASSES[name](mode), monkeypatch, 64 if name in FOUND else None)
     compare(mapper, f"{name} gathered {mode.value}", case)

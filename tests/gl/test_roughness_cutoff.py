@@ -34,7 +34,7 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene
     stores = mode is DirectLight.PHOTONS and lobe.roughness > cut
     photons = 32768 if stores else 64  # camera rays find all light that is left
     settings = RenderSettings(
-        iterations=24, photons=photons, direct_light=mode, photon_path_length=2, camera_path_length=3,
+        iterations=8 if stores else 24, photons=photons, direct_light=mode, photon_path_length=2, camera_path_length=3,
         radius_minimum=0.08, radius_maximum=0.08, filter_width=0.0, specular_roughness=cut,
     )  # fmt: skip
     scene = Scene(
@@ -138,9 +138,9 @@ def swept_sheet(path: str, kind: LobeKind, mode: DirectLight, roughness: float, 
     camera = Camera(scenes.looking(eye, target), (-0.25, 0.25, -0.25, 0.25), 32, 32, True)
     # What camera rays alone find takes many of them and no photons.
     alone = path != "LGDE" and (cut > roughness or (path == "LGE" and mode is DirectLight.RAYS))
+    iterations, photons = (32, 64) if alone else (4, 4096) if path == "LGDE" else (8 if path == "LDGE" else 4, 16384)
     settings = RenderSettings(
-        iterations=32 if alone else 8, photons=64 if alone else 4096 if path == "LGDE" else 16384,
-        direct_light=mode, photon_path_length=3, camera_path_length=3,
+        iterations=iterations, photons=photons, direct_light=mode, photon_path_length=3, camera_path_length=3,
         radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0, specular_roughness=cut, use_final_gather=False,
     )  # fmt: skip
     materials = [material("sheet", lobe), scenes.diffuse(0.8, 0.8, 0.8)]
