@@ -38,7 +38,8 @@ def under_a_sun(surface: Material, sun_from: tuple[float, float, float], mode: D
     sun = Light("sun", LightKind.SUN, scenes.looking(sun_from, (0, 0, 0)), np.full(3, 3.0))
     camera = Camera(scenes.looking((0, 0, 3), (0, 0, 0)), (-0.1, 0.1, -0.1, 0.1), 16, 16)
     fixed = {
-        "iterations": 16, "photons": 16384, "direct_light": mode, "photon_path_length": 2, "camera_path_length": 2,
+        "iterations": 16, "photons": 64 if mode is DirectLight.RAYS else 16384, "direct_light": mode,
+        "photon_path_length": 2, "camera_path_length": 2,
         "radius_minimum": 0.1, "radius_maximum": 0.1, "filter_width": 0.0,
     }  # fmt: skip
     return Scene(

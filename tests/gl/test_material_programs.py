@@ -96,11 +96,12 @@ def test_the_programs_of_a_scene_are_its_structures(mapper):
     assert len(mapper.device_scene.materials.programs) == 5
 
 
-def test_a_chain_of_five_hundred_nodes(mapper):
+@pytest.mark.parametrize("count", [100, pytest.param(500, marks=pytest.mark.long)])
+def test_a_long_chain_of_nodes(mapper, count):
     graph = NodeGraph()
     value = graph.add("attribute", "fac", attribute="heat")
-    for _ in range(500):
-        value = graph.add("math", "value", options={"operation": "ADD"}, value=value, value_001=0.001)
+    for _ in range(count):
+        value = graph.add("math", "value", options={"operation": "ADD"}, value=value, value_001=0.5 / count)
     graph.surface = graph.add("emission", "emission", color=value)
     scene = shown(graph)
     radiance = picture(mapper, scene)

@@ -57,7 +57,7 @@ def test_white_glass_vanishes_in_a_white_sky(renderer, roughness):
     ball(1.0, material(GLASS, Color=1.0, Roughness=roughness, IOR=1.5))
     camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 30.0)
     settings = {"camera_path_length": 32, "specular_roughness": 1.0}
-    result = render_rppm(renderer, photons=1024, photon_path_length=1, iterations=24, **settings)
+    result = render_rppm(renderer, photons=1024, photon_path_length=1, iterations=12, **settings)
     compare(f"white_glass_{roughness}", result.pictures, WHOLE, CONVERGED)
 
 
@@ -83,7 +83,7 @@ def test_white_metal_vanishes_in_a_white_sky(renderer, shader):
     distribution = "MULTI_GGX" if shader == GLOSSY else None
     ball(1.0, material(shader, distribution, Roughness=0.7, **inputs))
     camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 30.0)
-    result = render_rppm(renderer, photons=1024, photon_path_length=2, iterations=24, specular_roughness=1.0)
+    result = render_rppm(renderer, photons=1024, photon_path_length=2, iterations=12, specular_roughness=1.0)
     compare(f"white_metal_{shader}", result.pictures, WHOLE, CONVERGED)
 
 

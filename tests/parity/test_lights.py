@@ -65,8 +65,8 @@ LIGHTS = {
     "emissive_mesh_of_no_ray": _square_seen_by_no_ray,
 }
 MODES = {
-    "RAYS": {"photons": 1024, "photon_path_length": 2, "iterations": 40},
-    "PHOTONS": {"photons": 65536, "photon_path_length": 2, "iterations": 12},
+    "RAYS": {"photons": 1024, "photon_path_length": 2, "iterations": 12},
+    "PHOTONS": {"photons": 65536, "photon_path_length": 2, "iterations": 6},
 }
 
 

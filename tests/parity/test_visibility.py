@@ -22,8 +22,8 @@ from .scenes import (
 )
 
 MODES = {
-    "RAYS": {"photons": 8192, "photon_path_length": 6, "camera_path_length": 6, "iterations": 48},
-    "PHOTONS": {"photons": 65536, "photon_path_length": 6, "camera_path_length": 6, "iterations": 16},
+    "RAYS": {"photons": 8192, "photon_path_length": 6, "camera_path_length": 6, "iterations": 20},
+    "PHOTONS": {"photons": 65536, "photon_path_length": 6, "camera_path_length": 6, "iterations": 8},
 }
 OBJECTS = [
     ("visible_camera", "RAYS"),
