@@ -4,6 +4,7 @@
 import time
 
 import numpy as np
+from blender_window import StepError
 from viewport_window import renderer_pid
 
 
@@ -111,7 +112,11 @@ def kill_until_it_stops(blender):
         state, *_ = blender.wait_until("renderer_state", 90.0, lambda found: found[0] in {"RUNNING", "FAILED"})
         if state == "FAILED":
             return
-        killed = renderer_pid(blender)
+        try:
+            killed = renderer_pid(blender)
+        except StepError:  # dead already: the state follows
+            time.sleep(0.2)
+            continue
         blender.machine.kill(killed)
         end = time.monotonic() + 30.0
         while killed in blender.machine.processes():
