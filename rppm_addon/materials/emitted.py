@@ -50,6 +50,11 @@ def emits(graph: NodeGraph) -> Emits:
     return Emits.VARYING if varying else Emits.EVENLY
 
 
+def asks_for_path(graph: NodeGraph) -> bool:
+    """Whether the surface depends on what kind of ray comes to it, or from how far."""
+    return any(graph.nodes[index].kind == "light_path" for index in reachable(graph, graph.surface))
+
+
 @dataclass(frozen=True)
 class LightVariation:
     """What of a light its emission depends on."""
@@ -92,7 +97,7 @@ def light_variation(graph: NodeGraph) -> LightVariation:
         place=both or box or bool(asked - _BY_DIRECTION - _BY_UV),
         direction=both or bool(asked & _BY_DIRECTION),
         uv=bool(asked & _BY_UV),
-        distance=any(node.kind == "light_path" for node in nodes),
+        distance=asks_for_path(graph),
     )
 
 

@@ -5,7 +5,7 @@
 // DENOISING_DATA_FOUND: and those of denoisers theirs; GATHERED: it has left a surface that stores photons, for light
 // that others send there; CAUSTIC: since then, something has scattered it or taken a share of direct light;
 // GATHERED_AGAIN: it has left a second such surface. The others describe the last event that was not straight on.
-// LIGHTS_FOUND: a shadow ray has looked for the light objects that it leads to.
+// LIGHTS_FOUND: a shadow ray has looked for the light objects and emissive triangles that it leads to.
 const uint PATH_STRAIGHT = 1u, PATH_SURFACE_FOUND = 2u, PATH_GATHERED = 4u, PATH_DIFFUSE = 8u, PATH_TRANSMITTED = 16u,
            PATH_SINGULAR = 32u, PATH_CAUSTIC = 64u, PATH_GATHERED_AGAIN = 128u, PATH_DENOISING_DATA_FOUND = 256u,
            PATH_LIGHTS_FOUND = 512u;

@@ -75,35 +75,52 @@ struct Arriving { vec3 radiance; vec3 direction; float distance; uint triangle; 
 
 const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, NO_TRIANGLE);
 
-// Of light objects, where smooth lobes that reflect little reflect them. A path would go there as seldom.
-Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares, vec3 wo, uvec4 choices) {
+// Light that may arrive, of which one is to be chosen by weight: the one so far over its weight, and the sum of all.
+struct Candidates { Arriving chosen; float weights; float u; };
+
+void add_candidate(inout Candidates candidates, float weight, Arriving arriving) {
+    if (!(weight > 0.0)) return;
+    candidates.weights += weight;
+    if (!takes_candidate(weight, candidates.weights, candidates.u)) return;
+    candidates.chosen = arriving;
+    candidates.chosen.radiance /= weight;
+}
+
+// Of light objects and emissive triangles, where smooth lobes that reflect little reflect them. A path would go there
+// as seldom.
+Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares, vec3 wo, uint flags, uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
     for (int k = 0; k < CLOSURE_LOBES; ++k) looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
-    Arriving arriving = NOTHING_ARRIVES;
-    if (!looks) return arriving;
+    if (!looks) return NOTHING_ARRIVES;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u));
-    float weights = 0.0, u = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).x;
+    Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
+                                       scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).x);
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, u_lobe, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
-        PassedLights passed = passed_lights(closure.position, sampled.direction, INFINITY_DISTANCE, RAY_GLOSSY, 0.0, u);
+        PassedLights passed = passed_lights(closure.position, sampled.direction, INFINITY_DISTANCE, RAY_GLOSSY, 0.0,
+                                            candidates.u);
+        candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                        * reflected_share(lobe, dot(wo, normalize(wo + sampled.direction)));
         vec3 radiance = reflected * passed.chosen * passed.weights;
-        float weight = largest(radiance);
-        if (!(weight > 0.0)) continue;
-        weights += weight;
-        u = passed.u;
-        if (takes_candidate(weight, weights, u))
-            arriving = Arriving(radiance / weight, sampled.direction, passed.distance, NO_TRIANGLE);
+        add_candidate(candidates, largest(radiance),
+                      Arriving(radiance, sampled.direction, passed.distance, NO_TRIANGLE));
+        uint emissive;
+        Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, emissive);
+        if (hit.triangle == NO_TRIANGLE) continue;
+        reflected *= exp(-path_absorption(flags) * hit.distance);
+        radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
+        add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
+                      Arriving(radiance, sampled.direction, hit.distance, hit.triangle));
     }
-    arriving.radiance *= weights;
-    return arriving;
+    candidates.chosen.radiance *= candidates.weights;
+    return candidates.chosen;
 }
 
 // What photons leave to rays of the environment's direct light along a direction.
@@ -163,7 +180,7 @@ void main() {
     Arriving arriving = arriving_from_light(index, path, closure, throughput, shares, viewer, gathered, gathers,
                                             choices);
     Arriving reflected = NOTHING_ARRIVES;
-    if (!gathered) reflected = arriving_reflected(closure, throughput, shares, viewer, choices);
+    if (!gathered) reflected = arriving_reflected(closure, throughput, shares, viewer, flags, choices);
     // One ray for both: by what they would add.
     float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);
     if (!(weight + reflected_weight > 0.0)) return;

@@ -77,7 +77,7 @@ void main() {
                  : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
     }
     // A triangle without finite corners becomes a point, which no ray meets. Fourth components: 1 where the triangle
-    // casts no shadow; its chance among the emitters, and whether its emission varies (lights/mark.comp).
+    // casts no shadow; its chance among the emitters, and its traits as one (lights/mark.comp).
     for (uint k = 0u; k < 3u; ++k)
         triangle_vertices[3u * triangle + k] =
             vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? float(instance.shadowless) : 0.0);

@@ -93,7 +93,8 @@ vec4 seen_environment(CameraPath path, vec3 direction, bool background) {
 // Radiance and alpha of a surface that shines by itself or cuts a hole.
 vec4 seen_surface(CameraPath path, Ray ray, Closure closure) {
     vec4 seen = vec4(0.0);
-    if (largest(closure.emission) > 0.0 && (path.flags & PATH_GATHERED) == 0u) {
+    bool found = (path.flags & PATH_LIGHTS_FOUND) != 0u && (emitter_traits(closure.triangle) & EMITTER_REFLECTED) != 0u;
+    if (largest(closure.emission) > 0.0 && (path.flags & PATH_GATHERED) == 0u && !found) {
         float weight = 1.0;
         if (path.scatter_pdf > 0.0)
             weight = scatter_mis_weight(path.scatter_pdf, emissive_triangle_pdf(ray.origin, closure.triangle));

@@ -13,6 +13,7 @@ layout(std140, binding = 0) uniform Parameters { EmittersParameters parameters; 
 layout(std430, binding = 0) readonly buffer Rays;
 layout(std430, binding = 1) readonly buffer LightTriangles;
 layout(std430, binding = 2) readonly buffer Triangles;
+#include "lights/emitter_traits.glsl"
 layout(std430, binding = 3) writeonly buffer EmitterRays { Ray emitter_rays[]; };
 layout(std430, binding = 4) writeonly buffer EmitterHits { Hit emitter_hits[]; };
 
@@ -24,7 +25,7 @@ void main() {
     uint triangle = photons ? ray.source_triangle : light_triangles[index];
     emitter_rays[index] = Ray(ray.origin, NO_TRIANGLE, ray.direction, 0.0);
     emitter_hits[index] = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
-    if (triangle == NO_TRIANGLE || triangle_vertices[3u * triangle + 2u].w <= 0.0) return;
+    if (triangle == NO_TRIANGLE || (emitter_traits(triangle) & EMITTER_UNEVEN) == 0u) return;
     vec3 v0 = triangle_vertices[3u * triangle].xyz;
     vec3 e1 = triangle_vertices[3u * triangle + 1u].xyz - v0, e2 = triangle_vertices[3u * triangle + 2u].xyz - v0;
     vec3 place = photons ? ray.origin : ray.origin + ray.maximum_distance * ray.direction;

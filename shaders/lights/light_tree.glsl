@@ -4,6 +4,7 @@
 
 #include <LightNode>
 #include "lights/lights.glsl"
+#include "common/intersection.glsl"
 layout(std430, binding = 13) readonly buffer LightNodes { LightNode light_nodes[]; };
 
 // Random numbers of 24 bits last for so many levels.
@@ -169,6 +170,33 @@ PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, 
         node >>= uint(findLSB(node));
     } while (node > 1u);
     return passed;
+}
+
+// --- emissive triangles that a ray meets ---------------------------------------------------------------
+
+// The nearest of those that smooth surfaces look for, as a hit of the watertight test; from_triangle: where the ray
+// begins, which it does not meet. emissive: its number among emissive_triangles[].
+Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, out uint emissive) {
+    Hit nearest = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
+    if (parameters.triangle_tree_leaves == 0u) return nearest;
+    WatertightRay ray = make_watertight_ray(origin, direction);
+    vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    uint node = 1u;
+    do {
+        LightNode at = light_nodes[parameters.triangle_tree + node];
+        bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, nearest.distance);
+        if (met && node < parameters.triangle_tree_leaves) { node *= 2u; continue; }
+        uint triangle = met ? emissive_triangles[at.member].triangle : NO_TRIANGLE;
+        if (met && triangle != from_triangle && (emissive_triangles[at.member].traits & EMITTER_REFLECTED) != 0u) {
+            vec3 v0, v1, v2;
+            triangle_corners(triangle, v0, v1, v2);
+            intersect_triangle(ray, triangle, v0, v1, v2, nearest);
+            if (nearest.triangle == triangle) emissive = at.member;
+        }
+        node += 1u;
+        node >>= uint(findLSB(node));
+    } while (node > 1u);
+    return nearest;
 }
 
 vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf) {

@@ -11,9 +11,9 @@
 layout(std430, binding = 5) readonly buffer EmissiveTriangles;
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
 layout(std430, binding = 6) readonly buffer Triangles;
+#include "lights/emitter_traits.glsl"
 
 #include <Lights>
-
 
 // Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.
 float spot_attenuation(Light light, vec3 direction) {
@@ -81,7 +81,9 @@ void triangle_corners(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
 }
 
 // What varies is asked for later, where a place has been sampled (lights/emitters.comp).
-vec3 sampled_radiance(EmissiveTriangle emissive) { return emissive.uneven > 0.0 ? vec3(1.0) : emissive.radiance; }
+vec3 sampled_radiance(EmissiveTriangle emissive) { 
+    return (emissive.traits & EMITTER_UNEVEN) != 0u ? vec3(1.0) : emissive.radiance;
+}
 
 struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float pdf; };
 

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emissive triangles carry the probability of being chosen, and whether their emission varies.
+// Emissive triangles carry the probability of being chosen, and their traits.
 
 layout(local_size_x = 64) in;
 
@@ -15,5 +15,5 @@ void main() {
     if (index >= parameters.count) return;
     EmissiveTriangle emissive = emissive_triangles[index];
     triangle_vertices[3u * emissive.triangle + 1u].w = emissive.share;
-    triangle_vertices[3u * emissive.triangle + 2u].w = emissive.uneven;
+    triangle_vertices[3u * emissive.triangle + 2u].w = float(emissive.traits);
 }

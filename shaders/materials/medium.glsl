@@ -10,10 +10,14 @@ const uint PATH_MASK = 0x3ffu;
 
 vec3 medium_absorption(uint medium) { return medium == 0u ? vec3(0.0) : materials[medium - 1u].absorption; }
 
+vec3 path_absorption(uint flags) {
+    return medium_absorption((flags >> FIRST_MEDIUM) & MEDIUM_MASK) + medium_absorption(flags >> SECOND_MEDIUM);
+}
+
 // What is left of the light of a segment that ends at the closure.
 vec3 segment_transmittance(uint flags, Closure closure) {
-    uint first = (flags >> FIRST_MEDIUM) & MEDIUM_MASK, second = flags >> SECOND_MEDIUM;
-    vec3 absorption = medium_absorption(first) + medium_absorption(second);
+    uint first = (flags >> FIRST_MEDIUM) & MEDIUM_MASK;
+    vec3 absorption = path_absorption(flags);
     // A path that started inside learns so where it meets the surface from within.
     if (first == 0u && (closure.flags & CLOSURE_BACKFACING) != 0u) absorption = materials[closure.material].absorption;
     return exp(-absorption * closure.distance);

@@ -311,6 +311,17 @@ class LightShape(enum.IntEnum):
     WORLD = 6
 
 
+class EmitterTrait(enum.IntFlag):
+    """Of an emissive triangle."""
+
+    UNEVEN = 1
+    """What it emits varies with place or direction."""
+    REFLECTED = 2
+    """Smooth surfaces look for it: it is seen by reflection as by shadow rays, and hides what is behind it."""
+
+
+Constants("EmitterTraits", EMITTER=EmitterTrait)
+
 LIGHT_SOFT = 32
 """Of a light's flags, behind the bits of RayVisibility: a disk that faces each point it lights."""
 Constants("Lights", LIGHT=LightShape, LIGHT_SOFT=LIGHT_SOFT)
@@ -356,10 +367,10 @@ EMISSIVE_TRIANGLE = Record(
     area="float",
     cumulated="float",
     share="float",
-    uneven="float",
+    traits="uint",
 )
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
-choosing it, and that of choosing it or one before."""
+choosing it, and that of choosing it or one before; its EmitterTraits."""
 StorageBlock("EmissiveTriangles", "EmissiveTriangle emissive_triangles[];")
 
 LIGHT_NODE = Record(

@@ -11,12 +11,13 @@ from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
-from ...materials.emitted import Emits
+from ...materials.emitted import Emits, asks_for_path
 from ...materials.tables import MaterialTables
+from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
-from ..common.records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY
+from ..common.records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY, EmitterTrait
 from ..surfaces.geometry import Geometry, Placement
 from ..surfaces.resolve import Resolve
 from .light_tree import triangle_leaves
@@ -28,6 +29,8 @@ _POINTS = 8
 _CHUNK = 1 << 16
 _LEAST_SHARE = 0.05
 """Of a material's mean radiance: what triangles count for at least, since points may miss what shines."""
+_SEEN_REFLECTED = RayVisibility.GLOSSY | RayVisibility.SHADOW
+"""What objects must be that smooth surfaces look for: the nearest one hides those behind it."""
 _STEPS = 1 << 24
 """Shares are multiples of 2^-24: random numbers have no more steps."""
 
@@ -60,19 +63,20 @@ class Emitters(BufferSet):
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
         dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
+        by_path = {m for m, material in enumerate(scene.materials) if m not in dark and asks_for_path(material.graph)}
         found = [
-            _may_emit(scene, placement, materials)
+            _may_emit(scene, placement, materials, by_path)
             for placement in geometry.placements
             if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
         ]
-        kinds_of_parts: tuple[DTypeLike, ...] = EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool
-        records, corners, kinds, varying = (
+        kinds_of_parts: tuple[DTypeLike, ...] = EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool
+        records, corners, kinds, varying, reflected = (
             np.concatenate([parts[k] for parts in found]) if found else np.zeros((0,), kind)
             for k, kind in enumerate(kinds_of_parts)
         )
         self._ask(records, corners, kinds, varying, resolve)
         bright = records["radiance"].max(axis=1, initial=0.0) > 0
-        records, varying = records[bright], varying[bright]
+        records, varying, reflected = records[bright], varying[bright], reflected[bright]
         self.leaves = triangle_leaves(records, corners[bright].reshape(-1, 3, 3))
         self._varying = bool(varying.any())
         self._world_triangles = geometry.triangles.buffer
@@ -83,7 +87,7 @@ class Emitters(BufferSet):
             steps = chances(weights)
             records["share"] = steps / _STEPS
             records["cumulated"] = np.cumsum(steps) / _STEPS
-            records["uneven"] = varying
+            records["traits"] = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
         self.triangles.upload(records if self.count else EMISSIVE_TRIANGLE.zeros(1))
         self._mark.run(
             self.count,
@@ -208,8 +212,11 @@ def chances(weights: np.ndarray) -> np.ndarray:
     return steps
 
 
-def _may_emit(scene: Scene, placement: Placement, materials: MaterialTables) -> tuple[np.ndarray, ...]:
-    """Of one instance: records without radiance, corners (n, 3, 3) in meters, material and whether it varies."""
+def _may_emit(
+    scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int]
+) -> tuple[np.ndarray, ...]:
+    """Of one instance: records without radiance, corners (n, 3, 3) in meters, material, whether it varies, and whether
+    smooth surfaces may look for it: what its emission depends on must be known without the path that comes there."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
     slots = np.array([m if 0 <= m < len(scene.materials) else -1 for m in instance.materials] or [-1])
@@ -226,4 +233,6 @@ def _may_emit(scene: Scene, placement: Placement, materials: MaterialTables) -> 
     records["triangle"], records["area"] = placement.first_triangle + which, area[good]
     kinds = slots[np.minimum(mesh.triangle_slots[which], len(slots) - 1)]
     varying = np.array([materials.emits[m] is Emits.VARYING for m in kinds], bool)
-    return records, corners, kinds, varying
+    seen = instance.visibility & _SEEN_REFLECTED == _SEEN_REFLECTED
+    reflected = seen & np.isin(kinds, list(by_path), invert=True)
+    return records, corners, kinds, varying, reflected

@@ -8,7 +8,7 @@ from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.textures import TextureKind
-from ...materials.emitted import Emits, emits, reachable
+from ...materials.emitted import Emits, asks_for_path, emits
 from ...materials.tables import MaterialTables
 from ...scene.images import Image
 from ...scene.lights import World
@@ -75,10 +75,9 @@ class Environment(BufferSet):
                 )
             self._textures = [self._texture(np.ones((1, 1, 3), np.float32))]
             return
-        kinds = {world.graph.nodes[index].kind for index in reachable(world.graph, world.graph.surface)}
         width = _map_width(world.graph, images)
         maps = [materials.evaluate(world.graph, width, width // 2)]
-        if "light_path" in kinds:
+        if asks_for_path(world.graph):
             maps.append(materials.evaluate(world.graph, width, width // 2, from_camera=True))
         maps = [np.maximum(pixels * self.radiance.astype(np.float32), 0.0) for pixels in maps]
         self.radiance = np.ones(3)
