@@ -4,6 +4,7 @@
 #include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/sampling.glsl"
+#include "common/whole_numbers.glsl"
 #include "common/gathering.glsl"
 #include "common/world_light.glsl"
 layout(std430, binding = 6) readonly buffer WorldDirections;
@@ -59,21 +60,26 @@ float caustic_share(uint photon_number, float radius) {
     return found ? world_photon_share(radiance, parameters.photon_flux, radius) : 1.0;
 }
 
-// What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which an
-// importon takes photons of its kind. offset: from importon to photon.
-bool within_reach(uint gathers, float narrow, vec3 offset, uint photon_flags, float wide_radius) {
+// What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which it
+// counts at an importon. offset: from importon to photon.
+bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
     if ((gathers & GATHERS_BY_RAY) != 0u && (photon_flags & PHOTON_INDIRECT) != 0u) return false;
-    float radius = photon_radius(photon_flags, narrow, wide_radius);
-    return dot(offset, offset) < radius * radius && narrow > 0.0;
+    return dot(offset, offset) < radius * radius;
 }
 
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
-// integral over the unit disk is 1. False when it adds nothing.
-bool density_estimate(Importon importon, Photon photon, uint photon_number, float wide_radius, out vec3 radiance) {
+// integral over the unit disk is 1. False when it adds nothing. stands_for: how many photons the importon's disk holds
+// for each that counts within so much less of it.
+bool density_estimate(Importon importon, Photon photon, uint photon_number, float wide_radius, out vec3 radiance,
+                      out uint stands_for) {
     radiance = vec3(0.0);
+    stands_for = 0u;
     vec3 offset = photon.position - importon.position;
-    if (!within_reach(importon.gathers, importon.radius, offset, photon.flags, wide_radius)) return false;
-    float radius = photon_radius(photon.flags, importon.radius, wide_radius), radius2 = radius * radius;
+    float radius = photon_radius(photon.flags, importon.least_radius, importon.radius, wide_radius);
+    float radius2 = radius * radius;
+    if (!(importon.radius > 0.0) || !within_reach(importon.gathers, offset, radius, photon.flags)) return false;
+    float disks = importon.radius * importon.radius / radius2;
+    stands_for = whole_word(floor(max(disks, 1.0) + 0.5));
     vec3 geometric = unpack_unit_vector(importon.geometric_normal);
     if (abs(dot(offset, geometric)) > PHOTON_PLANE_TOLERANCE * radius) return false;
     vec3 photon_normal = unpack_unit_vector(photon.geometric_normal);
@@ -85,7 +91,8 @@ bool density_estimate(Importon importon, Photon photon, uint photon_number, floa
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     float geometric_cosine = abs(dot(photon_normal, photon.direction));
     radiance = evaluate_importon(importon, photon.direction, alignment > 0.0, geometric_cosine) * photon.flux * kernel;
-    if ((photon.flags & PHOTON_DIRECT) != 0u) radiance *= direct_share(photon_number, importon.radius);
-    else if ((importon.gathers & GATHERS_BY_RAY) != 0u) radiance *= caustic_share(photon_number, importon.radius);
+    float disk = disk_radius(importon.least_radius, importon.radius);
+    if ((photon.flags & PHOTON_DIRECT) != 0u) radiance *= direct_share(photon_number, disk);
+    else if ((importon.gathers & GATHERS_BY_RAY) != 0u) radiance *= caustic_share(photon_number, disk);
     return largest(radiance) > 0.0;
 }

@@ -3,8 +3,18 @@
 
 #include <PhotonFlags>
 
-// Photons that a diffuse surface has scattered are spread evenly and estimated with a wider radius;
-// those straight from a light or by specular surfaces only make the caustics and keep the narrow one.
-float photon_radius(uint flags, float narrow, float wide) {
-    return (flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u ? max(narrow, wide) : narrow;
+#include "common/disk_radius.glsl"
+#include <PhotonFootprints>
+
+// A radius as the upper bits of the flags, rounded down to 14 bits; 0 is none.
+uint footprint_bits(float radius) { return floatBitsToUint(clamp(radius, 1e-30, 1e30)) & ~PHOTON_FLAG_MASK; }
+
+// The radius in which a photon counts at an importon. Photons that a diffuse surface has scattered are spread evenly
+// and estimated with a wider one. Those straight from a light or by specular surfaces only make the caustics, and know
+// how far from each other they are (photons/differentials.glsl).
+float photon_radius(uint flags, float least, float most, float wide) {
+    float disk = disk_radius(least, most);
+    if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) return max(disk, wide);
+    float footprint = uintBitsToFloat(flags & ~PHOTON_FLAG_MASK);
+    return footprint > 0.0 ? clamp(footprint, least, most) : disk;
 }

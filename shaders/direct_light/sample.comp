@@ -126,8 +126,9 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
 // What photons leave to rays of the environment's direct light along a direction.
 float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 direction, bool gathered) {
     if (!(parameters.direct_world_flux > 0.0)) return 1.0;
-    float radius = caustic_radius_of(parameters.first_pixel + index, vertex_radius(path, -wo, closure), gathered);
-    return 1.0 - direct_photon_share(direction, radius);
+    float least = vertex_radius(path, -wo, closure);
+    float most = caustic_radius_of(parameters.first_pixel + index, least, gathered);
+    return 1.0 - direct_photon_share(direction, disk_radius(gathered ? most : least, most));
 }
 
 // Of a light that is chosen by what it may give at the point.

@@ -3,6 +3,7 @@
 // (rppm_addon/integrator/density_estimation/radii.py), segment, iteration, and the buffers Camera and RadiusFactors.
 
 #include "gbuffer/projections.glsl"
+#include "common/disk_radius.glsl"
 
 // The radius in which photons count at the path's new vertex.
 float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {

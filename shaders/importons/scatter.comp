@@ -26,12 +26,13 @@ layout(std430, binding = 9) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 
-Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float radius, float u, uint gathers) {
+Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float least_radius, float radius, float u,
+                       uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.diffuse_normal,
                                  throughput * closure.translucent / PI, closure.diffuse_roughness,
                                  vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers,
-                                 closure.shading_normal, 0u, 0u);
+                                 closure.shading_normal, least_radius, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
     float total = 0.0;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
@@ -163,7 +164,7 @@ Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec3 u_
 }
 
 // The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
-void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, float radius, float caustic_radius,
+void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, float radius, float disk,
            uvec4 choices, float u) {
     vec3 viewer = -ray.direction;
     PathShares all = path_shares(closure, path.throughput, viewer, parameters.specular_alpha, gathers);
@@ -194,12 +195,12 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, 
     path.throughput *= event.weight * (total / (event.probability * survival));
     if (sets_out) path.flags &= ~PATH_CAUSTIC;
     if (sets_out && gathered) {
-        gathering_vertices[index].radius = caustic_radius;
+        gathering_vertices[index].radius = disk;
         path.throughput *= found_weight;
     } else if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
         gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput,
-                                                    pack_unit_vector(event.normal), vec3(0.0), caustic_radius);
+                                                    pack_unit_vector(event.normal), vec3(0.0), disk);
         path.throughput = found_weight;
     }
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
@@ -247,8 +248,9 @@ void main() {
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
-    importons[index] = make_importon(closure, path.throughput, -ray.direction, caustic_radius, u_lobe.y,
+    float least_radius = gathered ? caustic_radius : radius;
+    importons[index] = make_importon(closure, path.throughput, -ray.direction, least_radius, caustic_radius, u_lobe.y,
                                      (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u));
     if (parameters.last_segment == 0u)
-        go_on(index, path, ray, closure, gathers, radius, caustic_radius, choices, u_lobe.x);
+        go_on(index, path, ray, closure, gathers, radius, disk_radius(least_radius, caustic_radius), choices, u_lobe.x);
 }

@@ -15,8 +15,29 @@ layout(std430, binding = 1) writeonly buffer PhotonPaths;
 layout(std430, binding = 8) writeonly buffer PhotonCells;
 
 layout(std430, binding = 9) writeonly buffer WorldDirections;
+layout(std430, binding = 10) writeonly buffer PhotonDifferentials;
 
 #include <GuideCells>
+
+// The light's own radius, meters, or of a sun the angle of its disk's.
+float light_extent(Light light) {
+    if (light.kind == LIGHT_SUN) return sqrt(max(0.0, 1.0 - light.cosine_cone * light.cosine_cone));
+    return is_area_light(light) ? 0.5 * (length(light.axis_u) + length(light.axis_v)) : light.radius;
+}
+
+// How the neighbors of a photon leave. The environment and emissive meshes are as large as what they light, and tell
+// nothing. before: from the light to where the ray begins.
+PhotonDifferential leaving_differential(Light light, Emission emission, float before) {
+    bool parallel = light.kind == LIGHT_SUN;
+    bool known = emission.pdf > 0.0 && light.kind != LIGHT_WORLD && light.kind != LIGHT_MESH;
+    vec3 t, b;
+    tangent_frame(emission.direction, t, b);
+    float apart = known ? inversesqrt(emission.pdf * float(light.photon_count)) : 0.0, extent = light_extent(light);
+    vec3 none = vec3(0.0);
+    return PhotonDifferential(parallel ? apart * t : none, known ? 1u : 0u, parallel ? none : apart * t,
+                              parallel ? 0.0 : extent, parallel ? apart * b : none, parallel ? extent : 0.0,
+                              parallel ? none : apart * b, parallel ? 0.0 : before);
+}
 
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
 // they pass it by.
@@ -72,6 +93,8 @@ void main() {
         world_directions[index] = WorldDirection(largest(world_radiance(-emission.direction)),
                                                  world_shadow_ray_pdf(-emission.direction));
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags);
+    vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
+    photon_differentials[index] = leaving_differential(light, emission, distance(left_from, emission.origin));
     rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);
 }

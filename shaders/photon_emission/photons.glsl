@@ -6,7 +6,8 @@
 #include "photon_emission/aim.glsl"
 #include "lights/guide.glsl"
 
-struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; };
+// pdf: of the direction from a place in 1/sr, or of the place across parallel rays in 1/m^2.
+struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; float pdf; };
 
 // Random numbers of one photon, whether it is aimed, and the share of those that are.
 struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; float aimed_share; };
@@ -30,7 +31,7 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
     float pdf = mixed_pdf(light, plain, disk_to_square(place / radius), choice.direction,
                                   seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
     vec3 origin = parameters.scene_center + place.x * t + place.y * b - radius * direction;
-    return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf);
+    return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf);
 }
 
 // Radiant intensity from the light's center; a sphere of uniform radiance shows the same disk to every
@@ -49,7 +50,7 @@ Emission emit_from_point(Light light, EmissionChoice choice) {
     vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
     float pdf = mixed_pdf(light, plain, choice.place, square, aimed, seen, choice);
     vec3 origin = light.position + sample_facing_half(light.radius, direction, choice.place);
-    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / pdf);
+    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / pdf, pdf);
 }
 
 // From a point of a surface, with the pdf by area that the point was chosen by.
@@ -68,7 +69,7 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
     }
     float cosine = dot(direction, normal);
     if (both_sides) cosine = abs(cosine);
-    Emission none = Emission(origin, triangle, direction, vec3(0.0));
+    Emission none = Emission(origin, triangle, direction, vec3(0.0), 0.0);
     if (cosine <= 0.0) return none;
     float plain = both_sides ? cosine / (2.0 * PI) : cosine / PI;
     if (narrow) plain = cosine >= light.cosine_cone ? 1.0 / (2.0 * PI * (1.0 - light.cosine_cone)) : 0.0;
@@ -81,7 +82,7 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
                                   seen ? target_direction_pdf(origin, cones, direction) : 0.0, seen, choice);
     if (!both_sides) radiance *= spread_attenuation(light, cosine);
     return Emission(both_sides ? offset_from_surface(origin, front ? normal : -normal) : origin, triangle, direction,
-                    radiance * (cosine / (area_pdf * pdf)));
+                    radiance * (cosine / (area_pdf * pdf)), pdf);
 }
 
 Emission emit_plain_photon(Light light, EmissionChoice choice) {

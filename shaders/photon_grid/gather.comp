@@ -59,7 +59,8 @@ void main() {
     uint corners = (importon.gathers & GATHERS_BY_RAY) == 0u && wide_in_use[1] != 0u ? 3u * CORNERS
                  : wide_in_use[0] != 0u ? 2u * CORNERS : CORNERS;
     uint caustic_grid = finest_grid(importon.radius);
-    float narrow = importon.radius, wide = max(narrow, parameters.wide_radius), radius = narrow;
+    float narrow = importon.radius, radius = narrow;
+    float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, narrow, parameters.wide_radius);
     Cells cells = cells_around(importon.position, narrow, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u);
@@ -96,11 +97,12 @@ void main() {
         }
         if (!near) break;
         vec3 radiance;
+        uint stands_for;
         if (rejected(number, visit.x)) continue;
-        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, radiance)) continue;
+        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, radiance, stands_for)) continue;
         any = true;
         photons[number].contributed = 1u;
-        collect_splat(collected, radiance, corner > CORNERS);
+        collect_splat(collected, radiance, corner > CORNERS, stands_for);
     }
     if (any) write_collected(visit.x, (importon.gathers & GATHERED_BY_RAY) != 0u, collected);
     if (next < end || corner < corners) leave(uvec2(visit.x, looked_at));

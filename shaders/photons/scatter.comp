@@ -16,6 +16,7 @@ layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) writeonly buffer Photons;
 layout(std430, binding = 4) writeonly buffer AdjointQueries;
+#include "photons/differentials.glsl"
 
 // unseen: a flag of direct photons from lights that do not take part in such events.
 struct Scattering {
@@ -111,8 +112,26 @@ void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec
     rays[index].maximum_distance = matters ? INFINITY_DISTANCE : 0.0;
 }
 
+// Rough surfaces end what is known of a path's neighbors, transparency changes nothing of it.
+void store_differential(uint index, PhotonDifferential at, Closure closure, Scattering scattering, vec3 arriving) {
+    bool rough = (scattering.flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u;
+    if (rough) at.known = 0u;
+    else if (scattering.part != PART_TRANSPARENT) {
+        vec3 normal = scattering.normal;
+        NormalChange change = normal_change(closure.triangle, closure.position, normal);
+        vec3 turn_u = normal_turn(change, at.place_u), turn_v = normal_turn(change, at.place_v);
+        float ratio = 1.0 / scattering.ior;
+        vec3 leaving = scattering.direction;
+        at.turn_u = scattering.transmitted ? refracted_turn(at.turn_u, turn_u, arriving, leaving, normal, ratio)
+                                           : mirrored_turn(at.turn_u, turn_u, arriving, normal);
+        at.turn_v = scattering.transmitted ? refracted_turn(at.turn_v, turn_v, arriving, leaving, normal, ratio)
+                                           : mirrored_turn(at.turn_v, turn_v, arriving, normal);
+    }
+    photon_differentials[index] = at;
+}
+
 // The ray and the flux that a path goes on with, if it does; path_flags are those that it came with.
-void go_on(uint index, Closure closure, uint path_flags, inout Photon photon) {
+void go_on(uint index, Closure closure, uint path_flags, PhotonDifferential differential, inout Photon photon) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
@@ -131,6 +150,7 @@ void go_on(uint index, Closure closure, uint path_flags, inout Photon photon) {
     if (!straight)
         path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
+    if (differential.known != 0u) store_differential(index, differential, closure, scattering, -photon.direction);
     if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
     vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
     rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
@@ -168,6 +188,12 @@ void main() {
         return;
     }
     photon.flux *= segment_transmittance(path_flags, closure);
+    PhotonDifferential differential = photon_differentials[index];
+    if (differential.known != 0u) {
+        differential = moved_to_hit(differential, ray.direction, closure.distance,
+                                    unpack_unit_vector(closure.geometric_normal), parameters.segment == 0u);
+        photon.flags |= packed_footprint(differential);
+    }
     photon.position = closure.position;
     photon.triangle = closure.triangle;
     photon.geometric_normal = closure.geometric_normal;
@@ -177,6 +203,6 @@ void main() {
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) photon.flags |= PHOTON_STORED;
 
     if (parameters.segment + 1u < parameters.segments && largest(photon.flux) > 0.0)
-        go_on(index, closure, path_flags, photon);
+        go_on(index, closure, path_flags, differential, photon);
     photons[slot] = photon;
 }

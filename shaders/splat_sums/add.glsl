@@ -14,7 +14,7 @@ void add_quanta(uint place, float quanta) {
 }
 
 // Threads that meet here write the same mark.
-void add_splat(uint importon, uint photon, vec3 radiance) {
+void add_splat(uint importon, uint photon, vec3 radiance, uint stands_for) {
     photons[photon].contributed = 1u;
     bool by_ray = (importons[importon].gathers & GATHERED_BY_RAY) != 0u;
     uint place = first_word(importon, by_ray);
@@ -24,5 +24,5 @@ void add_splat(uint importon, uint photon, vec3 radiance) {
     if (parameters.counting == 0u) return;
     if ((photons[photon].flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u)
         atomicAdd(photon_counts[diffused_place(importon)], 1u);
-    else if (!by_ray) atomicAdd(photon_counts[caustic_place(importon)], 1u);
+    else if (!by_ray) atomicAdd(photon_counts[caustic_place(importon)], stands_for);
 }

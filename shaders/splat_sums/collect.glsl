@@ -13,12 +13,12 @@ void add_words(inout uvec2 sum, uvec2 added) {
     sum.y += added.y + (sum.x < added.x ? 1u : 0u);
 }
 
-void collect_splat(inout Collected collected, vec3 radiance, bool diffused) {
+void collect_splat(inout Collected collected, vec3 radiance, bool diffused, uint stands_for) {
     add_words(collected.red, whole_quanta(radiance.r * parameters.quanta));
     add_words(collected.green, whole_quanta(radiance.g * parameters.quanta));
     add_words(collected.blue, whole_quanta(radiance.b * parameters.quanta));
     if (diffused) ++collected.diffused;
-    else ++collected.caustic;
+    else collected.caustic += stands_for;
 }
 
 void write_words(uint place, uvec2 added) {

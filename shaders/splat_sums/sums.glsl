@@ -10,8 +10,8 @@ const float MOST_QUANTA = 4611686018427387904.0;  // 2^62
 
 uint first_word(uint pixel, bool by_ray) { return 12u * pixel + (by_ray ? 6u : 0u); }
 
-// Where the photons are counted that a pixel takes: diffused ones, and caustic ones but for those at the ends of
-// gathering rays.
+// Where the photons are counted that a pixel takes: diffused ones, and caustic ones that its disk holds by those taken,
+// but for those at the ends of gathering rays.
 uint diffused_place(uint pixel) { return 2u * pixel; }
 uint caustic_place(uint pixel) { return 2u * pixel + 1u; }
 

@@ -8,8 +8,11 @@
 void meet(uint importon, uint photon) {
     if (rejected(photon, importon)) return;
     vec3 offset = photons[photon].position - importons[importon].position, radiance;
-    if (!within_reach(importons[importon].gathers, importons[importon].radius, offset, photons[photon].flags,
-                      parameters.wide_radius)) return;
-    if (density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, radiance))
-        add_splat(importon, photon, radiance);
+    uint flags = photons[photon].flags;
+    float radius = photon_radius(flags, importons[importon].least_radius, importons[importon].radius,
+                                 parameters.wide_radius);
+    if (!within_reach(importons[importon].gathers, offset, radius, flags)) return;
+    uint stands_for;
+    if (density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, radiance, stands_for))
+        add_splat(importon, photon, radiance, stands_for);
 }

@@ -74,8 +74,10 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     rays, hits = photons._rays.buffer, photons._hits
     count, lights = scene.settings.photons, context.lights
     photons._living.fill(count)
-    paths, world_radiances = photons._paths.buffer, photons.world_radiances.buffer
-    PhotonEmission(library).emit(lights, rays, paths, world_radiances, count, Iteration(2, seed=3))
+    paths, directions, differentials = photons._paths, photons.world_directions, photons._differentials
+    PhotonEmission(library).emit(
+        lights, rays, paths.buffer, directions.buffer, differentials.buffer, count, Iteration(2, seed=3)
+    )
     context.deep_cubemap.trace(rays, hits.buffer, photons._living)
     traced = hits.read(HIT.dtype, count).copy()
     hits.clear()

@@ -6,7 +6,14 @@ import pytest
 
 from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import IMPORTON, PHOTON, WORLD_DIRECTION, GatherFlag, PhotonFlag
+from rppm_addon.integrator.common.records import (
+    IMPORTON,
+    PHOTON,
+    PHOTON_FLAG_BITS,
+    WORLD_DIRECTION,
+    GatherFlag,
+    PhotonFlag,
+)
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.density_estimation.photon_grid import PhotonGrid
 from rppm_addon.integrator.density_estimation.radii import SplatRadii
@@ -75,6 +82,7 @@ def photons_at(positions: np.ndarray, flags: int) -> np.ndarray:
 def importons_at(positions: np.ndarray, radii: np.ndarray, gathers: int = 0) -> np.ndarray:
     importons = IMPORTON.zeros(len(positions))
     importons["position"], importons["radius"], importons["gathers"] = positions, radii, gathers
+    importons["least_radius"] = radii
     importons["direction"], importons["diffuse"] = (0, 0, 1), 1.0
     importons["geometric_normal"] = importons["diffuse_normal"] = importons["shading_normal"] = UP
     return importons
@@ -112,6 +120,22 @@ def test_no_photon_within_reach_is_missed(device, flags, offset, largest):
         assert (diffused >= inside.sum(axis=1)).all() and (diffused <= near.sum(axis=1)).all()
     else:
         assert not diffused.any()
+
+
+def test_photons_count_within_their_footprints(device):
+    """Between the importon's least radius and its largest; photons that know none within three least ones."""
+    least, most = 0.1, 0.5
+    footprints = np.array([0.0, 0.05, 0.2, 0.9], np.float32)
+    radii = np.array([3 * least, least, 0.2, most])
+    distances = np.linspace(0.01, 0.6, 60)
+    importons = importons_at(np.stack([distances, 0 * distances, 0 * distances], 1), np.full(60, most))
+    importons["least_radius"] = least
+    for footprint, radius in zip(footprints, radii, strict=True):
+        bits = int(np.float32(footprint).view(np.uint32)) & ~((1 << PHOTON_FLAG_BITS) - 1)
+        photon = photons_at(np.zeros((1, 3), np.float32), bits)
+        contributed, _, any_light = device.gather(photon, importons, SplatRadii(most, most))
+        assert contributed.all()
+        np.testing.assert_array_equal(any_light, distances < radius * (1 - 1e-4))
 
 
 @pytest.mark.parametrize("flags", [0, PhotonFlag.AFTER_ROUGH_BOUNCE])

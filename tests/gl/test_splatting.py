@@ -6,16 +6,19 @@ import pytest
 import scenes
 from test_geometry import unpack
 
-from rppm_addon.integrator.common.records import IMPORTON, GatherFlag, PhotonFlag
+from rppm_addon.integrator.common.records import IMPORTON, PHOTON_FLAG_BITS, GatherFlag, PhotonFlag
 from rppm_addon.integrator.density_estimation import splat_sums, splatting
 from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
 from rppm_addon.scene import DensityEstimation, DirectLight
 
+DISK_FACTOR = 3.0
+"""Of shaders/common/disk_radius.glsl."""
 ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
 
 
 def brute_force(importons, photons, wide):
-    """(n, 3) radiance of diffuse importons: Eq. 1 over all pairs, with the side and plane tests.
+    """(n, 3) radiance of diffuse importons: Eq. 1 over all pairs, with the side and plane tests, each photon within its
+    footprint's radius.
 
     Importons of paths that gather take no indirect photons.
     """
@@ -24,12 +27,15 @@ def brute_force(importons, photons, wide):
     diffused, indirect = (
         (stored["flags"] & flag) != 0 for flag in (PhotonFlag.AFTER_ROUGH_BOUNCE, PhotonFlag.INDIRECT)
     )
+    footprints = (stored["flags"] & ~np.uint32((1 << PHOTON_FLAG_BITS) - 1)).view(np.float32)
     result = np.zeros((len(importons), 3))
     for index, importon in enumerate(importons):
         if importon["radius"] <= 0:
             continue
         offset = (stored["position"] - importon["position"]).astype(np.float64)
-        radius = np.where(diffused, max(importon["radius"], wide), importon["radius"]).astype(np.float64)
+        disk = min(DISK_FACTOR * importon["least_radius"], importon["radius"])
+        clear = np.where(footprints > 0, np.clip(footprints, importon["least_radius"], importon["radius"]), disk)
+        radius = np.where(diffused, max(disk, wide), clear).astype(np.float64)
         distance2 = (offset**2).sum(1)
         geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["diffuse_normal"][None])[0]
         near = (distance2 < radius**2) & (normals @ geometric > 0.7) & (abs(offset @ geometric) <= 0.35 * radius)

@@ -167,6 +167,23 @@ WORLD_DIRECTION = Record("WorldDirection", radiance="float", pdf="float")
 from where no gathering ray stands for them, 1/sr. 0 for photons of other lights."""
 StorageBlock("WorldDirections", "WorldDirection world_directions[];")
 
+PHOTON_DIFFERENTIAL = Record(
+    "PhotonDifferential",
+    place_u="vec3",
+    known="uint",
+    turn_u="vec3",
+    blur="float",
+    place_v="vec3",
+    spread="float",
+    turn_v="vec3",
+    before="float",
+)
+"""How far from a photon's ray its neighbors' run, along two directions: ``place`` in meters at the ray's origin, ``turn``
+by how much their directions differ. ``blur`` is the radius, meters, over which the light's own size spreads what comes
+there, before the first hit the light's, and ``spread`` by how much it grows with the distance; ``before`` is how far the
+ray's origin is from the light. ``known`` is 0 where neighbors are not followed any more."""
+StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
+
 ADJOINT_QUERY = Record(
     "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint"
 )
@@ -187,7 +204,8 @@ PHOTON = Record(
     contributed="uint",
 )
 """One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
-``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it."""
+``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it. The upper
+bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known."""
 StorageBlock("Photons", "Photon photons[];")
 StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint stored_photons[];")
 """How many are stored, how many of these are diffused, and the numbers of the stored ones."""
@@ -219,6 +237,9 @@ class PhotonFlag(enum.IntFlag):
 
 
 Constants("PhotonFlags", PHOTON=PhotonFlag)
+PHOTON_FLAG_BITS = 10
+"""Of a photon's word; the others are a float's."""
+Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
 
 CAMERA_PATH = Record(
     "CameraPath",
@@ -262,10 +283,11 @@ IMPORTON = Record(
     next="uint",
     gathers="uint",
     shading_normal="uint",
-    unused0="uint",
-    unused1="uint",
+    least_radius="float",
+    unused="uint",
 )
-"""A camera path vertex where radiance is estimated; radius 0 marks none. The weights already hold
+"""A camera path vertex where radiance is estimated; radius 0 marks none. Photons that know their footprint count within
+a radius of their own between ``least_radius`` and ``radius``. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
 ``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag."""
 StorageBlock("Importons", "Importon importons[];")

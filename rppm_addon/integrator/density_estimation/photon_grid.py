@@ -42,10 +42,10 @@ StorageBlock("Buckets", "uint cursor; uint wide_in_use[2]; uint unused; uvec2 bu
 StorageBlock("SortedPhotons", "uvec4 sorted_photons[];")
 StorageBlock("Visits", "uint visit_groups[3]; uint visit_count; uvec2 visits[];")
 
-_FINER_SIDES = (1.0, 1.0 / 3.0, 1.0 / 9.0)
-"""Caustic grids after the first, which is for the ends of gathering rays, by their radius as a part of the largest
-elsewhere: importons whose radius is that much smaller, since they are near the camera or take many photons, look at
-fewer."""
+_FINER_SIDES = (2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
+"""Caustic grids after the first, which is for the ends of gathering rays and the first iteration, by their radius as a
+part of the largest elsewhere: importons whose radius is that much smaller, since they are near the camera or take many
+photons, look at fewer."""
 _CAUSTIC_GRIDS, _WIDE_GRIDS = 1 + len(_FINER_SIDES), 2
 Constants("PhotonGrids", CAUSTIC_GRIDS=_CAUSTIC_GRIDS)
 _FEWEST_BUCKETS = 1 << 10

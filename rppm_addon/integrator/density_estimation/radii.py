@@ -16,7 +16,9 @@ how wide it is."""
 _MOST_CAUSTIC_RADII = 3.0
 EXPECTED_CAUSTIC_PHOTONS = 30
 """Caustic photons that a pixel's disk of the first iteration holds, if it is wider than Eq. 3's."""
-_MOST_FACTOR = 3.0
+_MOST_FACTOR = 6.0
+FOOTPRINT_PHOTONS = 20
+"""Photons in the disk of a photon that knows how far off its neighbors are, between Eq. 3's and the pixel's."""
 CORNER_RADII = 2.0
 """A gathering ray of at most so many wide radii ends in a corner."""
 

@@ -21,12 +21,13 @@ _FEW_IMPORTONS = 40_000
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
-Record("SplatParameters", count="uint", radius="float", wide_radius="float", gathers="uint")
+Record("SplatParameters", count="uint", least_radius="float", radius="float", wide_radius="float", gathers="uint")
 Record("QuadParameters", width="uint", height="uint", **SUM_PARAMETERS, **ESTIMATE_PARAMETERS)
 Record(
     "CubeParameters",
     center="vec3",
     count="uint",
+    least_radius="float",
     radius="float",
     resolution="uint",
     gathers="uint",
@@ -115,6 +116,7 @@ class Splatting(BufferSet):
             {**photons.list_blocks, "Camera": raster.camera, "Jobs": self._jobs.buffer},
             {
                 "count": photons.count,
+                "least_radius": importons.least_radius(photons),
                 "radius": importons.narrow_radius(photons),
                 "wide_radius": photons.radii.wide,
                 "gathers": importons.gathers,
@@ -136,6 +138,7 @@ class Splatting(BufferSet):
         estimate = {**sums.parameters, **importons.parameters(photons)}
         cube = {
             "center": importons.center,
+            "least_radius": importons.least_radius(photons),
             "radius": importons.narrow_radius(photons),
             "resolution": self._resolution,
             "gathers": importons.gathers,

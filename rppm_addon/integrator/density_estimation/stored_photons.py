@@ -150,6 +150,10 @@ class TakingImportons:
         """That the narrow radii of these importons do not exceed, meters."""
         return photons.radii.by_ray if self.by_ray else photons.radii.caustic
 
+    def least_radius(self, photons: StoredPhotons) -> float:
+        """That the least radii of these importons do not exceed, meters."""
+        return photons.radii.by_ray if self.by_ray else photons.radii.narrow
+
     def parameters(self, photons: StoredPhotons) -> dict[str, object]:
         """Values of ESTIMATE_PARAMETERS."""
         return {

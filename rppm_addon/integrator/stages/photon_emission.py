@@ -25,10 +25,12 @@ class PhotonEmission:
         rays: moderngl.Buffer,
         photon_paths: moderngl.Buffer,
         world_directions: moderngl.Buffer,
+        differentials: moderngl.Buffer,
         count: int,
         iteration: Iteration,
     ) -> None:
-        """Emit ``count`` photons: their first rays, the flux they carry, and what the world is like there."""
+        """Emit ``count`` photons: their first rays, the flux they carry, what the world is like there, and how their
+        neighbors leave."""
         lights.use_maps()
         self._emit.run(
             count,
@@ -38,6 +40,7 @@ class PhotonEmission:
                 "Rays": rays,
                 "PhotonPaths": photon_paths,
                 "WorldDirections": world_directions,
+                "PhotonDifferentials": differentials,
                 "Targets": lights.targets.buffer,
             },
             {**lights.parameters(iteration), "count": count, "target_count": lights.target_count},

@@ -19,12 +19,13 @@ from ..common.records import (
     FLUX_SUMS,
     HIT,
     PHOTON,
+    PHOTON_DIFFERENTIAL,
     PHOTON_PATH,
     RAY,
     WORLD_DIRECTION,
 )
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
-from ..density_estimation.radii import Radii
+from ..density_estimation.radii import FOOTPRINT_PHOTONS, Radii, shrinkage
 from ..density_estimation.stored_photons import DirectPhotons, PhotonList, StoredPhotons
 from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
@@ -39,6 +40,8 @@ Record(
     iteration="uint",
     specular_alpha="float",
     has_adjoint_queries="uint",
+    footprint_photons="float",
+    shrinkage="float",
 )
 Record("AdjointParameters", photon_count="uint", segment="uint")
 Record("BalanceParameters", photon_count="uint", segments="uint")
@@ -60,6 +63,7 @@ class Photons(BufferSet):
     _hits = StorageBuffer("photon hits", HIT, photon_paths)
     _closures = StorageBuffer("photon closures", CLOSURE, photon_paths)
     _adjoint_queries = StorageBuffer("adjoint queries", ADJOINT_QUERY, photon_paths)
+    _differentials = StorageBuffer("photon differentials", PHOTON_DIFFERENTIAL, photon_paths)
     _emitted = StorageBuffer("emitted photons", PHOTON_PATH, photon_paths)
     _sums = StorageBuffer("flux sums", FLUX_SUMS, _flux_groups)
     _living = PathList("living photon paths", photon_paths, to_keep=True)
@@ -96,8 +100,10 @@ class Photons(BufferSet):
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with context.timers.stage("emission"):
             self._living.fill(self.photon_count)
-            directions = self.world_directions.buffer
-            self._emission.emit(context.lights, rays, paths, directions, self.photon_count, iteration)
+            directions, differentials = self.world_directions.buffer, self._differentials.buffer
+            self._emission.emit(
+                context.lights, rays, paths, directions, differentials, self.photon_count, iteration
+            )
             context.lights.emitters.tint_photons(
                 context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
             )
@@ -139,7 +145,13 @@ class Photons(BufferSet):
         with context.timers.stage("photon scattering"):
             self._living.run(
                 self._scatter,
-                {**self._blocks, "Materials": context.materials.buffers["Materials"]},
+                {
+                    **self._blocks,
+                    "PhotonDifferentials": self._differentials.buffer,
+                    "Triangles": context.geometry.triangles.buffer,
+                    "Attributes": context.geometry.attributes.buffer,
+                    "Materials": context.materials.buffers["Materials"],
+                },
                 {
                     "photon_count": self.photon_count,
                     "segment": segment,
@@ -148,6 +160,8 @@ class Photons(BufferSet):
                     "iteration": iteration.number,
                     "specular_alpha": context.settings.specular_roughness**2,
                     "has_adjoint_queries": has_adjoint_queries,
+                    "footprint_photons": FOOTPRINT_PHOTONS,
+                    "shrinkage": shrinkage(iteration.number, context.settings.alpha),
                 },
             )
         if has_adjoint_queries:

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The radius in which caustic photons count at an importon where they do not know their footprint, as those of the
+// environment.
+float disk_radius(float least, float most) { return min(3.0 * least, most); }
