@@ -8,7 +8,7 @@ from support.lobes import Lobe, LobeKind, material
 from test_footprints import GROUND, Ball, Plane, trace
 
 from rppm_addon.integrator.common.records import PHOTON_FLAG_BITS, PhotonFlag
-from rppm_addon.integrator.density_estimation.radii import FOOTPRINT_PHOTONS
+from rppm_addon.integrator.density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 
 STRENGTH = 50.0
@@ -83,7 +83,7 @@ def test_a_footprint_holds_as_many_photons_as_it_should(mapper, surfaces, meshes
     area = landed_area(position, -photons[0]["direction"].astype(float), surfaces, photons[-1]) * solid_angles
     came = np.isfinite(area) & (area > 0) & (area < 1.0)
     assert came.sum() > 50
-    expected = np.sqrt(FOOTPRINT_PHOTONS / np.pi * area[came])
+    expected = np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.pi * area[came])
     np.testing.assert_allclose(radii[came], expected, rtol=tolerance + ROUNDED)
 
 
@@ -101,8 +101,8 @@ def test_a_large_light_blurs_footprints(mapper):
     ways.append(np.linalg.norm(photons[1]["position"] - photons[0]["position"].astype(float), axis=-1))
     area = solid_angles * (ways[0] + ways[1]) ** 2 / abs(photons[1]["direction"][:, 2])
     blur = BLUR_FRACTION * half * ways[1] / ways[0]
-    assert len(radii) > 50 and (blur**2 > FOOTPRINT_PHOTONS / np.pi * area).any()
-    np.testing.assert_allclose(radii, np.sqrt(FOOTPRINT_PHOTONS / np.pi * area + blur**2), rtol=5e-3)
+    assert len(radii) > 50 and (blur**2 > EXPECTED_CAUSTIC_PHOTONS / np.pi * area).any()
+    np.testing.assert_allclose(radii, np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.pi * area + blur**2), rtol=5e-3)
 
 
 def test_a_suns_photons_stay_as_far_apart_as_they_leave(mapper):
@@ -118,4 +118,4 @@ def test_a_suns_photons_stay_as_far_apart_as_they_leave(mapper):
     way = np.linalg.norm(photons[1]["position"] - photons[0]["position"].astype(float), axis=-1)
     blur = BLUR_FRACTION * np.sin(angle / 2) * way
     assert len(radii) > 50
-    np.testing.assert_allclose(radii, np.sqrt(FOOTPRINT_PHOTONS / np.pi * area + blur**2), rtol=5e-3)
+    np.testing.assert_allclose(radii, np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.pi * area + blur**2), rtol=5e-3)

@@ -15,10 +15,9 @@ EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 16
 how wide it is."""
 _MOST_CAUSTIC_RADII = 3.0
 EXPECTED_CAUSTIC_PHOTONS = 30
-"""Caustic photons that a pixel's disk of the first iteration holds, if it is wider than Eq. 3's."""
+"""Caustic photons that a disk of the first iteration holds, if it is wider than Eq. 3's: a pixel's, or one by a photon's
+footprint."""
 _MOST_FACTOR = 6.0
-FOOTPRINT_PHOTONS = 20
-"""Photons in the disk of a photon that knows how far off its neighbors are, between Eq. 3's and the pixel's."""
 CORNER_RADII = 2.0
 """A gathering ray of at most so many wide radii ends in a corner."""
 

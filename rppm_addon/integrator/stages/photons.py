@@ -25,7 +25,7 @@ from ..common.records import (
     WORLD_DIRECTION,
 )
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
-from ..density_estimation.radii import FOOTPRINT_PHOTONS, Radii, shrinkage
+from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage
 from ..density_estimation.stored_photons import DirectPhotons, PhotonList, StoredPhotons
 from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
@@ -160,7 +160,7 @@ class Photons(BufferSet):
                     "iteration": iteration.number,
                     "specular_alpha": context.settings.specular_roughness**2,
                     "has_adjoint_queries": has_adjoint_queries,
-                    "footprint_photons": FOOTPRINT_PHOTONS,
+                    "footprint_photons": EXPECTED_CAUSTIC_PHOTONS,
                     "shrinkage": shrinkage(iteration.number, context.settings.alpha),
                 },
             )
