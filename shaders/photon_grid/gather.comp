@@ -99,7 +99,8 @@ void main() {
         vec3 radiance;
         uint stands_for;
         if (rejected(number, visit.x)) continue;
-        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, radiance, stands_for)) continue;
+        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, radiance, stands_for))
+            continue;
         any = true;
         photons[number].contributed = 1u;
         collect_splat(collected, radiance, corner > CORNERS, stands_for);

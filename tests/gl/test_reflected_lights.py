@@ -64,9 +64,7 @@ def add_object(
     scene.meshes.append(mesh)
     scene.materials.append(surface)
     placed = scenes.placed(0, 0, height)
-    scene.instances.append(
-        Instance(len(scene.meshes) - 1, placed, [len(scene.materials) - 1], visibility=visibility)
-    )
+    scene.instances.append(Instance(len(scene.meshes) - 1, placed, [len(scene.materials) - 1], visibility=visibility))
 
 
 def shining_by_place() -> Material:

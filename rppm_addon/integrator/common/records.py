@@ -178,10 +178,10 @@ PHOTON_DIFFERENTIAL = Record(
     turn_v="vec3",
     before="float",
 )
-"""How far from a photon's ray its neighbors' run, along two directions: ``place`` in meters at the ray's origin, ``turn``
-by how much their directions differ. ``blur`` is the radius, meters, over which the light's own size spreads what comes
-there, before the first hit the light's, and ``spread`` by how much it grows with the distance; ``before`` is how far the
-ray's origin is from the light. ``known`` is 0 where neighbors are not followed any more."""
+"""How far from a photon's ray its neighbors' run, along two directions: ``place`` in meters at the ray's origin,
+``turn`` by how much their directions differ. ``blur`` is the radius, meters, over which the light's own size spreads
+what comes there, before the first hit the light's, and ``spread`` by how much it grows with the distance; ``before`` is
+how far the ray's origin is from the light. ``known`` is 0 where neighbors are not followed any more."""
 StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
 
 ADJOINT_QUERY = Record(

@@ -15,8 +15,8 @@ EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 16
 how wide it is."""
 _MOST_CAUSTIC_RADII = 3.0
 EXPECTED_CAUSTIC_PHOTONS = 30
-"""Caustic photons that a disk of the first iteration holds, if it is wider than Eq. 3's: a pixel's, or one by a photon's
-footprint."""
+"""Caustic photons that a disk of the first iteration holds, if it is wider than Eq. 3's: a pixel's, or that of a photon
+by its footprint."""
 _MOST_FACTOR = 6.0
 CORNER_RADII = 2.0
 """A gathering ray of at most so many wide radii ends in a corner."""
