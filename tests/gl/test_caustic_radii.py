@@ -35,19 +35,20 @@ def test_disks_shrink_to_what_they_should_hold(context, library, roulette):
     sums.count_in(1.0, roulette, True)
     timers = StageTimers(context)
     random = np.random.default_rng(4)
-    expected = np.full(pixels, MOST)
+    most = 3.0
+    expected = np.full(pixels, most)
     for iteration in (1, 2, 4):
         shrunk = shrinkage(iteration, 0.7)
         counts = random.poisson(np.linspace(0, 60, pixels)[:, None], (pixels, 2)).astype(np.uint32)
         for begin, end in ((0, first), (first, pixels)):
             sums.photon_counts.write(counts[begin:end].tobytes())
-            band, of_iteration = Band(1, begin, end - begin), Radii(0.0, 1.0, 1.0, 1.0, MOST, shrunk)
+            band, of_iteration = Band(1, begin, end - begin), Radii(0.0, 1.0, 1.0, 1.0, most, shrunk)
             radii.narrow(sums, band, Iteration(iteration, seed=0), of_iteration, 1.0, timers)
         held = counts[:, 1] * (2 if roulette else 1) / shrunk**2
         expected *= np.minimum(np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.maximum(held, 1.0)), 1.0)
         expected = np.maximum(expected, 1.0)
         np.testing.assert_allclose(radii.read(), expected, rtol=1e-5)
-    assert expected.min() == 1.0 and expected.max() == MOST and np.sum((expected > 1.0) & (expected < MOST)) > 3
+    assert expected.min() == 1.0 and expected.max() == most and np.sum((expected > 1.0) & (expected < most)) > 3
     radii.release()
     sums.release()
 
