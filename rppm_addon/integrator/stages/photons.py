@@ -101,9 +101,7 @@ class Photons(BufferSet):
         with context.timers.stage("emission"):
             self._living.fill(self.photon_count)
             directions, differentials = self.world_directions.buffer, self._differentials.buffer
-            self._emission.emit(
-                context.lights, rays, paths, directions, differentials, self.photon_count, iteration
-            )
+            self._emission.emit(context.lights, rays, paths, directions, differentials, self.photon_count, iteration)
             context.lights.emitters.tint_photons(
                 context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
             )
