@@ -7,14 +7,14 @@ Arrays have row 0 at the bottom, as frames do; files have the top row first.
 import contextlib
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from .scene.errors import RppmError
-from .scene.passes import NOISY_IMAGE, PASSES
+from .scene.passes import NOISY_IMAGE, PASSES, RenderPass
 
 
 class PictureError(RppmError):
@@ -48,6 +48,8 @@ def write_exr(
     layers: Mapping[str, np.ndarray] | None = None,
     metadata: Mapping[str, object] | None = None,
     placement: Placement | None = None,
+    attributes: Mapping[str, str] | None = None,
+    passes: Sequence[RenderPass] = PASSES,
 ) -> None:
     """Write a float32 EXR: ``combined`` as R, G, B, A, and each layer by its pass's channels.
 
@@ -55,9 +57,11 @@ def write_exr(
         path: the file; its folder is made. The file is written beside and renamed, so that a
             reader never sees half of it.
         combined: (H, W, 4), scene-linear Rec.709, premultiplied alpha.
-        layers: (H, W) or (H, W, channels) arrays by the name of a pass (scene/passes.py).
+        layers: (H, W) or (H, W, channels) arrays by the name of a pass (scene/passes.py), or another one.
         metadata: stored as text attributes ``rppm.NAME``.
         placement: where a cropped picture lies in its frame; None is the whole frame.
+        attributes: text attributes by their own names.
+        passes: those that layers are named after.
 
     Raises:
         PictureError: the file cannot be written.
@@ -70,22 +74,27 @@ def write_exr(
     layers = layers or {}
     for name, array in layers.items():
         planes = _planes(array)
-        channels.update(zip(_channels_of(name, len(planes)), planes, strict=True))
+        channels.update(zip(_channels_of(name, len(planes), passes), planes, strict=True))
     header = {
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
         **place.windows(width, height),
         "colorInteropID": "lin_rec709_scene",
+        **(attributes or {}),
         **{f"rppm.{name}": str(value) for name, value in (metadata or {}).items()},
     }
     with renamed_when_whole(path) as temporary:
         OpenEXR.File(header, channels).write(temporary)
 
 
-def _channels_of(layer: str, count: int) -> list[str]:
+def _channels_of(layer: str, count: int, passes: Sequence[RenderPass]) -> list[str]:
     """Names of a layer's channels: those of the pass of that name, or X, Y, Z, and Z where it is one."""
-    letters = {entry.name: entry.channels for entry in (*PASSES, NOISY_IMAGE)}.get(layer, "Z" if count == 1 else "XYZ")
+    letters = {entry.name: entry.channels for entry in (*passes, NOISY_IMAGE)}.get(layer, "Z" if count == 1 else "XYZ")
     return [f"{layer}.{letter}" for letter in letters]
+
+
+_ORDER = "UVRGBArgbaXYZW"
+"""Of the letters of a layer's channels, whatever the layer."""
 
 
 @dataclass
@@ -96,6 +105,8 @@ class ExrPicture:
     """(H, W) by channel name."""
     metadata: dict[str, str]
     """The ``rppm.`` attributes without that prefix."""
+    attributes: dict[str, str]
+    """Other text attributes."""
     placement: Placement
 
     @property
@@ -105,8 +116,10 @@ class ExrPicture:
 
     def layer(self, name: str) -> np.ndarray:
         """(H, W) or (H, W, channels) of a pass. Raises KeyError where the file does not have it."""
-        count = sum(channel.rpartition(".")[0] == name for channel in self.channels)
-        planes = [self.channels[channel] for channel in _channels_of(name, count)]
+        letters = [channel.rpartition(".")[2] for channel in self.channels if channel.rpartition(".")[0] == name]
+        if not letters:
+            raise KeyError(name)
+        planes = [self.channels[f"{name}.{letter}"] for letter in sorted(letters, key=_ORDER.index)]
         return np.stack(planes, axis=-1) if len(planes) > 1 else planes[0]
 
 
@@ -125,6 +138,7 @@ def read_exr(path: str | Path) -> ExrPicture:
     return ExrPicture(
         channels,
         {name[5:]: value for name, value in header.items() if name.startswith("rppm.")},
+        {name: value for name, value in header.items() if isinstance(value, str) and not name.startswith("rppm.")},
         Placement(
             int(frame_right - frame_left + 1),
             int(frame_bottom - frame_top + 1),

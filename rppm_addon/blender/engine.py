@@ -3,9 +3,9 @@
 
 import bpy
 
-from ..scene.passes import COMBINED, NOISY_IMAGE
+from ..scene.passes import COMBINED, NOISY_IMAGE, aov_passes
 from . import viewport
-from .export.passes import passes_of_layer
+from .export.passes import aovs_of_layer, passes_of_layer
 from .final import render_final
 
 
@@ -28,7 +28,8 @@ class RppmRenderEngine(bpy.types.RenderEngine):
         """Tell Blender of the passes that a render will have."""
         self.register_pass(scene, renderlayer, COMBINED, 4, "RGBA", "COLOR")
         noisy = (NOISY_IMAGE,) if scene.rppm.use_denoising else ()
-        for entry in (*noisy, *passes_of_layer(renderlayer)):
+        aovs = aov_passes(aovs_of_layer(renderlayer))
+        for entry in (*noisy, *passes_of_layer(renderlayer), *aovs):
             self.register_pass(scene, renderlayer, entry.name, len(entry.channels), entry.channels, entry.kind.value)
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:

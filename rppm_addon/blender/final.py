@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from ..scene import Scene
+from ..scene import Scene, cryptomatte
 from ..scene.errors import RppmError, SceneError
 from ..scene.passes import COMBINED
 from ..scene.quantities import clock_text, count_text
@@ -71,11 +71,27 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
         job.end(cancel=True)
         raise
     job.end(cancel=False)
+    if not engine.is_preview:
+        _stamp(engine, scene, depsgraph.view_layer_eval.name, result.statistics)
     # The statistics repeat the scene's warnings, which have been reported.
     _report_warnings(engine, [text for text in result.statistics.warnings if text not in scene.warnings])
     if result.statistics.iterations and not engine.is_preview:
         record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
+
+
+def _stamp(engine: bpy.types.RenderEngine, scene: Scene, layer: str, statistics: "RenderStatistics") -> None:
+    """Tell files of the picture what Blender does not know of it."""
+    fields = cryptomatte.metadata(scene, f"{layer}.")
+    fields |= {
+        f"rppm.{layer}.samples": str(statistics.iterations),
+        f"rppm.{layer}.photons": str(statistics.photons),
+        f"rppm.{layer}.seconds": f"{statistics.seconds:.3f}",
+        f"rppm.{layer}.device": statistics.device,
+    }
+    result = engine.get_result()
+    for name, value in fields.items():
+        result.stamp_data_add_field(field=name, value=value)
 
 
 def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> Scene:

@@ -55,7 +55,8 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
     def expected(settings: RenderSettings, width: int, height: int) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
         photons = settings.photons_for(width, height)
-        return expected_memory(width, height, photons, settings.photon_path_length, rasterized, settings.film_passes)
+        segments, passes, aovs = settings.photon_path_length, settings.film_passes, settings.aovs
+        return expected_memory(width, height, photons, segments, rasterized, passes, aovs)
 
     scene_bytes = None
     if report is not None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..pictures import PictureError, Placement
-from ..scene import Camera, Scene
+from ..scene import Camera, Scene, cryptomatte
 from ..scene.errors import CheckpointError, SettingsError
 from ..scene.fingerprint import AFTER_FILM, plain_settings, scene_digests
 
@@ -144,7 +144,13 @@ def still_render(scene: Scene, source: Mapping[str, object]) -> "StillRender":
         float(scene.exposure),
         placement_of(scene.camera),
         dict(source),
+        attributes_of(scene),
     )
+
+
+def attributes_of(scene: Scene) -> dict[str, str]:
+    """Text attributes of the EXR of a scene's picture, which others know by their names."""
+    return {**scene.stamps, **cryptomatte.metadata(scene)}
 
 
 def placement_of(camera: Camera) -> Placement:

@@ -59,7 +59,8 @@ class MergedStill:
         metadata = picture_metadata(self.iterations, self.photons, self.seconds, devices, self.radius_meters)
         for path in paths:
             if path.suffix == ".exr":
-                write_frame(path, self.frame, self.render.placement, metadata)
+                settings = settings_of_plain(self.render.settings)
+                write_frame(path, self.frame, settings, self.render.placement, metadata, self.render.attributes)
             elif self.render.source.get("blend"):
                 from .blend_file import BlendRequest, save_view
 
@@ -84,7 +85,8 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     )
     _check(found, incomplete)
     radiance: Any = 0.0
-    passes = MergedPasses()
+    settings = settings_of_plain(found[0][0].render.settings)
+    passes = MergedPasses(settings.found_passes)
     inspections: dict[str, np.ndarray] = {}
     for summary, pause in _read_parts(found):
         state = pause.state
@@ -95,7 +97,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     iterations = sum(summary.iteration - summary.left_out for summary in summaries)
     render = summaries[0].render
     combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
-    settings, warnings = settings_of_plain(render.settings), list[str]()
+    warnings = list[str]()
     merged = Frame(combined, {**exposed_passes(passes.result(), render.exposure), **inspections})
     frame = finished_frame(merged, settings, Denoiser(library_places()), warnings)
     return MergedStill(

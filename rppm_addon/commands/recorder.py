@@ -13,7 +13,7 @@ from ..pictures import Placement, standard_view, write_exr
 from ..scene import RenderSettings, Scene
 from ..scene.quantities import count_text
 from ..session.observers import RenderObserver
-from .checkpoints import StillKeeper, placement_of
+from .checkpoints import StillKeeper, attributes_of, placement_of
 from .picture_files import write_png
 from .progress_bar import ProgressBar
 
@@ -126,7 +126,7 @@ class RenderRecorder(RenderObserver):
             "file": str(path),
         }
         metadata = {key: entry[key] for key in ("seconds", "iterations", "photons")}
-        write_frame(path, frame, placement_of(scene.camera), metadata)
+        write_frame(path, frame, scene.settings, placement_of(scene.camera), metadata, attributes_of(scene))
         self.snapshots_written.append(entry)
 
     def on_finish(self, result: "RenderResult", scene: Scene) -> None:
@@ -147,7 +147,8 @@ class RenderRecorder(RenderObserver):
         )
         for path in self.request.outputs:
             if path.suffix == ".exr":
-                write_frame(path, result.frame, placement_of(scene.camera), metadata)
+                place, attributes = placement_of(scene.camera), attributes_of(scene)
+                write_frame(path, result.frame, scene.settings, place, metadata, attributes)
             elif self._write_png_file:
                 write_png(path, standard_view(result.frame.combined))
         if self._keeper is not None:
@@ -209,6 +210,13 @@ def picture_metadata(
     }
 
 
-def write_frame(path: Path, frame: "Frame", placement: Placement, metadata: Mapping[str, object]) -> None:
-    """Write a frame's picture and passes as EXR. Raises PictureError."""
-    write_exr(path, frame.combined, frame.passes, metadata, placement)
+def write_frame(
+    path: Path,
+    frame: "Frame",
+    settings: RenderSettings,
+    placement: Placement,
+    metadata: Mapping[str, object],
+    attributes: Mapping[str, str],
+) -> None:
+    """Write a frame's picture and passes as EXR; ``attributes``: attributes_of its scene. Raises PictureError."""
+    write_exr(path, frame.combined, frame.passes, metadata, placement, attributes, settings.picture_passes)

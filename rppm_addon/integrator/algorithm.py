@@ -42,6 +42,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
             stages.final_gather.share(context, estimator.sums, importons.radiances, band, iteration, radii)
             film.accumulate(context, importons.radiances, estimator.sums, band, iteration)
+            film.add_aovs(importons, band, iteration)
         if iteration.precedes_learning:
             photons_taken.append(estimator.sums.photons_taken(band.pixel_count)[:, 0])
             fewer = learning.fewer(iteration)

@@ -4,7 +4,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ..scene.passes import passes_named
+from ..scene.passes import aov_passes, passes_named
 from ..scene.settings import DensityEstimation, RenderSettings
 from .common.stage_sizes import StageSizes, film_pixels
 from .density_estimation.density_estimator import ROUTES
@@ -81,14 +81,15 @@ def expected_memory(
     segments: int,
     rasterized: bool = False,
     passes: Sequence[str] = RenderSettings.passes,
+    aovs: Sequence[str] = (),
 ) -> Memory:
     """The buffers whose size follows from the settings, known before anything is rendered.
 
     rasterized: whether photons are splatted by rasterization, not gathered from a grid.
-    passes: names of those that are rendered.
+    passes: names of those that are rendered; aovs: as the settings have them.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
-    sizes = StageSizes(width, height, photons, segments, passes_named(passes))
+    sizes = StageSizes(width, height, photons, segments, passes_named(passes) + aov_passes(aovs))
     groups = expected_groups(sizes)
     route = DensityEstimation.RASTERIZED if rasterized else DensityEstimation.GRID
     groups["density estimation"] |= ROUTES[route].expected_bytes(sizes)

@@ -5,14 +5,16 @@ A graph becomes the function ``evaluate_material`` and its constants. Numbers, i
 constants in a buffer, so graphs that differ in those only have the same text and share a program.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..scene.errors import RppmError
-from ..scene.node_graphs import Link, NodeGraph, ShaderNode
-from .node_kinds import FLOAT, SHADER, NodeKind, SocketType
+from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
+from ..scene.passes import PassKind, RenderPass
+from .node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
 from .nodes import KINDS
 
 LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
@@ -70,8 +72,9 @@ class _Scope:
 
 
 class _Compiler:
-    def __init__(self, graph: NodeGraph) -> None:
+    def __init__(self, graph: NodeGraph, aovs: Sequence[RenderPass]) -> None:
         self._graph = graph
+        self._aovs = aovs
         self._constants: list[float | Resource] = []
         self._places: dict[tuple[int, str], int] = {}
         self._sources: dict[str, None] = {}
@@ -91,6 +94,7 @@ class _Compiler:
             scope.lines.append("set_shading_normal(builder, surface.normal);")
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
+        aovs = self._aov_function()
         text = "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
         text += "".join(self._functions)
         text += (
@@ -98,7 +102,38 @@ class _Compiler:
             + "".join(f"    {line}\n" for line in scope.lines)
             + "}\n"
         )
-        return CompiledGraph(text, self._constants)
+        return CompiledGraph(text + aovs, self._constants)
+
+    def _aov_function(self) -> str:
+        """The function that writes the passes of AOV Output nodes, and what it needs; nothing of a graph that has
+        none."""
+        stride = sum(len(entry.channels) for entry in self._aovs)
+        scope, written, place = _Scope(), list[str](), 0
+        if self._graph.normal is not None:
+            scope.lines.append("surface.normal = material_normal(surface, first);")
+        for entry in self._aovs:
+            for output in self._graph.aovs:
+                if output.name == entry.name:
+                    value = self._aov_value(scope, output, entry)
+                    written.append(f"add_aov({stride}u * path + {place}u, {value});")
+            place += len(entry.channels)
+        if not written:
+            return ""
+        lines = "".join(f"    {line}\n" for line in [*scope.lines, *written])
+        return (
+            f'#include "resolve/aovs.glsl"\nvoid evaluate_aovs(Surface surface, uint first, uint path) {{\n{lines}}}\n'
+        )
+
+    def _aov_value(self, scope: _Scope, output: AovOutput, entry: RenderPass) -> str:
+        """GLSL for what a node writes: a color, or a value."""
+        kind = FLOAT if entry.kind is PassKind.VALUE else COLOR
+        value = output.value if kind is FLOAT else output.color
+        if isinstance(value, Link):
+            return self._converted(scope, value, kind)
+        node = ShaderNode("aov_output", output.name)
+        place = len(self._constants)
+        self._constants.extend(self._constants_of(node, "value" if kind is FLOAT else "color", value, kind))
+        return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
 
     def _number(self, index: int) -> int:
         """Names go by the order of use, so that nodes that nothing uses leave the text as it is."""
@@ -296,9 +331,9 @@ def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:
         raise GraphError(f'node "{node.name}" ({node.kind}) {error}') from error
 
 
-def compile_graph(graph: NodeGraph) -> CompiledGraph:
-    """The GLSL of a graph's structure, and its constants.
+def compile_graph(graph: NodeGraph, aovs: Sequence[RenderPass] = ()) -> CompiledGraph:
+    """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered.
 
     Raises GraphError when nodes, options or links are unknown.
     """
-    return _Compiler(graph).compile()
+    return _Compiler(graph, aovs).compile()

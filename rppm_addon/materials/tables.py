@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials and images in GPU buffers, as shaders/materials/ reads them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, Part
@@ -11,6 +13,7 @@ from ..gl.sources import CompileError
 from ..scene.images import Image
 from ..scene.materials import Material
 from ..scene.node_graphs import NodeGraph
+from ..scene.passes import RenderPass, aov_passes
 from ..scene.scene import Scene
 from ..scene.sharing import same_members
 from . import albedo_tables
@@ -86,9 +89,11 @@ class MaterialTables(BufferSet):
         self.follow(scene)
         self.default_material = len(scene.materials)
         materials = [*scene.materials, default_material()]
+        aovs = aov_passes(scene.settings.aovs)
         compiled, self.emits, self.users = [], [], {}
         for material in materials:
-            graph, emission = self._compile(material.graph, f'Material "{material.name}"', "it is gray")
+            owner = f'Material "{material.name}"'
+            graph, emission = self._compile(material.graph, owner, "it is gray", aovs)
             compiled.append(graph)
             self.emits.append(emission)
             self.users.setdefault(graph.text, []).append(material.name)
@@ -134,9 +139,11 @@ class MaterialTables(BufferSet):
         self._buffers["Texels"].upload(texels)
         self._images = images
 
-    def _compile(self, graph: NodeGraph, owner: str, remedy: str) -> tuple[CompiledGraph, Emits]:
+    def _compile(
+        self, graph: NodeGraph, owner: str, remedy: str, aovs: Sequence[RenderPass] = ()
+    ) -> tuple[CompiledGraph, Emits]:
         try:
-            return compile_graph(graph), emits(graph)
+            return compile_graph(graph, aovs), emits(graph)
         except GraphError as error:
             self._scene.warn(f"{owner}: {error}; {remedy}")
             return CompiledGraph(NEUTRAL_TEXT), Emits.NOTHING

@@ -8,12 +8,13 @@ from .materials import Material
 from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
 from .motion import CameraMovement, Deformation, Movement, Shutter
 from .moving_scene import MovingScene
-from .node_graphs import Link, NodeGraph, ShaderNode
+from .node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from .scene import Scene
 from .settings import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
+    "AovOutput",
     "Aperture",
     "AttributeDomain",
     "Camera",

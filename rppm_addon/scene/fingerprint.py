@@ -27,7 +27,7 @@ UNSEEN = frozenset(
 iteration finds."""
 AFTER_FILM = frozenset({"denoising_prefilter", "denoising_quality"})
 """Settings that say what becomes of a picture once all iterations are in it."""
-_NOT_RENDERED = frozenset({"settings", "warnings"})
+_NOT_RENDERED = frozenset({"settings", "stamps", "warnings"})
 
 
 def scene_digests(scene: Scene) -> dict[str, str]:

@@ -36,6 +36,18 @@ class ShaderNode:
 
 
 @dataclass
+class AovOutput:
+    """An AOV Output node: what a material writes into a pass of a name of the user's."""
+
+    name: str
+    """Of the pass."""
+    color: object = (0.0, 0.0, 0.0)
+    """A float, a tuple of three floats or a Link; taken where the pass is one of colors."""
+    value: object = 0.0
+    """The same; taken where it is one of values."""
+
+
+@dataclass
 class NodeGraph:
     """Nodes in an order in which inputs link to earlier nodes only, and the shader that is seen."""
 
@@ -44,6 +56,7 @@ class NodeGraph:
     """The shader of the surface (of a world: of its background); None scatters and emits nothing."""
     normal: Link | None = None
     """The shading normal that all shaders start from; None is that of the mesh."""
+    aovs: list[AovOutput] = field(default_factory=list)
 
     def add(
         self,

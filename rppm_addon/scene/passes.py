@@ -28,6 +28,9 @@ class Accumulation(enum.Enum):
     """The mean of what all surfaces along a path add that see the camera as the pass asks."""
     INSPECTION = 3
     """None do: it is computed once, from the deep cubemap and not from iterations."""
+    COVERAGE = 4
+    """Pairs of an identifier and the share of the pixel that it covers: the means of what iterations see of each.
+    In the film in the order in which they were found, in a frame the largest first (scene/cryptomatte.py)."""
 
 
 class PassKind(enum.Enum):
@@ -58,6 +61,15 @@ class RenderPass:
     """The label of the switch that the add-on adds, where several passes share one."""
     description: str = ""
     """The tooltip of a switch that the add-on adds."""
+    is_aov: bool = False
+    """Whether AOV Output nodes of materials give it (aov_passes)."""
+    level: int = 0
+    """Of COVERAGE: with so many pairs of lower levels before its own."""
+
+    @property
+    def comes_of_iterations(self) -> bool:
+        """Whether the film keeps it."""
+        return self.accumulation is not Accumulation.INSPECTION
 
     @property
     def identifier(self) -> str:
@@ -88,6 +100,20 @@ def _for_denoisers(name: str, channels: str, kind: PassKind) -> RenderPass:
     return RenderPass(name, channels, kind, Accumulation.SUM, group="Denoising Data", description=description)
 
 
+CRYPTOMATTE_PAIRS = 2
+"""Of an identifier and a share, in the four channels of a pass."""
+CRYPTOMATTE_LEVELS = 16
+"""The most pairs that Blender knows."""
+
+
+def _cryptomatte(layer: str, switch: str) -> tuple[RenderPass, ...]:
+    # Small letters, as Cycles has them: files are then known to hold no colors, and keep all bits.
+    return tuple(
+        RenderPass(f"{layer}{number:02d}", "rgba", PassKind.COLOR, Accumulation.COVERAGE, switch, level=2 * number)
+        for number in range(CRYPTOMATTE_LEVELS // CRYPTOMATTE_PAIRS)
+    )
+
+
 PASSES = (
     RenderPass("Depth", "Z", PassKind.VALUE, Accumulation.FIRST, "use_pass_z", NOTHING_HIT),
     RenderPass("Mist", "Z", PassKind.VALUE, Accumulation.MEAN, "use_pass_mist", 1.0),
@@ -101,6 +127,9 @@ PASSES = (
     _for_denoisers("Denoising Albedo", "RGB", PassKind.COLOR),
     _for_denoisers("Denoising Normal", "XYZ", PassKind.VECTOR),
     _for_denoisers("Denoising Depth", "Z", PassKind.VALUE),
+    *_cryptomatte("CryptoObject", "use_pass_cryptomatte_object"),
+    *_cryptomatte("CryptoMaterial", "use_pass_cryptomatte_material"),
+    *_cryptomatte("CryptoAsset", "use_pass_cryptomatte_asset"),
     RenderPass(
         "Deep Cubemap",
         "XYZ",
@@ -112,12 +141,16 @@ PASSES = (
         ),
     ),
 )
-FILM_PASSES = tuple(entry for entry in PASSES if entry.accumulation is not Accumulation.INSPECTION)
-"""Those that iterations find."""
+FILM_PASSES = tuple(
+    entry for entry in PASSES if entry.accumulation not in {Accumulation.INSPECTION, Accumulation.COVERAGE}
+)
+"""Those whose values shaders/film/passes.comp writes, and viewports show."""
 DEEP_CUBEMAP = next(entry for entry in PASSES if entry.name == "Deep Cubemap")
 COMBINED = "Combined"
 NOISY_IMAGE = RenderPass("Noisy Image", "RGBA", PassKind.COLOR, Accumulation.MEAN)
 """Combined before it was denoised: what comes with each denoised picture, and cannot be asked for by itself."""
+ALWAYS_TAKEN = frozenset({COMBINED, NOISY_IMAGE.name, *(entry.name for entry in PASSES if entry.group)})
+"""Names that AOVs cannot have whatever was asked for: passes come with pictures that are denoised."""
 DENOISING_ALBEDO, DENOISING_NORMAL = "Denoising Albedo", "Denoising Normal"
 """Passes that guide denoising."""
 
@@ -129,3 +162,22 @@ def passes_named(names: Sequence[str]) -> tuple[RenderPass, ...]:
         if name not in known:
             raise SettingsError(f"there is no pass {name}; the passes are {', '.join(sorted(known))}")
     return tuple(entry for entry in PASSES if entry.name in names)
+
+
+_AOV_KINDS = {"X": PassKind.VALUE, "RGBA": PassKind.COLOR}
+
+
+def aov_passes(aovs: Sequence[str]) -> tuple[RenderPass, ...]:
+    """The passes of AOV Output nodes: each by its name, which users choose, a point, and its channels, X or RGBA.
+
+    Raises SettingsError for one without name or channels, and for names that come twice.
+    """
+    found: dict[str, RenderPass] = {}
+    for aov in aovs:
+        name, _, channels = aov.rpartition(".")
+        if not name or channels not in _AOV_KINDS:
+            raise SettingsError(f"the AOV {aov} is none; write NAME.X for values and NAME.RGBA for colors")
+        if name in found or name in ALWAYS_TAKEN:
+            raise SettingsError(f"the AOV {name} has the name of another pass; give it a name of its own")
+        found[name] = RenderPass(name, channels, _AOV_KINDS[channels], Accumulation.SUM, is_aov=True)
+    return tuple(found.values())

@@ -35,6 +35,10 @@ class Scene:
     """(3,) meters where the deep cubemap's center goes; None is automatic."""
     shutter: Shutter | None = None
     """What moves while the picture is taken; None is nothing."""
+    asset_names: dict[str, str] = field(default_factory=dict)
+    """Of objects that have a parent, by name, the names of their topmost ones; only where CryptoAsset is rendered."""
+    stamps: dict[str, str] = field(default_factory=dict)
+    """What files of pictures tell of where these come from, by Blender's names: Camera, Frame ..."""
     warnings: list[str] = field(default_factory=list)
     """What is rendered only in part, a line each, naming object or material and node."""
 

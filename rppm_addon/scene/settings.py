@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .errors import SettingsError
-from .passes import DENOISING_ALBEDO, DENOISING_NORMAL, passes_named
+from .passes import DENOISING_ALBEDO, DENOISING_NORMAL, RenderPass, aov_passes, passes_named
 from .setting_info import setting, settings_of
 
 CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
@@ -344,6 +344,12 @@ class RenderSettings:
         where="the switches of the view layer",
     )
     """By name (scene/passes.py)."""
+    aovs: tuple[str, ...] = setting(
+        (),
+        "AOVs",
+        "Passes that AOV Output nodes of materials give: NAME.RGBA of colors, NAME.X of values",
+        where="View Layer > Passes > Shader AOV (view_layer.aovs)",
+    )
 
     def validate(self) -> None:
         """Raise SettingsError naming the first setting that cannot be used, and its range."""
@@ -354,7 +360,10 @@ class RenderSettings:
             raise SettingsError(
                 f"radius_maximum is {self.radius_maximum}, less than radius_minimum {self.radius_minimum}; raise it"
             )
-        passes_named(self.passes)
+        taken = {entry.name for entry in passes_named(self.passes)}
+        for entry in aov_passes(self.aovs):
+            if entry.name in taken:
+                raise SettingsError(f"the AOV {entry.name} has the name of another pass; give it a name of its own")
         resolution = self.cubemap_resolution
         if resolution and (resolution < 16 or resolution & (resolution - 1)):
             raise SettingsError(
@@ -376,6 +385,16 @@ class RenderSettings:
     def film_passes(self) -> tuple[str, ...]:
         """Names of the passes that are found: those asked for, and those that denoising needs."""
         return tuple(dict.fromkeys((*self.passes, *self.denoising_features)))
+
+    @property
+    def picture_passes(self) -> tuple[RenderPass, ...]:
+        """The passes that were asked for."""
+        return passes_named(self.passes) + aov_passes(self.aovs)
+
+    @property
+    def found_passes(self) -> tuple[RenderPass, ...]:
+        """Those and the ones that denoising needs."""
+        return passes_named(self.film_passes) + aov_passes(self.aovs)
 
     def photons_for(self, width: int, height: int) -> int:
         """Photons of an iteration that renders so many pixels. Where automatic, one a pixel within limits: those of

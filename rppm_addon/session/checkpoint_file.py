@@ -13,7 +13,7 @@ import dataclasses
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -25,13 +25,13 @@ from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.errors import CheckpointError
 from ..scene.fingerprint import settings_of_plain
-from ..scene.passes import FILM_PASSES, passes_named
+from ..scene.passes import RenderPass
 from .continuation import Pause
 
 if TYPE_CHECKING:
     import OpenEXR
 
-FORMAT = 5
+FORMAT = 6
 _ATTRIBUTE = "rppm.checkpoint"
 _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
@@ -52,6 +52,8 @@ class StillRender:
     placement: Placement
     source: dict[str, Any] = field(default_factory=dict)
     """What the command line knows of the file that the scene came from."""
+    attributes: dict[str, str] = field(default_factory=dict)
+    """Text attributes of the picture's EXR."""
 
 
 @dataclass
@@ -79,7 +81,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
     """Write a checkpoint; a reader never sees half of it. Raises PictureError when it cannot be written."""
     import OpenEXR  # late: the file format is not needed to import the engine
 
-    state = pause.state
+    state, found_passes = pause.state, settings_of_plain(render.settings).found_passes
     summary = CheckpointSummary(
         render,
         state.skipped,
@@ -104,7 +106,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         "dataWindow": ((0, 0), (len(state.tallies) - 1, 0)),
     }
     parts = [
-        OpenEXR.Part(film, _film_channels(state, pause.inspections), _FILM),
+        OpenEXR.Part(film, _film_channels(state, pause.inspections, found_passes), _FILM),
         OpenEXR.Part(guide, _guide_channels(state), _GUIDE),
     ]
     with renamed_when_whole(path) as temporary:
@@ -134,7 +136,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
         def pairs(*names: str) -> np.ndarray:
             return np.stack([guide[name].reshape(-1) for name in names], axis=-1)
 
-        passes = passes_named(settings_of_plain(summary.render.settings).film_passes)
+        passes = settings_of_plain(summary.render.settings).found_passes
         state = RenderState(
             summary.left_out,
             summary.iteration,
@@ -142,21 +144,23 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             summary.wide_radius,
             summary.diffused_photons_found,
             layer(*"RGBA"),
-            {entry.name: layer(*entry.layers) for entry in passes if entry in FILM_PASSES},
+            {entry.name: layer(*entry.layers) for entry in passes if entry.comes_of_iterations},
             layer(*_COUNTS) if _COUNTS[0] in film else np.zeros((0, 0, 2), np.uint32),
             layer("Radius Factor.V"),
             pairs("left", "contributed"),
             pairs("learned.left", "learned.contributed") if "learned.left" in guide else None,
         )
-        inspections = {entry.name: layer(*entry.layers) for entry in passes if entry not in FILM_PASSES}
+        inspections = {entry.name: layer(*entry.layers) for entry in passes if not entry.comes_of_iterations}
         return summary, Pause(state, summary.device, summary.radius_meters, inspections)
 
 
-def _film_channels(state: RenderState, inspections: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _film_channels(
+    state: RenderState, inspections: Mapping[str, np.ndarray], entries: Sequence[RenderPass]
+) -> dict[str, np.ndarray]:
     channels = {name: state.radiance[..., index] for index, name in enumerate("RGBA")}
     channels["Radius Factor.V"] = state.radius_factors
     passes = {**state.passes, **inspections}
-    for entry in passes_named(tuple(passes)):
+    for entry in entries:
         values = np.atleast_3d(passes[entry.name])
         channels |= {name: values[..., index] for index, name in enumerate(entry.layers)}
     if state.pass_counts.size:

@@ -15,7 +15,8 @@ log = logging.getLogger(__name__)
 
 def wanted_frame(frame: Frame, settings: RenderSettings) -> Frame:
     """A frame of the film without the passes that it holds for denoising alone."""
-    return Frame(frame.combined, {name: array for name, array in frame.passes.items() if name in settings.passes})
+    names = {entry.name for entry in settings.picture_passes}
+    return Frame(frame.combined, {name: array for name, array in frame.passes.items() if name in names})
 
 
 def denoised_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser) -> Frame:

@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Passes of a picture whose iterations were rendered in parts."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..scene.passes import Accumulation, passes_named
+from ..scene.cryptomatte import MergedCoverage, joined, layers_of, split
+from ..scene.passes import Accumulation, RenderPass
 
 
 class MergedPasses:
     """What a film would hold that had seen the iterations of all parts, which are added in their order."""
 
-    def __init__(self) -> None:
+    def __init__(self, entries: Sequence[RenderPass]) -> None:
+        """entries: the passes that the film finds."""
+        self._entries = [entry for entry in entries if entry.comes_of_iterations]
         self._sums: dict[str, np.ndarray] = {}
+        self._coverage: dict[str, MergedCoverage] = {}
         self._counts = np.zeros((0, 0, 2), np.int64)
         self._iterations = 0
 
@@ -20,7 +24,11 @@ class MergedPasses:
         """Add a part of so many iterations: RenderState.passes and RenderState.pass_counts."""
         if not self._counts.size:
             self._counts = np.zeros(counts.shape, np.int64)
-        for entry in passes_named(tuple(passes)):
+        for layer, parts in layers_of(self._entries).items():
+            self._coverage.setdefault(layer, MergedCoverage(parts)).add(joined(parts, passes), iterations)
+        for entry in self._entries:
+            if entry.accumulation is Accumulation.COVERAGE:
+                continue
             values = passes[entry.name]
             depth = values.ndim - 2
             found_before, found_here = (
@@ -39,7 +47,9 @@ class MergedPasses:
     def result(self) -> dict[str, np.ndarray]:
         """The passes, float32, as Frame.passes has them."""
         found = {}
-        for entry in passes_named(tuple(self._sums)):
+        for entry in self._entries:
+            if entry.name not in self._sums:
+                continue
             values = self._sums[entry.name]
             if entry.accumulation is Accumulation.MEAN:
                 counts = np.maximum(self._counts[..., 0], 1)
@@ -47,4 +57,6 @@ class MergedPasses:
             elif entry.accumulation is Accumulation.SUM:
                 values = values / max(self._iterations, 1)
             found[entry.name] = values.astype(np.float32)
+        for coverage in self._coverage.values():
+            found |= split(coverage.entries, coverage.pairs(max(self._iterations, 1)))
         return found

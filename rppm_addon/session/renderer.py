@@ -14,6 +14,7 @@ from ..gl.programs import ProgramLibrary
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..integrator.stages.film import Film
+from ..scene.cryptomatte import ranked
 from ..scene.passes import DEEP_CUBEMAP, PASSES
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
@@ -43,7 +44,9 @@ def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
 def exposed_passes(passes: Mapping[str, np.ndarray], exposure: float) -> dict[str, np.ndarray]:
     """The passes of a film as those of a Frame."""
     radiances = {entry.name for entry in PASSES if entry.is_radiance}
-    return {name: values * np.float32(exposure) if name in radiances else values for name, values in passes.items()}
+    return ranked(
+        {name: values * np.float32(exposure) if name in radiances else values for name, values in passes.items()}
+    )
 
 
 def read_frame(film: Film, exposure: float, inspections: Mapping[str, np.ndarray] | None = None) -> Frame:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..scene.passes import RenderPass, passes_named
+from ..scene.passes import RenderPass
 from ..scene.scene import Scene
 
 
@@ -80,7 +80,7 @@ class RenderResult:
 def empty_result(scene: Scene, device: str) -> RenderResult:
     """What a render gives that was stopped before there was anything to see."""
     width, height = scene.camera.resolution
-    passes = {entry.name: _nothing(entry, height, width) for entry in passes_named(scene.settings.passes)}
+    passes = {entry.name: _nothing(entry, height, width) for entry in scene.settings.picture_passes}
     frame = Frame(np.zeros((height, width, 4), np.float32), passes)
     statistics = RenderStatistics(0, 0, 0.0, 0.0, device, scene.triangle_count, 0.0, warnings=list(scene.warnings))
     return RenderResult(frame, statistics, stopped=True)

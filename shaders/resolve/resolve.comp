@@ -125,6 +125,12 @@ void main() {
     bool unseen = parameters.path_kind == PATH_OF_CAMERA
         && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
+#ifdef MATERIAL_AOVS
+    // As in Cycles: of what is seen up to the first surface that the passes are of.
+    bool seen_first = parameters.path_kind == PATH_OF_CAMERA
+        && (flags & (PATH_STRAIGHT | PATH_SURFACE_FOUND)) == PATH_STRAIGHT;
+    if (seen_first && !unseen) evaluate_aovs(surface, materials[material].first_constant, index);
+#endif
     hold_out_and_catch(surface, instance, unseen, builder);
     let_light_pass(surface, instance, flags, unseen, materials[material].opaque_shadow != 0u, builder);
     builder.closure.position = surface.position;

@@ -6,7 +6,8 @@ import pytest
 from support.every_node import programs
 
 from rppm_addon.materials.compiler import GraphError, Resource, compile_graph
-from rppm_addon.scene import Link, NodeGraph
+from rppm_addon.scene import AovOutput, Link, NodeGraph
+from rppm_addon.scene.passes import aov_passes
 
 
 def textured(scale=5.0, color=(0.8, 0.2, 0.1), table=None, image=0, attribute="UVMap", operation="ADD", roughness=0.5):
@@ -212,3 +213,22 @@ def test_a_chain_of_five_thousand_nodes():
 
 def test_the_same_graph_gives_the_same_text_each_time():
     assert programs() == programs()
+
+
+def test_aov_outputs_are_in_the_text_only_where_their_pass_is_rendered():
+    plain, with_aovs = textured(), textured()
+    with_aovs.aovs = [AovOutput("Mask", value=Link(3, "value")), AovOutput("Tint", color=(0.1, 0.2, 0.3))]
+    expected = compile_graph(plain)
+    for graph, names in ((plain, ("Mask.X", "Tint.RGBA")), (with_aovs, ()), (with_aovs, ("Other.X",))):
+        assert compile_graph(graph, aov_passes(names)) == expected
+    compiled = compile_graph(with_aovs, aov_passes(("Tint.RGBA", "Mask.X")))
+    assert compiled.text.startswith(expected.text) and compiled.constants[-3:] == pytest.approx([0.1, 0.2, 0.3])
+    assert "add_aov(5u * path + 0u, constant_vec3" in compiled.text and "add_aov(5u * path + 4u, n" in compiled.text
+
+
+def test_aov_outputs_that_are_malformed_are_refused():
+    graph = textured()
+    for color in (Link(99, "value"), Link(3, "nothing"), "red"):
+        graph.aovs = [AovOutput("Tint", color=color)]
+        with pytest.raises(GraphError):
+            compile_graph(graph, aov_passes(("Tint.RGBA",)))

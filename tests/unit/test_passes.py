@@ -63,7 +63,7 @@ def test_merged_parts_are_the_whole():
                 passes[entry.name] = np.where(seen.any(0), first_seen, np.float32(entry.nothing))
         return passes, counts
 
-    merged = MergedPasses()
+    merged = MergedPasses(FILM_PASSES)
     for ends in ((0, 2), (2, 6), (6, 7)):
         merged.add(*part(*ends), ends[1] - ends[0])
     whole, _ = part(0, 7)
@@ -78,6 +78,9 @@ def test_passes_that_are_off_take_no_memory():
     assert Film.expected_bytes(StageSizes(width, height)) == radiance
     channels = sum(len(entry.channels) for entry in FILM_PASSES)
     values = {"pass values": 4 * channels * pixels, "pass counts": 8 * pixels, "pass paths": 16 * MAXIMUM_BAND_PIXELS}
-    assert Film.expected_bytes(StageSizes(width, height, passes=PASSES)) == radiance | values
+    assert Film.expected_bytes(StageSizes(width, height, passes=FILM_PASSES)) == radiance | values
+    four_pairs = passes_named(["CryptoMaterial00", "CryptoMaterial01"])
+    pairs = {"cryptomatte of materials": 8 * 4 * pixels}
+    assert Film.expected_bytes(StageSizes(width, height, passes=four_pairs)) == radiance | pairs
     without, beside = (expected_memory(16, 16, 64, 2, passes=names).total_bytes for names in ((), ("Depth",)))
     assert beside - without == 256 * (4 + 8)

@@ -14,9 +14,11 @@ from .context import ExportContext
 from .frames import FrameExporter
 from .lights.world import export_world
 from .motion import MotionExporter, is_blurred
+from .objects.assets import export_asset_names
 from .objects.objects import ObjectExporter
 from .report import ExportStopped, Report
 from .settings import export_cubemap_center, export_exposure, export_settings, preview_settings
+from .stamps import export_stamps
 from .sync import ExportProgress, SceneSync
 
 __all__ = [
@@ -77,5 +79,7 @@ def export_scene(
     )
     scene.lights = placed.lights + suns
     scene.images = context.images.images
+    scene.asset_names = export_asset_names(depsgraph, scene.settings)
+    scene.stamps = export_stamps(source)
     scene.warnings = report.warnings
     return scene

@@ -9,6 +9,7 @@ import bpy
 from ...scene import Scene
 from .camera.camera import export_camera
 from .report import Report
+from .stamps import export_stamps
 from .sync import SceneSync
 
 
@@ -47,9 +48,8 @@ class FrameExporter:
         camera = export_camera(depsgraph.scene_eval, depsgraph, report)
         scene = sync.update(depsgraph, camera)
         self._sync = sync
-        if report.warnings:
-            scene = dataclasses.replace(scene, warnings=[*report.warnings, *scene.warnings])
-        return scene
+        warnings = [*report.warnings, *scene.warnings] if report.warnings else scene.warnings
+        return dataclasses.replace(scene, stamps=export_stamps(depsgraph.scene_eval), warnings=warnings)
 
     def _new_report(self) -> Report:
         return Report(lambda: self._render[0](), lambda text: self._render[1](text))

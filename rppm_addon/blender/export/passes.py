@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...scene.passes import PASSES, RenderPass
+from ...scene.passes import ALWAYS_TAKEN, PASSES, RenderPass
 
 
 def switch_of(layer: bpy.types.ViewLayer, entry: RenderPass) -> tuple[bpy.types.bpy_struct | None, str]:
@@ -12,6 +12,15 @@ def switch_of(layer: bpy.types.ViewLayer, entry: RenderPass) -> tuple[bpy.types.
     return (layer, entry.switch) if entry.switch else (getattr(layer, "rppm", None), entry.own_switch)
 
 
+def aovs_of_layer(layer: bpy.types.ViewLayer) -> tuple[str, ...]:
+    """The AOVs of a view layer, as settings have them; those that have the name of another pass are left out: Blender
+    shows that beside them."""
+    taken = ALWAYS_TAKEN | {entry.name for entry in passes_of_layer(layer)}
+    valid = {aov.name: aov.type for aov in layer.aovs if aov.is_valid and aov.name not in taken}
+    return tuple(f"{name}.{'X' if kind == 'VALUE' else 'RGBA'}" for name, kind in valid.items())
+
+
 def passes_of_layer(layer: bpy.types.ViewLayer) -> tuple[RenderPass, ...]:
     """Those that are on, in the table's order."""
-    return tuple(entry for entry in PASSES if getattr(*switch_of(layer, entry), False))
+    levels = layer.pass_cryptomatte_depth
+    return tuple(entry for entry in PASSES if entry.level < max(levels, 1) and getattr(*switch_of(layer, entry), False))

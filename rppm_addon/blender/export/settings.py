@@ -10,7 +10,7 @@ from ...scene import RenderSettings
 from ...scene.passes import COMBINED
 from ...scene.setting_info import settings_of
 from ..properties import VIEWPORT_DENOISING, viewport_property
-from .passes import passes_of_layer
+from .passes import aovs_of_layer, passes_of_layer
 
 
 def export_settings(
@@ -30,6 +30,7 @@ def export_settings(
         settings.passes = () if shown_pass == COMBINED else (shown_pass,)
     elif layer is not None:
         settings.passes = tuple(entry.name for entry in passes_of_layer(layer))
+        settings.aovs = aovs_of_layer(layer)
     stored = getattr(scene, "rppm", None)
     if stored is not None:
         names = [info.property_of(name) for name, info in settings_of(RenderSettings).items() if not info.where]

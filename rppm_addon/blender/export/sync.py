@@ -14,6 +14,7 @@ from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
 from .lights.world import export_world
+from .objects.assets import export_asset_names
 from .objects.object_pass import Placed
 from .objects.objects import ObjectExporter
 from .report import Report
@@ -148,6 +149,7 @@ class SceneSync:
             settings=settings,
             exposure=export_exposure(source),
             cubemap_center=export_cubemap_center(depsgraph),
+            asset_names=export_asset_names(depsgraph, settings),
             warnings=self._report.warnings,
         )
         if self._most_images == 0:

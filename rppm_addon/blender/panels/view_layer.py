@@ -2,8 +2,9 @@
 """Panels of the view layer tab."""
 
 import bpy
+from bl_ui.properties_view_layer import ViewLayerAOVPanelHelper, ViewLayerCryptomattePanelHelper
 
-from ...scene.passes import PASSES
+from ...scene.passes import PASSES, Accumulation
 from ..export.passes import switch_of
 from .base import RppmPanel
 
@@ -15,8 +16,21 @@ class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
         column.prop(context.view_layer, "use_pass_combined")
-        for switch in dict.fromkeys(switch_of(context.view_layer, entry) for entry in PASSES):
+        shown = (entry for entry in PASSES if entry.accumulation is not Accumulation.COVERAGE)
+        for switch in dict.fromkeys(switch_of(context.view_layer, entry) for entry in shown):
             column.prop(*switch)
 
 
-CLASSES = (RPPM_PT_passes,)
+class RPPM_PT_passes_cryptomatte(RppmPanel, ViewLayerCryptomattePanelHelper, bpy.types.Panel):
+    bl_label = "Cryptomatte"
+    bl_context = "view_layer"
+    bl_parent_id = "RPPM_PT_passes"
+
+
+class RPPM_PT_passes_aov(RppmPanel, ViewLayerAOVPanelHelper, bpy.types.Panel):
+    bl_label = "Shader AOV"
+    bl_context = "view_layer"
+    bl_parent_id = "RPPM_PT_passes"
+
+
+CLASSES = (RPPM_PT_passes, RPPM_PT_passes_cryptomatte, RPPM_PT_passes_aov)

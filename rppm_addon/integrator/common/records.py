@@ -259,6 +259,8 @@ StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Of the pixels of a band, W/(m^2 sr), and alpha."""
 StorageBlock("RadiusFactors", "float radius_factors[];")
+StorageBlock("AovValues", "float aov_values[];")
+"""Of the paths of a band, what AOV Output nodes have written."""
 StorageBlock("Contributions", "vec4 contributions[];")
 StorageBlock("LightTriangles", "uint light_triangles[];")
 """What shadow rays add where nothing is in their way, and the emissive triangles that they go to."""

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-from ...scene.passes import RenderPass, passes_named
+from ...scene.passes import RenderPass
 from ...scene.scene import Scene
 from .band import Band, bands_of
 from .camera_view import is_rasterized
@@ -34,7 +34,7 @@ class StageSizes:
             height,
             scene.photon_count,
             scene.settings.photon_path_length,
-            passes_named(scene.settings.film_passes),
+            scene.settings.found_passes,
             any(instance.shadow_catcher for instance in scene.instances),
             is_rasterized(scene.camera),
         )
@@ -53,6 +53,11 @@ def film_pixels(sizes: StageSizes) -> int:
 def band_pixels(sizes: StageSizes) -> int:
     """Of a band of rows, the most."""
     return sizes.bands[0].pixel_count
+
+
+def aov_channels(sizes: StageSizes) -> int:
+    """Of all passes of AOV Output nodes together."""
+    return sum(len(entry.channels) for entry in sizes.passes if entry.is_aov)
 
 
 def photon_paths(sizes: StageSizes) -> int:

@@ -43,6 +43,7 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
     light_objects = images or not same_members(before.lights, after.lights) or (camera and _asks_for_camera(graphs))
     return Changes(
         materials=images
+        or before.settings.aovs != after.settings.aovs
         or not same_members(before.materials, after.materials)
         or not same_members([*graphs_before, before.world.graph], [*graphs, after.world.graph]),
         geometry=not same_members(before.instances, after.instances)

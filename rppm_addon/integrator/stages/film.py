@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
@@ -15,9 +15,10 @@ from ...gl.records import Record
 from ...scene.passes import FILM_PASSES, Accumulation
 from ..common.band import Band
 from ..common.iteration import Iteration
-from ..common.stage_sizes import StageSizes, band_pixels, film_pixels
+from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, film_pixels
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
+from .cryptomatte import Cryptomatte
 from .importons import Importons
 
 Record(
@@ -33,6 +34,7 @@ Record(
     mist_exponent="float",
 )
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
+Record("AovParameters", count="uint", first_value="uint", iteration="uint")
 Constants(
     "Passes",
     ACCUMULATION=Accumulation,
@@ -57,7 +59,11 @@ def _pass_values(sizes: StageSizes) -> int:
 
 
 def _pass_counts(sizes: StageSizes) -> int:
-    return film_pixels(sizes) if _pass_values(sizes) else 0
+    return film_pixels(sizes) if _pass_values(sizes) or aov_channels(sizes) else 0
+
+
+def _aov_values(sizes: StageSizes) -> int:
+    return film_pixels(sizes) * aov_channels(sizes)
 
 
 def _pass_paths(sizes: StageSizes) -> int:
@@ -73,15 +79,22 @@ class Film(BufferSet):
     _values = StorageBuffer("pass values", "float", _pass_values)
     _counts = StorageBuffer("pass counts", "uvec2", _pass_counts)
     _paths = StorageBuffer("pass paths", "vec4", _pass_paths)
+    _cryptomatte = Part(Cryptomatte)
+    _aov_values = StorageBuffer("AOVs", "float", _aov_values)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._pass_program = library.compute("film/passes.comp")
         self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(sizes) else None
         self._accumulate = library.compute("film/accumulate.comp")
+        self._accumulate_aovs = library.compute("film/aovs.comp") if aov_channels(sizes) else None
+        self._aov_channels = aov_channels(sizes)
         self.width, self.height = sizes.width, sizes.height
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
-        """Of those wanted, the ones that iterations find."""
+        """Of those wanted, the ones that passes.comp writes."""
+        self._aovs = tuple(entry for entry in sizes.passes if entry.is_aov)
+        self._looks = bool(self.passes or self._aovs)
+        """Whether it is told of each path when it has found its first surface."""
 
     def add_passes(
         self,
@@ -93,7 +106,10 @@ class Film(BufferSet):
         segment: int,
     ) -> None:
         """Add the first surfaces that the camera paths of a band have found in a segment; ``camera``: CAMERA_VIEW."""
-        if not self.passes or not iteration.enters_film:
+        if not iteration.enters_film:
+            return
+        self._cryptomatte.add(context, importons, band, iteration, segment)
+        if not self._looks:
             return
         importons.living.run(
             self._pass_program,
@@ -160,6 +176,20 @@ class Film(BufferSet):
                 },
             )
 
+    def add_aovs(self, importons: Importons, band: Band, iteration: Iteration) -> None:
+        """Add what AOV Output nodes have written of the camera paths of a band."""
+        if self._accumulate_aovs is not None:
+            count = band.pixel_count * self._aov_channels
+            self._accumulate_aovs.run(
+                count,
+                {"AovValues": importons.aovs.buffer, "FilmAovs": self._aov_values.buffer},
+                {
+                    "count": count,
+                    "first_value": band.first_pixel * self._aov_channels,
+                    "iteration": iteration.number_in_film,
+                },
+            )
+
     def read_radiance(self) -> np.ndarray:
         """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""
         return self._radiance.read(np.float32, 4 * self.width * self.height).reshape(self.height, self.width, 4).copy()
@@ -173,12 +203,20 @@ class Film(BufferSet):
             shape = (self.height, self.width, channels) if channels > 1 else (self.height, self.width)
             found[entry.name] = values.reshape(shape).copy()
             place += 4 * channels * pixels
-        return found
+        return found | self._cryptomatte.read() | self._read_aovs()
+
+    def _read_aovs(self) -> dict[str, np.ndarray]:
+        channels = self._aov_channels
+        values = self._aov_values.read(np.float32, channels * self.width * self.height)
+        values = values.reshape(self.height, self.width, channels)
+        ends = np.cumsum([0, *(len(entry.channels) for entry in self._aovs)])
+        parts = {entry.name: values[..., a:b].copy() for entry, a, b in zip(self._aovs, ends, ends[1:])}
+        return {name: part[..., 0] if part.shape[-1] == 1 else part for name, part in parts.items()}
 
     def read_pass_counts(self) -> np.ndarray:
         """(height, width, 2) uint32: iterations that the means are of, those whose path did not end before; and those
         of them that found a surface. (0, 0, 2) where there are no passes."""
-        if not self.passes:
+        if not self._looks:
             return np.zeros((0, 0, 2), np.uint32)
         counts = self._counts.read(np.uint32, 2 * self.width * self.height)
         return counts.reshape(self.height, self.width, 2).copy()
@@ -189,4 +227,9 @@ class Film(BufferSet):
         if self.passes:
             values = [np.asarray(passes[entry.name], np.float32).reshape(-1) for entry in self.passes]
             self._values.upload(np.concatenate(values))
+        if self._looks:
             self._counts.upload(pass_counts)
+        if self._aovs:
+            planes = [np.atleast_3d(np.asarray(passes[entry.name], np.float32)) for entry in self._aovs]
+            self._aov_values.upload(np.concatenate(planes, axis=-1))
+        self._cryptomatte.restore(passes)

@@ -15,11 +15,12 @@ from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
-from ..common.stage_sizes import StageSizes, band_pixels
+from ..common.stage_sizes import StageSizes, aov_channels, band_pixels
 from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..density_estimation.stored_photons import CameraRaster, TakingImportons
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
+from ..surfaces.resolve import CameraPaths
 
 Record(
     "ScatterImportonsParameters",
@@ -37,6 +38,10 @@ Record(
 )
 
 
+def _band_aovs(sizes: StageSizes) -> int:
+    return band_pixels(sizes) * aov_channels(sizes)
+
+
 class Importons(BufferSet):
     """Camera paths of one band and the importon that each leaves in the current segment."""
 
@@ -47,6 +52,8 @@ class Importons(BufferSet):
     closures = StorageBuffer("camera closures", CLOSURE, band_pixels)
     importons = StorageBuffer("importons", IMPORTON, band_pixels)
     radiances = StorageBuffer("band radiance", "vec4", band_pixels)
+    aovs = StorageBuffer("band AOVs", "float", _band_aovs)
+    """Of each path the channels of the AOV passes, as the nodes of materials add to them."""
     living = PathList("living camera paths", band_pixels, to_keep=True)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
@@ -55,8 +62,10 @@ class Importons(BufferSet):
         self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (band_pixels(sizes), 1)).tobytes()
 
     def clear(self) -> None:
-        """Forget the radiance of the band before."""
+        """Forget the radiance of the band before, and its AOVs."""
         self.radiances.buffer.write(self._opaque)
+        if self.aovs.size:
+            self.aovs.clear()
 
     def trace(self, context: StageContext) -> bool:
         """Find what the paths that go on hit; whether any may do so."""
@@ -81,7 +90,7 @@ class Importons(BufferSet):
                 self.living,
                 iteration.number,
                 segment,
-                camera_paths=self.paths.buffer,
+                camera_paths=CameraPaths(self.paths.buffer, self.aovs.buffer),
             )
 
     def scatter(

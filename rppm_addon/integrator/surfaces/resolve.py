@@ -2,6 +2,7 @@
 """Hits become closures in one batched pass (DIRT's deferred fetch)."""
 
 import enum
+from dataclasses import dataclass
 
 import moderngl
 import numpy as np
@@ -47,6 +48,16 @@ class _PathKind(enum.IntEnum):
     NONE = 0
     CAMERA = 1
     PHOTON = 2
+
+
+@dataclass(frozen=True)
+class CameraPaths:
+    """Whose hits are resolved, and to what AOV Output nodes add."""
+
+    paths: moderngl.Buffer
+    """CAMERA_PATH."""
+    aovs: moderngl.Buffer
+    """AovValues."""
 
 
 _RANGE_SIZE = 8
@@ -126,7 +137,7 @@ class Resolve(BufferSet):
         living: LivingPaths,
         iteration: int,
         segment: int,
-        camera_paths: moderngl.Buffer | None = None,
+        camera_paths: CameraPaths | None = None,
         photon_paths: moderngl.Buffer | None = None,
         has_adjoint_queries: bool = False,
     ) -> None:
@@ -141,7 +152,8 @@ class Resolve(BufferSet):
             "Rays": rays,
             "Hits": hits,
             "Closures": closures,
-            "PathFlags": camera_paths or photon_paths or rays,
+            "PathFlags": camera_paths.paths if camera_paths else photon_paths or rays,
+            "AovValues": camera_paths.aovs if camera_paths else closures,  # without camera paths nothing is written
         }
         parameters = {
             **self._parameters,

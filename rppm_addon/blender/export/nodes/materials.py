@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender materials to node graphs."""
 
+from collections.abc import Iterator
+
 import bpy
 
-from ....scene import Material, NodeGraph
+from ....scene import AovOutput, Material, NodeGraph
+from ....scene.cryptomatte import DEFAULT_MATERIAL
 from ..context import ExportContext
 from ..meshes.attributes import NO_ATTRIBUTE
 from . import surface_nodes, value_nodes  # noqa: F401  register their handlers
@@ -50,7 +53,7 @@ class MaterialTable:
         reads = self._context.untracked_reads
         with self._context.report.about(("material", key)):
             if material is None:
-                exported = Material("Default", default_surface())
+                exported = Material(DEFAULT_MATERIAL, default_surface())
             else:
                 exported = export_material(material, self._context)
         (self._untracked.add if self._context.untracked_reads > reads else self._untracked.discard)(key)
@@ -90,6 +93,10 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
     if exporter.is_linked(output.inputs["Displacement"], ()):
         _bump(exporter, material, output)
     graph.surface = exporter.surface(output)
+    graph.aovs = [
+        AovOutput(name, *(exporter.value(node.inputs[socket], path) for socket in ("Color", "Value")))
+        for node, path, name in _aov_outputs(tree, ())
+    ]
     shadow = getattr(material, "use_transparent_shadow", True)
     exported = Material(material.name, graph, transparent_shadow=shadow, pass_index=material.pass_index)
     if exporter.is_linked(output.inputs["Volume"], ()):
@@ -98,6 +105,17 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
             # Only an interior: the boundary itself is not there.
             graph.surface = graph.add("bsdf_transparent", "bsdf")
     return exported
+
+
+def _aov_outputs(tree: bpy.types.NodeTree, path: Path) -> Iterator[tuple[bpy.types.Node, Path, str]]:
+    """AOV Output nodes with the groups that they lie in and the names of their passes."""
+    for node in tree.nodes:
+        if node.mute:
+            continue
+        if node.type == "OUTPUT_AOV" and node.aov_name:
+            yield node, path, node.aov_name
+        elif node.type == "GROUP" and node.node_tree is not None:
+            yield from _aov_outputs(node.node_tree, (*path, node))
 
 
 def _bump(exporter: GraphExporter, material: bpy.types.Material, output: bpy.types.Node) -> None:

@@ -1,0 +1,19 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the AOV Output nodes of an iteration wrote enters the running means.
+
+layout(local_size_x = 64) in;
+
+#include <AovParameters>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { AovParameters parameters; };
+layout(std430, binding = 0) readonly buffer AovValues;
+layout(std430, binding = 1) buffer FilmAovs { float film_aovs[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uint place = parameters.first_value + index;
+    float mean = parameters.iteration == 1u ? 0.0 : film_aovs[place];
+    film_aovs[place] = mean + (aov_values[index] - mean) / float(parameters.iteration);
+}

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Passes of AOV Output nodes."""
+
+import numpy as np
+import scenes
+from support.lobes import Lobe, LobeKind, material
+from support.render_states import assert_same_state
+
+from rppm_addon.scene import AovOutput, Camera, Instance, Light, LightKind, Link, RenderSettings, Scene
+
+AOVS = ("Place.RGBA", "Height.X", "Unused.X")
+
+
+def pane_over_floor(pane: Lobe, aovs: tuple[str, ...] = AOVS, **settings) -> Scene:
+    """A camera 3 m above a floor whose right half is missing, with a pane 1 m above it. The floor writes where it is,
+    and 7, the pane a color and 0.5."""
+    camera = Camera(scenes.looking((0, 0, 3), (0, 0, 0)), (-0.5, 0.5, -0.5, 0.5), 8, 8)
+    meshes = [
+        scenes.rectangle("pane", (-2, -2, 1), (2, -2, 1), (2, 2, 1), (-2, 2, 1)),
+        scenes.rectangle("floor", (-4, -4, 0), (0, -4, 0), (0, 4, 0), (-4, 4, 0)),
+    ]
+    upper, lower = material("pane", pane), scenes.diffuse(1, 1, 1)
+    upper.graph.aovs = [AovOutput("Place", (0.25, 0.5, 1.0), 9.0), AovOutput("Height", 9.0, 0.5)]
+    position = lower.graph.add("new_geometry", "position")
+    lower.graph.aovs = [AovOutput("Place", position), AovOutput("Height", value=Link(position.node, "position"))]
+    lower.graph.aovs.append(AovOutput("Height", value=7.0))
+    return Scene(
+        camera, meshes, [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])], [upper, lower],
+        [Light("sun", LightKind.SUN, np.eye(4), np.ones(3))],
+        settings=RenderSettings(passes=(), aovs=aovs, photons=64, **{"iterations": 8, "filter_width": 0.0} | settings),
+    )  # fmt: skip
+
+
+def floor_places() -> np.ndarray:
+    """(8, 8, 3) of what the pixels see of the floor's plane."""
+    at = 3.0 * ((np.arange(8) + 0.5) / 8 - 0.5)
+    return np.stack([*np.meshgrid(at, at), np.zeros((8, 8))], axis=-1)
+
+
+def is_left(places: np.ndarray) -> np.ndarray:
+    return places[..., 0] < 0.0
+
+
+def test_values_of_the_first_surface(renderer):
+    """A mirror's, and nothing of what is behind it or seen in it."""
+    passes = renderer.render(pane_over_floor(Lobe(LobeKind.GLOSSY))).frame.passes
+    assert list(passes) == ["Place", "Height", "Unused"]
+    np.testing.assert_allclose(passes["Place"], np.broadcast_to((0.25, 0.5, 1.0, 1.0), (8, 8, 4)), rtol=1e-6)
+    np.testing.assert_allclose(passes["Height"], 0.5, rtol=1e-6)
+    assert passes["Unused"].shape == (8, 8) and not passes["Unused"].any()
+
+
+def test_what_is_seen_through_adds_its_own(renderer):
+    """As in Cycles: all surfaces up to the first that hides more than half, none by its share."""
+    passes = renderer.render(pane_over_floor(Lobe(LobeKind.TRANSPARENT))).frame.passes
+    places = floor_places()
+    left = is_left(places)
+    color = np.where(left[..., None], places, 0.0) + (0.25, 0.5, 1.0)
+    np.testing.assert_allclose(passes["Place"][..., :3], color, atol=1e-4)
+    np.testing.assert_allclose(passes["Place"][..., 3], 1.0 + left, rtol=1e-6)
+    height = 0.5 + np.where(left, places.mean(-1) + 7.0, 0.0)  # a vector's mean becomes a value
+    np.testing.assert_allclose(passes["Height"], height, atol=1e-4)
+
+
+def test_a_render_goes_on_bit_for_bit_and_the_picture_stays(mapper):
+    scene = pane_over_floor(Lobe(LobeKind.TRANSPARENT), filter_width=1.5)
+    mapper.build(scene)
+    states = []
+    for _ in range(4):
+        mapper.iterate()
+        states.append(mapper.state())
+    mapper.build(scene)
+    mapper.resume(states[1])
+    for _ in range(2):
+        mapper.iterate()
+    assert_same_state(mapper.state(), states[3], "passes", "pass_counts", "radiance")
+    assert states[3].passes["Place"].any()
+    without = pane_over_floor(Lobe(LobeKind.TRANSPARENT), (), filter_width=1.5)
+    mapper.update(without)
+    for _ in range(4):
+        mapper.iterate()
+    np.testing.assert_array_equal(mapper.film.read_radiance(), states[3].radiance)
