@@ -16,7 +16,7 @@ from ..session.observers import RenderObserver, current_observer
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
 from . import broken_frames, renderer_process, renderer_thread
-from .export import ExportStopped, FrameExporter, export_scene, is_blurred
+from .export import ExportStopped, FrameExporter, export_scene, is_blurred, wants_neighbors
 from .export.camera.camera import frame_size
 from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
@@ -98,8 +98,9 @@ def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     if engine.is_preview:
         return export_scene(depsgraph, engine, observer.should_stop)
     _check_size(engine, depsgraph.scene.render)
-    if not depsgraph.scene.render.use_persistent_data or is_blurred(depsgraph, engine):
-        # Going to other frames, a blurred render takes in what Blender would tell the next one of.
+    looks_around = is_blurred(depsgraph, engine) or wants_neighbors(depsgraph, engine)
+    if not depsgraph.scene.render.use_persistent_data or looks_around:
+        # Going to other frames, such a render takes in what Blender would tell the next one of.
         engine.exporter = None
         return follow(export_scene(depsgraph, engine, observer.should_stop))
     # Blender keeps engine and depsgraph, and tells what has changed.

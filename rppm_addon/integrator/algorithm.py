@@ -34,6 +34,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             stages.direct_light.add(context, importons, stages.direct_light_blocks, band, iteration, segment, radii)
             yield
             film.add_passes(context, camera_hits.camera.buffer, importons, band, iteration, segment)
+            film.add_caught_shadows(context, importons, stages.shadow_catcher, band, iteration, segment)
             importons.scatter(context, stages.scatter_blocks, band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
             raster = camera_hits.raster(band) if segment == 0 else None

@@ -31,6 +31,8 @@ class Accumulation(enum.Enum):
     COVERAGE = 4
     """Pairs of an identifier and the share of the pixel that it covers: the means of what iterations see of each.
     In the film in the order in which they were found, in a frame the largest first (scene/cryptomatte.py)."""
+    FOUND_MEAN = 5
+    """The mean of the first surfaces' that iterations find: what sees the background does not count."""
 
 
 class PassKind(enum.Enum):
@@ -119,11 +121,27 @@ PASSES = (
     RenderPass("Mist", "Z", PassKind.VALUE, Accumulation.MEAN, "use_pass_mist", 1.0),
     RenderPass("Position", "XYZ", PassKind.VECTOR, Accumulation.FIRST, "use_pass_position"),
     RenderPass("Normal", "XYZ", PassKind.VECTOR, Accumulation.MEAN, "use_pass_normal"),
+    RenderPass("Vector", "XYZW", PassKind.VECTOR, Accumulation.FOUND_MEAN, "use_pass_vector"),
     RenderPass("UV", "UVA", PassKind.VECTOR, Accumulation.MEAN, "use_pass_uv"),
     RenderPass("Object Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_object_index"),
     RenderPass("Material Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_material_index"),
     RenderPass("Emission", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_emit", is_radiance=True),
     RenderPass("Environment", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_environment", is_radiance=True),
+    RenderPass(
+        "Shadow Catcher",
+        "RGB",
+        PassKind.COLOR,
+        Accumulation.SUM,
+        nothing=1.0,
+        description="A pass to multiply a background with: 1, and at shadow catchers the share of the light that arrives",
+    ),
+    RenderPass(
+        "Debug Sample Count",
+        "X",
+        PassKind.VALUE,
+        Accumulation.SUM,
+        description="A pass that shows the share of all samples that each pixel has got",
+    ),
     _for_denoisers("Denoising Albedo", "RGB", PassKind.COLOR),
     _for_denoisers("Denoising Normal", "XYZ", PassKind.VECTOR),
     _for_denoisers("Denoising Depth", "Z", PassKind.VALUE),
@@ -141,9 +159,8 @@ PASSES = (
         ),
     ),
 )
-FILM_PASSES = tuple(
-    entry for entry in PASSES if entry.accumulation not in {Accumulation.INSPECTION, Accumulation.COVERAGE}
-)
+_APART = {Accumulation.INSPECTION, Accumulation.COVERAGE, Accumulation.FOUND_MEAN}
+FILM_PASSES = tuple(entry for entry in PASSES if entry.accumulation not in _APART)
 """Those whose values shaders/film/passes.comp writes, and viewports show."""
 DEEP_CUBEMAP = next(entry for entry in PASSES if entry.name == "Deep Cubemap")
 COMBINED = "Combined"
@@ -151,6 +168,7 @@ NOISY_IMAGE = RenderPass("Noisy Image", "RGBA", PassKind.COLOR, Accumulation.MEA
 """Combined before it was denoised: what comes with each denoised picture, and cannot be asked for by itself."""
 ALWAYS_TAKEN = frozenset({COMBINED, NOISY_IMAGE.name, *(entry.name for entry in PASSES if entry.group)})
 """Names that AOVs cannot have whatever was asked for: passes come with pictures that are denoised."""
+VECTOR, SHADOW_CATCHER = "Vector", "Shadow Catcher"
 DENOISING_ALBEDO, DENOISING_NORMAL = "Denoising Albedo", "Denoising Normal"
 """Passes that guide denoising."""
 

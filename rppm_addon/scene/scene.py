@@ -35,6 +35,8 @@ class Scene:
     """(3,) meters where the deep cubemap's center goes; None is automatic."""
     shutter: Shutter | None = None
     """What moves while the picture is taken; None is nothing."""
+    neighbors: Shutter | None = None
+    """Where things are in the frames before (time 0) and after (1), for the pass Vector; its curve says nothing."""
     asset_names: dict[str, str] = field(default_factory=dict)
     """Of objects that have a parent, by name, the names of their topmost ones; only where CryptoAsset is rendered."""
     stamps: dict[str, str] = field(default_factory=dict)

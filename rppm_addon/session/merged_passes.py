@@ -36,6 +36,9 @@ class MergedPasses:
             )
             if entry.accumulation is Accumulation.MEAN:
                 self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * found_here
+            elif entry.accumulation is Accumulation.FOUND_MEAN:
+                weight = counts[..., 1].reshape(found_here.shape)
+                self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * weight
             elif entry.accumulation is Accumulation.SUM:
                 self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * iterations
             else:
@@ -51,8 +54,8 @@ class MergedPasses:
             if entry.name not in self._sums:
                 continue
             values = self._sums[entry.name]
-            if entry.accumulation is Accumulation.MEAN:
-                counts = np.maximum(self._counts[..., 0], 1)
+            if entry.accumulation in {Accumulation.MEAN, Accumulation.FOUND_MEAN}:
+                counts = np.maximum(self._counts[..., int(entry.accumulation is Accumulation.FOUND_MEAN)], 1)
                 values = values / counts.reshape(*counts.shape, *[1] * (values.ndim - 2))
             elif entry.accumulation is Accumulation.SUM:
                 values = values / max(self._iterations, 1)

@@ -15,7 +15,7 @@ from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..integrator.stages.film import Film
 from ..scene.cryptomatte import ranked
-from ..scene.passes import DEEP_CUBEMAP, PASSES
+from ..scene.passes import DEEP_CUBEMAP, PASSES, SHADOW_CATCHER
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
 from .denoised_pictures import finished_frame, finished_result, wanted_frame
@@ -44,9 +44,20 @@ def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
 def exposed_passes(passes: Mapping[str, np.ndarray], exposure: float) -> dict[str, np.ndarray]:
     """The passes of a film as those of a Frame."""
     radiances = {entry.name for entry in PASSES if entry.is_radiance}
-    return ranked(
-        {name: values * np.float32(exposure) if name in radiances else values for name, values in passes.items()}
-    )
+    found = {name: values * np.float32(exposure) if name in radiances else values for name, values in passes.items()}
+    if SHADOW_CATCHER in found:
+        found[SHADOW_CATCHER] = arriving_light(found[SHADOW_CATCHER])
+    return ranked(found)
+
+
+def arriving_light(caught: np.ndarray) -> np.ndarray:
+    """(height, width, 3) of the pass Shadow Catcher: a share of light, and 1 where there are no catchers.
+
+    caught: (height, width, 3) of the film (shaders/film/caught_shadows.comp).
+    """
+    lit, seen = caught[..., 0], caught[..., 1]
+    share = np.divide(lit, seen, out=np.ones_like(lit), where=seen > 0.0)
+    return np.repeat(share[..., None], 3, axis=-1)
 
 
 def read_frame(film: Film, exposure: float, inspections: Mapping[str, np.ndarray] | None = None) -> Frame:

@@ -10,6 +10,7 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
+#include "film/first_surface.glsl"
 #include "gbuffer/projections.glsl"
 layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
@@ -18,14 +19,13 @@ layout(std430, binding = 1) readonly buffer Closures;
 layout(std430, binding = 2) readonly buffer Rays;
 layout(std430, binding = 3) buffer CameraPaths;
 // iterations in the means; those with a surface
-layout(std430, binding = 5) buffer PassCounts { uvec2 pass_counts[]; };
+layout(std430, binding = 5) buffer PassCounts;
 layout(std430, binding = 6) readonly buffer Hits;
 layout(std430, binding = 7) readonly buffer Attributes;
 layout(std430, binding = 9) readonly buffer Radiances;
 layout(std430, binding = 10) readonly buffer ShadingInstances;
 layout(std430, binding = 11) readonly buffer Materials;
 
-const float MOSTLY_TRANSPARENT = 0.5;
 // Lobes up to this alpha, and what is specular by more than this share, denoisers see through. As in Cycles.
 const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;
 const uint DENOISING_DATA = 1u << PASS_DENOISING_ALBEDO | 1u << PASS_DENOISING_NORMAL | 1u << PASS_DENOISING_DEPTH;
@@ -64,6 +64,7 @@ void begin_iteration() {
             pass_values[place] = is_sum ? (first ? 0.0 : kept * pass_values[place]) : PASS_NOTHING[which];
         }
     }
+    add_to_pass(PASS_DEBUG_SAMPLE_COUNT, pixel, vec3(1.0));
 }
 
 float view_depth(vec3 position) {
@@ -138,7 +139,7 @@ void main() {
         return;
     }
     CameraPath path = camera_paths[index];
-    bool straight = (path.flags & PATH_STRAIGHT) != 0u, looks = straight && (path.flags & PATH_SURFACE_FOUND) == 0u;
+    bool straight = (path.flags & PATH_STRAIGHT) != 0u, looks = looks_for_surface(path.flags);
     bool denoised = (parameters.passes & DENOISING_DATA) == 0u
                  || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
     if (!keeps_paths && !looks && denoised) return;
@@ -149,9 +150,7 @@ void main() {
     if (keeps_paths) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
     if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
         path.flags |= PATH_DENOISING_DATA_FOUND;
-    vec3 transparent = closure.transparent;
-    bool passes_by = hit && (transparent.r + transparent.g + transparent.b) / 3.0 > MOSTLY_TRANSPARENT;
-    if (looks && !passes_by) {
+    if (looks && !is_passed_by(closure)) {
         path.flags |= PATH_SURFACE_FOUND;
         write_first_surface(closure);
     }

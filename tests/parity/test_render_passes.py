@@ -80,8 +80,64 @@ def test_every_pass_of_blender_is_that_of_cycles(renderer, surfaces, tmp_path):
     frame = renderer.render(scene).frame
     expected |= dict(zip(("Denoising Albedo." + c for c in "RGB"), mirrored_world_once(expected), strict=True))
     for entry in FILM_PASSES:
+        if entry.name in {"Shadow Catcher", "Debug Sample Count"}:
+            continue  # nothing to be seen here
         mine = np.atleast_3d(frame.passes[entry.name])
         theirs = np.stack([expected[layer] for layer in entry.layers], axis=-1)
         same = np.isclose(mine, theirs, rtol=2e-3, atol=2e-3).all(axis=-1)
         assert same.mean() > 0.98, f"{entry.name}: more than edges differ"
         assert theirs.std() > 0.0, f"{entry.name}: nothing is shown"
+
+
+def test_aovs_are_those_of_cycles(renderer, surfaces, tmp_path):
+    """Of nodes and of sockets; what is seen in the mirror does not count."""
+    for thing in surfaces.objects:
+        if thing.type != "MESH":
+            continue
+        tree = thing.data.materials[0].node_tree
+        geometry, layers = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeLayerWeight")
+        for name, socket in (("Place", geometry.outputs["Position"]), ("Facing", layers.outputs["Facing"])):
+            aov = tree.nodes.new("ShaderNodeOutputAOV")
+            aov.aov_name = name
+            tree.links.new(socket, aov.inputs["Color" if name == "Place" else "Value"])
+        fixed = tree.nodes.new("ShaderNodeOutputAOV")
+        fixed.aov_name, fixed.inputs["Color"].default_value = "Tint", (0.1 * thing.pass_index, 0.5, 2.0, 1.0)
+    layer = surfaces.view_layers[0]
+    for name, kind in (("Place", "COLOR"), ("Facing", "VALUE"), ("Tint", "COLOR")):
+        aov = layer.aovs.add()
+        aov.name, aov.type = name, kind
+    expected = cycles_channels(surfaces, tmp_path)
+    scene = exported_scene()
+    scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64, passes=())
+    frame = renderer.render(scene).frame
+    assert list(frame.passes) == ["Place", "Facing", "Tint"]
+    for name, letters in (("Place", "RGBA"), ("Facing", "X"), ("Tint", "RGBA")):
+        theirs = np.stack([expected[f"{name}.{letter}"] for letter in letters], axis=-1)
+        same = np.isclose(np.atleast_3d(frame.passes[name]), theirs, rtol=2e-3, atol=2e-3).all(axis=-1)
+        assert same.mean() > 0.98, f"{name}: more than edges differ"
+        assert theirs.std() > 0.0
+
+
+def test_shadows_on_catchers_are_those_of_cycles(renderer, tmp_path):
+    """Of a black ball, as light from other surfaces is left out."""
+    scene = new_scene(resolution=32, world=0.0)
+    plane(3.0, material(DIFFUSE)).is_shadow_catcher = True
+    ball(0.5, material(DIFFUSE, Color=0.0), place(at=(0.0, 0.0, 0.6)))
+    light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
+    camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5))
+    layer = scene.view_layers[0]
+    layer.cycles.use_pass_shadow_catcher = layer.rppm.use_pass_shadow_catcher = True
+    scene.render.engine, scene.cycles.samples = "CYCLES", 128
+    scene.render.filepath = str(tmp_path / "cycles.exr")
+    bpy.ops.render.render(write_still=True)
+    with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:
+        channels = {name: channel.pixels[::-1] for part in file.parts for name, channel in part.channels.items()}
+    theirs = np.stack([channels[f"ViewLayer.Shadow Catcher.{letter}"] for letter in "RGB"], axis=-1)
+    exported = exported_scene()
+    exported.settings = exported.settings.with_values(iterations=128, photons=64)
+    mine = renderer.render(exported).frame.passes["Shadow Catcher"]
+    blocks = [np.asarray(array).reshape(8, 4, 8, 4, 3).mean(axis=(1, 3)) for array in (mine, theirs)]
+    assert blocks[1].min() < 0.5
+    # Shares of up to 1 of 128 x 16 rays that are lit or not: 0.5 / sqrt(2048) of either, five times.
+    np.testing.assert_allclose(*blocks, atol=5 * np.sqrt(2) * 0.5 / np.sqrt(2048), err_msg="shadows")
+    assert mine.mean() == pytest.approx(theirs.mean(), rel=0.01)

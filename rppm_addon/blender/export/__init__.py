@@ -13,7 +13,7 @@ from .camera.view import export_view
 from .context import ExportContext
 from .frames import FrameExporter
 from .lights.world import export_world
-from .motion import MotionExporter, is_blurred
+from .motion import MotionExporter, is_blurred, wants_neighbors
 from .objects.assets import export_asset_names
 from .objects.objects import ObjectExporter
 from .report import ExportStopped, Report
@@ -32,6 +32,7 @@ __all__ = [
     "export_settings",
     "export_view",
     "is_blurred",
+    "wants_neighbors",
 ]
 
 
@@ -67,11 +68,13 @@ def export_scene(
     scene.cubemap_center = export_cubemap_center(depsgraph)
     scene.exposure = export_exposure(source)
     objects = ObjectExporter(context)
-    blurred = is_blurred(depsgraph, engine)
-    placed = objects.export(depsgraph, identify=blurred)
+    blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
+    placed = objects.export(depsgraph, identify=blurred or neighbors)
     scene.world, suns = export_world(source.world, context)
-    if blurred:
-        placed = MotionExporter(depsgraph, engine, context).run(scene, objects, placed)
+    if blurred or neighbors:
+        placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
+    if neighbors and scene.camera.panorama is not None:
+        report.warn("the pass Vector is left out: it is not rendered for panoramas")
     scene.meshes, scene.instances, scene.materials = (
         objects.meshes.meshes,
         placed.instances,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves while the shutter is open: Blender's motion blur to a Shutter.
+"""What moves: Blender's motion blur to a Shutter, and where things are in the frames around, for the pass Vector.
 
 Times, steps and what does not move are as in Cycles, whose object properties say what is blurred, but for lights, which
 Cycles leaves in the middle of their way.
@@ -38,6 +38,16 @@ def is_blurred(depsgraph: bpy.types.Depsgraph, engine: bpy.types.RenderEngine | 
     )
 
 
+def wants_neighbors(depsgraph: bpy.types.Depsgraph, engine: bpy.types.RenderEngine | None) -> bool:
+    """Whether a render has the pass Vector, which as in Cycles goes without motion blur."""
+    return (
+        engine is not None
+        and not engine.is_preview
+        and depsgraph.view_layer_eval.use_pass_vector
+        and not is_blurred(depsgraph, engine)
+    )
+
+
 def shutter_curve(mapping: bpy.types.CurveMapping) -> np.ndarray:
     """(256,) float64 how far the shutter is open in each part of its time, 0 or more."""
     mapping.initialize()
@@ -55,7 +65,15 @@ def step_times(steps: int) -> tuple[float, ...]:
 class MotionExporter:
     """Goes to the frames around that of a render and back, and notes what is where."""
 
-    def __init__(self, depsgraph: bpy.types.Depsgraph, engine: bpy.types.RenderEngine, context: ExportContext) -> None:
+    def __init__(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        engine: bpy.types.RenderEngine,
+        context: ExportContext,
+        neighbors: bool = False,
+    ) -> None:
+        """neighbors: the frames before and after are the keys of all objects, blurred or not."""
+        self._neighbors = neighbors
         self._depsgraph = depsgraph
         self._engine = engine
         self._context = context
@@ -73,8 +91,9 @@ class MotionExporter:
         """
         source = self._depsgraph.scene_eval
         frame, render = source.frame_current_final, source.render
-        length, seconds = render.motion_blur_shutter, render.motion_blur_shutter * render.fps_base / render.fps
-        middle = frame + _MIDDLES[render.motion_blur_position] * length
+        length = 2.0 if self._neighbors else render.motion_blur_shutter
+        seconds = length * render.fps_base / render.fps
+        middle = frame if self._neighbors else frame + _MIDDLES[render.motion_blur_position] * length
         curve = shutter_curve(render.motion_blur_shutter_curve)
         camera = source.camera.original  # markers may switch to another one in between
         times = self._all_times()
@@ -94,6 +113,9 @@ class MotionExporter:
         finally:
             self._go_to(frame)
             self._context.read_from(self._depsgraph)
+        if self._neighbors:
+            scene.neighbors = self._shutter(scene, placed, meshes, curve) or Shutter(curve)
+            return placed
         self._keep_lasting(placed)
         scene.shutter = self._shutter(scene, placed, meshes, curve)
         return placed
@@ -116,7 +138,7 @@ class MotionExporter:
 
     def _all_times(self) -> list[float]:
         """When anything has a key, but for the middle."""
-        steps = {_flags_of(block)[0] for block in self._depsgraph.ids if isinstance(block, bpy.types.Object)}
+        steps = {self._flags_of(block)[0] for block in self._depsgraph.ids if isinstance(block, bpy.types.Object)}
         return sorted({time for count in steps - {0} for time in step_times(count)} - {MIDDLE})
 
     def _look_around(self, time: float, bases: dict[Identity, int], meshes: list[Mesh], changed: set[int]) -> None:
@@ -166,13 +188,16 @@ class MotionExporter:
         """Steps and whether shapes are blurred, by what the object and what multiplies it say."""
         key = identity[:2]
         if key not in self._flags:
-            steps, deforms = _flags_of(source)
+            steps, deforms = self._flags_of(source)
             if len(identity) > 1:
-                of_owner, owner_deforms = _flags_of(owner)
+                of_owner, owner_deforms = self._flags_of(owner)
                 steps = max(steps, of_owner) if steps and of_owner else 0
                 deforms = deforms and owner_deforms
             self._flags[key] = steps, deforms
         return self._flags[key]
+
+    def _flags_of(self, source: bpy.types.Object) -> tuple[int, bool]:
+        return (1, True) if self._neighbors else _flags_of(source)
 
     def _steps(self, identity: Identity) -> int:
         """Of what there was in the middle of the shutter's time."""
@@ -180,7 +205,7 @@ class MotionExporter:
 
     def _look_from(self, time: float, camera: bpy.types.Object) -> None:
         evaluated = camera.evaluated_get(self._depsgraph)
-        steps, _ = _flags_of(evaluated)
+        steps, _ = self._flags_of(evaluated)
         if steps and time in step_times(steps):
             pose = camera_pose(evaluated, self._depsgraph.scene_eval.render)
             if pose is not None:
@@ -228,8 +253,11 @@ class MotionExporter:
             mesh = meshes[place]
             if any(shape is None for shape in shapes.values()):
                 self._context.report.warn(
-                    f'Object "{mesh.name}": its shape is not blurred, for its vertices or faces are others while the '
-                    "shutter is open; switch off Deformation in its Motion Blur settings if that is meant"
+                    f'Object "{mesh.name}": the pass Vector has nothing of how it bends, for its vertices or faces are '
+                    "others in the frame before or after"
+                    if self._neighbors
+                    else f'Object "{mesh.name}": its shape is not blurred, for its vertices or faces are others while '
+                    "the shutter is open; switch off Deformation in its Motion Blur settings if that is meant"
                 )
                 continue
             times = step_times(self._steps_of_shapes[place])

@@ -259,6 +259,8 @@ StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Of the pixels of a band, W/(m^2 sr), and alpha."""
 StorageBlock("RadiusFactors", "float radius_factors[];")
+StorageBlock("PassCounts", "uvec2 pass_counts[];")
+StorageBlock("LitCatchers", "uint lit_catchers[];")
 StorageBlock("AovValues", "float aov_values[];")
 """Of the paths of a band, what AOV Output nodes have written."""
 StorageBlock("Contributions", "vec4 contributions[];")

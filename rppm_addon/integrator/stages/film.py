@@ -12,7 +12,7 @@ from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
-from ...scene.passes import FILM_PASSES, Accumulation
+from ...scene.passes import FILM_PASSES, SHADOW_CATCHER, VECTOR, Accumulation
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, film_pixels
@@ -20,6 +20,8 @@ from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 from .cryptomatte import Cryptomatte
 from .importons import Importons
+from .motion_vectors import MotionVectors
+from .shadow_catcher import ShadowCatcher
 
 Record(
     "PassParameters",
@@ -59,7 +61,8 @@ def _pass_values(sizes: StageSizes) -> int:
 
 
 def _pass_counts(sizes: StageSizes) -> int:
-    return film_pixels(sizes) if _pass_values(sizes) or aov_channels(sizes) else 0
+    looks = any(entry in FILM_PASSES or entry.is_aov or entry.name == VECTOR for entry in sizes.passes)
+    return film_pixels(sizes) if looks else 0
 
 
 def _aov_values(sizes: StageSizes) -> int:
@@ -80,12 +83,15 @@ class Film(BufferSet):
     _counts = StorageBuffer("pass counts", "uvec2", _pass_counts)
     _paths = StorageBuffer("pass paths", "vec4", _pass_paths)
     _cryptomatte = Part(Cryptomatte)
+    _motion_vectors = Part(MotionVectors)
     _aov_values = StorageBuffer("AOVs", "float", _aov_values)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._pass_program = library.compute("film/passes.comp")
         self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(sizes) else None
+        catches = sizes.has_catchers and any(entry.name == SHADOW_CATCHER for entry in sizes.passes)
+        self._caught_shadows = library.compute("film/caught_shadows.comp") if catches else None
         self._accumulate = library.compute("film/accumulate.comp")
         self._accumulate_aovs = library.compute("film/aovs.comp") if aov_channels(sizes) else None
         self._aov_channels = aov_channels(sizes)
@@ -93,7 +99,7 @@ class Film(BufferSet):
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Of those wanted, the ones that passes.comp writes."""
         self._aovs = tuple(entry for entry in sizes.passes if entry.is_aov)
-        self._looks = bool(self.passes or self._aovs)
+        self._looks = bool(self.passes or self._aovs or self._motion_vectors.wanted)
         """Whether it is told of each path when it has found its first surface."""
 
     def add_passes(
@@ -111,6 +117,7 @@ class Film(BufferSet):
         self._cryptomatte.add(context, importons, band, iteration, segment)
         if not self._looks:
             return
+        self._motion_vectors.add(context, importons, self._counts.buffer, band, iteration, segment)
         importons.living.run(
             self._pass_program,
             {
@@ -126,6 +133,32 @@ class Film(BufferSet):
                 "Radiances": importons.radiances.buffer,
                 "ShadingInstances": context.resolve.shading_instances,
                 "Materials": context.materials.buffers["Materials"],
+            },
+            self._parameters(context, band, iteration, segment),
+        )
+
+    def add_caught_shadows(
+        self,
+        context: StageContext,
+        importons: Importons,
+        catcher: ShadowCatcher,
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
+        """Add the shadows on the catchers that the camera paths of a band met in a segment whose surfaces add_passes
+        has had, before they scatter on."""
+        if self._caught_shadows is None or not iteration.enters_film:
+            return
+        importons.living.run(
+            self._caught_shadows,
+            {
+                "Closures": importons.closures.buffer,
+                "Rays": importons.rays.buffer,
+                "CameraPaths": importons.paths.buffer,
+                "LitCatchers": catcher.lit.buffer,
+                "PassValues": self._values.buffer,
+                "PassPaths": self._paths.buffer,
             },
             self._parameters(context, band, iteration, segment),
         )
@@ -203,7 +236,7 @@ class Film(BufferSet):
             shape = (self.height, self.width, channels) if channels > 1 else (self.height, self.width)
             found[entry.name] = values.reshape(shape).copy()
             place += 4 * channels * pixels
-        return found | self._cryptomatte.read() | self._read_aovs()
+        return found | self._motion_vectors.read() | self._cryptomatte.read() | self._read_aovs()
 
     def _read_aovs(self) -> dict[str, np.ndarray]:
         channels = self._aov_channels
@@ -229,6 +262,8 @@ class Film(BufferSet):
             self._values.upload(np.concatenate(values))
         if self._looks:
             self._counts.upload(pass_counts)
+        if self._motion_vectors.wanted:
+            self._motion_vectors.restore(passes[VECTOR])
         if self._aovs:
             planes = [np.atleast_3d(np.asarray(passes[entry.name], np.float32)) for entry in self._aovs]
             self._aov_values.upload(np.concatenate(planes, axis=-1))

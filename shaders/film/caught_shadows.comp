@@ -1,0 +1,28 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much of the light arrives at the catchers that a pixel shows: what is lit as X, of what there is of them as Y
+// (session/renderer.py divides one by the other).
+
+layout(local_size_x = 64) in;
+
+#include <PassParameters>
+#include "common/living_paths.glsl"
+#include "common/bsdf/closure.glsl"
+#include "common/camera_path.glsl"
+layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
+#include "film/passes.glsl"
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) readonly buffer Rays;
+layout(std430, binding = 2) readonly buffer CameraPaths;
+layout(std430, binding = 3) readonly buffer LitCatchers;
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
+    bool catches = closure_hit(closures[index]) && (closures[index].flags & CLOSURE_CATCHES_SHADOWS) != 0u;
+    if (!catches || (camera_paths[index].flags & PATH_STRAIGHT) == 0u) return;
+    vec3 throughput = camera_paths[index].throughput;
+    float seen = (throughput.r + throughput.g + throughput.b) / 3.0;
+    add_to_pass(PASS_SHADOW_CATCHER, parameters.first_pixel + index,
+                vec3(seen * float(lit_catchers[index]), seen, 0.0));
+}

@@ -1,0 +1,64 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far, in pixels, what a pixel shows has come since the frame before, and how far it is from where it will be in
+// the next frame: the pass Vector as Cycles has it.
+
+layout(local_size_x = 64) in;
+
+#include <MotionVectorParameters>
+#include "common/living_paths.glsl"
+#include "common/bsdf/closure.glsl"
+#include "common/camera_path.glsl"
+#include "common/finite.glsl"
+#include "film/first_surface.glsl"
+layout(std140, binding = 0) uniform Parameters { MotionVectorParameters parameters; };
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) readonly buffer Rays;
+layout(std430, binding = 2) readonly buffer CameraPaths;
+layout(std430, binding = 3) readonly buffer Hits;
+layout(std430, binding = 4) readonly buffer Triangles;
+layout(std430, binding = 5) readonly buffer TrianglesBefore { vec4 triangles_before[]; };
+layout(std430, binding = 6) readonly buffer TrianglesAfter { vec4 triangles_after[]; };
+layout(std430, binding = 7) readonly buffer PassCounts;
+layout(std430, binding = 8) buffer MotionVectors { vec4 motion_vectors[]; };
+
+vec3 between(vec3 v0, vec3 v1, vec3 v2, Hit hit) {
+    return (1.0 - hit.b1 - hit.b2) * v0 + hit.b1 * v1 + hit.b2 * v2;
+}
+
+// Pixels from the lower left corner of the frame, as a camera sees a point.
+vec2 raster_at(vec3 point, mat4 world_to_camera, vec4 window) {
+    vec3 at = (world_to_camera * vec4(point, 1.0)).xyz;
+    vec2 on_plane = parameters.orthographic != 0u ? at.xy : at.xy / -at.z;
+    return (on_plane - window.xz) / (window.yw - window.xz) * parameters.resolution;
+}
+
+vec4 vector_at(Hit hit) {
+    uint first = 3u * hit.triangle;
+    vec3 here = between(triangle_vertices[first].xyz, triangle_vertices[first + 1u].xyz,
+                        triangle_vertices[first + 2u].xyz, hit);
+    vec3 before = between(triangles_before[first].xyz, triangles_before[first + 1u].xyz,
+                          triangles_before[first + 2u].xyz, hit);
+    vec3 after = between(triangles_after[first].xyz, triangles_after[first + 1u].xyz,
+                         triangles_after[first + 2u].xyz, hit);
+    vec2 center = raster_at(here, parameters.world_to_camera, parameters.window);
+    vec4 vector = vec4(raster_at(before, parameters.world_to_camera_before, parameters.window_before) - center,
+                       center - raster_at(after, parameters.world_to_camera_after, parameters.window_after));
+    // What comes from the plane of the camera itself.
+    return is_finite(vector.xyz) && is_finite(vector.www) ? vector : vec4(0.0);
+}
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    uint pixel = parameters.first_pixel + index;
+    bool first = parameters.iteration == 1u && parameters.segment == 0u;
+    if (first) motion_vectors[pixel] = vec4(0.0);
+    if (!(rays[index].maximum_distance > 0.0) || !looks_for_surface(camera_paths[index].flags)) return;
+    Closure closure = closures[index];
+    if (!closure_hit(closure) || is_passed_by(closure)) return;
+    // Those found before: passes.comp counts this one.
+    uint found = first ? 0u : pass_counts[pixel].y;
+    vec4 mean = motion_vectors[pixel];
+    motion_vectors[pixel] = mean + (vector_at(hits[index]) - mean) / float(found + 1u);
+}

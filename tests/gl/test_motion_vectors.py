@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pass Vector, by closed forms."""
+
+import dataclasses
+
+import numpy as np
+import scenes
+from support.render_states import assert_same_state
+
+from rppm_addon.scene import (
+    Camera,
+    CameraMovement,
+    Deformation,
+    Instance,
+    Light,
+    LightKind,
+    Movement,
+    RenderSettings,
+    Scene,
+    Shutter,
+)
+
+TIMES = np.array([0.0, 0.5, 1.0])
+
+
+def moved(*offset: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, 3] = offset
+    return matrix
+
+
+def orthographic() -> Scene:
+    """8 x 8 pixels of a quarter meter: on the left a sheet that moves, on the right one that stretches, beyond them
+    nothing; the camera moves as well."""
+    camera = Camera(scenes.looking((0, 0, 3), (0, 0, 0)), (-1.0, 1.0, -1.0, 1.0), 8, 8, orthographic=True)
+    meshes = [
+        scenes.rectangle("moves", (-0.9, -0.6, 0), (0, -0.6, 0), (0, 0.6, 0), (-0.9, 0.6, 0)),
+        scenes.rectangle("stretches", (0, -0.6, 0), (0.9, -0.6, 0), (0.9, 0.6, 0), (0, 0.6, 0)),
+    ]
+    wide = meshes[1].positions * np.float32([1.5, 1, 1])
+    shapes = np.stack([meshes[1].positions, meshes[1].positions, wide])
+    cameras = np.stack([camera.matrix @ moved(0, 0.25, 0), camera.matrix, camera.matrix])
+    neighbors = Shutter(
+        np.ones(1),
+        [Movement(0, TIMES, np.stack([moved(-0.5, 0, 0), moved(0, 0, 0), moved(0.25, 0.75, 0)]))],
+        meshes=[Deformation(1, TIMES, shapes, np.stack([meshes[1].corner_normals] * 3))],
+        camera=CameraMovement(TIMES, cameras, np.stack([camera.window] * 3)),
+    )
+    return Scene(
+        camera, meshes, [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [0])], [scenes.diffuse(1, 1, 1)],
+        [Light("sun", LightKind.SUN, np.eye(4), np.ones(3))], neighbors=neighbors,
+        settings=RenderSettings(iterations=4, photons=64, filter_width=0.0, passes=("Vector",)),
+    )  # fmt: skip
+
+
+def test_what_moves_and_what_bends(renderer):
+    vectors = renderer.render(orthographic()).frame.passes["Vector"]
+    x = (np.arange(8) + 0.5) / 4 - 1.0
+    seen = (np.abs(x[None]) < 0.9) & (np.abs(x[:, None]) < 0.6)
+    # Before, the camera stood a pixel higher.
+    moves = np.broadcast_to((-2.0, -1.0, -1.0, -3.0), (8, 8, 4))
+    stretches = np.stack([*np.broadcast_arrays(0.0, -1.0, -0.5 * x / 0.25, 0.0)], axis=-1)
+    expected = np.where(seen[..., None], np.where((x < 0.0)[None, :, None], moves, stretches[None]), 0.0)
+    np.testing.assert_allclose(vectors, expected, atol=1e-5)
+
+
+def test_the_background_does_not_count_where_a_surface_was_seen(renderer):
+    scene = orthographic()
+    scene.settings = dataclasses.replace(scene.settings, filter_width=1.5, iterations=16)
+    vectors = renderer.render(scene).frame.passes["Vector"]
+    found = vectors[..., 1] != 0.0
+    assert 24 < found.sum() < 64  # edges are seen by some iterations only
+    np.testing.assert_allclose(vectors[found][:, 1], -1.0, atol=1e-5)
+
+
+def test_a_render_goes_on_bit_for_bit(mapper):
+    scene = orthographic()
+    scene.settings = dataclasses.replace(scene.settings, filter_width=1.5)
+    mapper.build(scene)
+    states = []
+    for _ in range(4):
+        mapper.iterate()
+        states.append(mapper.state())
+    mapper.build(scene)
+    mapper.resume(states[1])
+    for _ in range(2):
+        mapper.iterate()
+    assert_same_state(mapper.state(), states[3], "passes", "pass_counts")
+    assert states[3].passes["Vector"].any()
+    mapper.build(dataclasses.replace(scene, neighbors=None))
+    mapper.iterate()
+    assert not mapper.film.read_passes()["Vector"].any()

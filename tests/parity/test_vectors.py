@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pass Vector beside Cycles', pixel by pixel."""
+
+import bpy
+import numpy as np
+import OpenEXR
+import pytest
+from support.moving import FRAME, animate, taken_scene
+
+from .scenes import DIFFUSE, PRINCIPLED, box, camera, light, material, new_scene, place, plane
+
+NOT_FILTERED = 0.01
+
+
+@pytest.fixture
+def moving():
+    """A box that flies, one that turns, a sheet that bends, an instance of which what brings it moves, a floor at rest,
+    and a pane that nothing is seen of; a camera that moves and zooms."""
+    scene = new_scene(resolution=48)
+    plane(3.0, material(DIFFUSE), place(at=(0.0, 0.0, -0.6)))
+    animate(
+        box((0.3, 0.3, 0.3), material(DIFFUSE), place()), "location", (-0.6, 0.2, 0.0), (-0.5, 0, 0), (-0.2, 0, 0.1)
+    )
+    turning = box((0.3, 0.1, 0.3), material(DIFFUSE), place(at=(0.5, 0.0, 0.0)))
+    animate(turning, "rotation_euler", (0.0, 0.0, -0.3), (0.0, 0.0, 0.0), (0.2, 0.0, 0.4))
+    turning.cycles.use_motion_blur = False  # has no say here
+    bending = plane(0.4, material(DIFFUSE), place(at=(0.0, 0.6, 0.4), turn=(80.0, 0.0, 0.0)))
+    bending.shape_key_add(name="Basis")
+    key = bending.shape_key_add(name="Bent")
+    key.data[0].co.z += 0.5
+    animate(key, "value", 0.0, 0.4, 1.0)
+    pane = plane(2.0, material(PRINCIPLED, Alpha=0.0), place(at=(0.0, -1.0, 0.0), turn=(90.0, 0.0, 0.0)))
+    animate(pane, "location", (-1.0, -1.0, 0.0), (0.0, -1.0, 0.0), (1.0, -1.0, 0.0))
+    light("POINT", 50.0, place(at=(0.0, -1.5, 3.0)))
+    seen_from = camera((0.3, -3.0, 1.2), (0.0, 0.0, 0.0))
+    animate(seen_from, "location", (0.25, -3.0, 1.2), (0.3, -3.0, 1.2), (0.3, -2.9, 1.2))
+    animate(seen_from.data, "lens", 48.0, 50.0, 51.0)
+    scene.view_layers[0].use_pass_vector = True
+    scene.frame_set(FRAME)
+    return scene
+
+
+def cycles_vectors(scene: bpy.types.Scene, path) -> np.ndarray:
+    """(H, W, 4), row 0 at the bottom."""
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", NOT_FILTERED
+    scene.render.filepath = str(path / "cycles.exr")
+    bpy.ops.render.render(write_still=True)
+    with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:
+        channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
+    return np.stack([channels[f"ViewLayer.Vector.{letter}"][::-1] for letter in "XYZW"], axis=-1)
+
+
+def test_vectors_are_those_of_cycles(renderer, moving, tmp_path):
+    """Not of orthographic cameras: those of Cycles are of a perspective before and after."""
+    expected = cycles_vectors(moving, tmp_path)
+    scene = taken_scene()
+    assert scene.neighbors is not None and scene.shutter is None and scene.warnings == []
+    scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64)
+    vectors = renderer.render(scene).frame.passes["Vector"]
+    same = np.isclose(vectors, expected, rtol=1e-2, atol=2e-2).all(axis=-1)
+    assert same.mean() > 0.97, "more than edges differ"
+    assert (np.abs(expected).max(axis=(0, 1)) > 2.0).all()
+
+
+def test_with_motion_blur_there_are_none(renderer, moving):
+    moving.render.use_motion_blur = True
+    scene = taken_scene()
+    assert scene.neighbors is None and scene.shutter is not None
+    scene.settings = scene.settings.with_values(iterations=1, photons=64)
+    assert not renderer.render(scene).frame.passes["Vector"].any()
