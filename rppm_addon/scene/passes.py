@@ -133,7 +133,7 @@ PASSES = (
         PassKind.COLOR,
         Accumulation.SUM,
         nothing=1.0,
-        description="A pass to multiply a background with: 1, and at shadow catchers the share of the light that arrives",
+        description="A pass to multiply a background with: the share of the light that arrives at catchers, else 1",
     ),
     RenderPass(
         "Debug Sample Count",

@@ -43,6 +43,11 @@ class RecordingLayout:
         assert hasattr(bpy.types, panel) and icon in ICONS
         self.record.popovers.append(panel)
 
+    def template_list(self, kind, _identifier, data, name, active_data, active_name, **_):
+        assert hasattr(bpy.types, kind)
+        assert name in data.bl_rna.properties and active_name in active_data.bl_rna.properties
+        self.record.properties.append(name)
+
     def template_preview(self, owner):
         self.record.templates.append(owner)
 

@@ -131,7 +131,7 @@ def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, other_mappe
     radiance = (left_out * before.radiance.astype(np.float64) + (LAST - left_out) * part.radiance) / LAST
     np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
     np.testing.assert_array_equal(before.pass_counts + part.pass_counts, whole.pass_counts)
-    merged = MergedPasses()
+    merged = MergedPasses(FILM_PASSES)
     for state in (before, part):
         merged.add(state.passes, state.pass_counts, state.iterations_in_film)
     assert merged.result().keys() == whole.passes.keys()

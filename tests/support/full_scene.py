@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 from rppm_addon.scene import (
+    AovOutput,
     AttributeDomain,
     Camera,
     CameraMovement,
@@ -38,6 +39,7 @@ def graph_of_everything() -> NodeGraph:
     ramp = graph.add("val_to_rgb", "color", table=table, options={"constant": True}, fac=image)
     graph.surface = graph.add("bsdf_diffuse", "bsdf", color=ramp)
     graph.normal = graph.add("bump", "normal", height=0.5, normal=(0.0, 0.0, 1.0))
+    graph.aovs = [AovOutput("Mask", color=ramp, value=0.25), AovOutput("Tint", (0.1, 0.2, 0.3))]
     return graph
 
 
@@ -79,6 +81,9 @@ def full_scene() -> Scene:
             [Deformation(1, np.array([0, 1.0]), rng.random((2, 4, 3), np.float32), rng.random((2, 4, 3), np.float32))],
             CameraMovement(np.array([0, 1.0]), rng.random((2, 4, 4)), rng.random((2, 4))),
         ),
+        neighbors=Shutter(np.ones(1), [Movement(1, np.array([0, 0.5, 1]), rng.random((3, 4, 4)))]),
+        asset_names={"object": "house"},
+        stamps={"Camera": "c"},
         warnings=["w"],
     )
 
