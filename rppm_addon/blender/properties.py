@@ -164,7 +164,7 @@ class RppmViewLayerProperties(bpy.types.PropertyGroup):
     """Switches of the passes for which Blender's view layers have none."""
 
     __annotations__ = {
-        entry.own_switch: BoolProperty(name=entry.label, description=entry.description)
+        entry.own_switch: BoolProperty(name=entry.label, description=entry.description, update=_passes_edited)
         for entry in PASSES
         if entry.own_switch
     }
