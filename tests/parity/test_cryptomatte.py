@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import OpenEXR
 import pytest
+from support.moving import animate, blur, taken_scene
 
 from rppm_addon.scene.cryptomatte import LAYERS, identifiers_of, metadata, names_in
 
@@ -74,3 +75,24 @@ def test_coverage_and_names_are_those_of_cycles(renderer, things, tmp_path):
             np.testing.assert_allclose(found, expected, atol=2 * 2.5 / np.sqrt(SAMPLES), err_msg=f"{layer} {name}")
             assert np.abs(found - expected).mean() < 0.01
     assert set(names_in("CryptoAsset", scene)) == {"Mesh", "Mesh.001", "Mesh.003", "Mesh.004", "Mesh.005"}
+
+
+def test_coverage_of_what_is_blurred_is_that_of_cycles(renderer, tmp_path):
+    scene = new_scene(resolution=32, world=0.3)
+    plane(3.0, material(DIFFUSE), place(at=(0.0, 0.0, -0.5)))
+    animate(ball(0.4, material(DIFFUSE), place()), "location", (-1.0, 0.0, 0.2), (0.0, 0.0, 0.2), (1.0, 0.0, 0.2))
+    light("POINT", 10.0, place(at=ALL_ROUND))
+    camera((0.0, -3.0, 1.2), (0.0, 0.0, 0.0))
+    layer = scene.view_layers[0]
+    layer.use_pass_cryptomatte_object, layer.pass_cryptomatte_depth = True, 2
+    blur()
+    theirs, _ = cycles_file(scene, tmp_path)
+    exported = taken_scene()
+    exported.settings = exported.settings.with_values(iterations=SAMPLES, photons=64, filter_width=1.5)
+    mine = renderer.render(exported).frame.passes
+    for name in ("Mesh", "Mesh.001"):
+        expected, found = coverage(theirs, "CryptoObject", name), coverage(mine, "CryptoObject", name)
+        assert found.sum() == pytest.approx(expected.sum(), rel=0.01)
+        # Cycles' moments are random in each pixel.
+        np.testing.assert_allclose(found, expected, atol=2 * 2.5 / np.sqrt(SAMPLES), err_msg=name)
+        assert 0.2 < np.median(expected[(expected > 0.05) & (expected < 0.95)]) < 0.8
