@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which surface of a camera path the passes are of: as in Cycles the first that does not let more than half of the light
-// straight through.
+// Which surface of a camera path the passes are of: as in Cycles the first that does not let more than half of the
+// light straight through.
 
 const float MOSTLY_TRANSPARENT = 0.5;
 
