@@ -11,7 +11,7 @@ import numpy as np
 from ..scene import Scene, cryptomatte
 from ..scene.errors import RppmError, SceneError
 from ..scene.passes import COMBINED
-from ..scene.quantities import clock_text, count_text
+from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver, current_observer
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
@@ -31,6 +31,7 @@ PICTURE_SECONDS = 1.0
 """Least time between two pictures shown; the first one comes after the first iteration."""
 PICTURE_SHARE = 0.2
 """Most of the time that showing pictures may take."""
+MEGABYTE = 1 << 20
 WARNINGS_SHOWN = 8
 """Warnings reported one by one; the log has them all."""
 
@@ -63,7 +64,7 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     if not observer.on_scene(scene):
         return
     engine.update_stats("", "Preparing the graphics device")
-    job = _FinalJob(engine, scene, depsgraph.view_layer_eval.name, observer)
+    job = _FinalJob(engine, scene, depsgraph, observer)
     try:
         result = _render_scene(engine, scene, job)
         job.show(result.frame)
@@ -145,6 +146,7 @@ def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
         statistics.source_photons,
         statistics.density_estimation,
         statistics.first_photon_hits,
+        statistics.noise,
         tuple(statistics.warnings),
     )
 
@@ -178,11 +180,16 @@ def _report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> Non
 class _FinalJob(RenderJob):
     """Shows a render in the engine's result and tells the observer."""
 
-    def __init__(self, engine: bpy.types.RenderEngine, scene: Scene, layer: str, observer: RenderObserver) -> None:
+    def __init__(
+        self, engine: bpy.types.RenderEngine, scene: Scene, source: bpy.types.Depsgraph, observer: RenderObserver
+    ) -> None:
+        """source: what the scene was exported from."""
         self._engine = engine
         self._scene = scene
-        self._layer = layer
+        self._layer = source.view_layer_eval.name
+        self._names = f"{source.scene.name}, {self._layer}"
         self._observer = observer
+        self._peak_bytes = 0
         self._result = None
         self._shown_at = -1e9
         self._showing_seconds = 0.0
@@ -204,7 +211,17 @@ class _FinalJob(RenderJob):
     def on_progress(self, progress: "Progress") -> bool:
         self._observer.on_progress(progress)
         self._engine.update_progress(progress.fraction)
-        self._engine.update_stats("", status_text(progress, self._scene))
+        self._peak_bytes = max(self._peak_bytes, progress.memory_bytes)
+        used, peak = progress.memory_bytes / MEGABYTE, self._peak_bytes / MEGABYTE
+        self._engine.update_memory_stats(memory_used=used, memory_peak=peak)
+        text = status_text(progress, self._scene)
+        remaining = progress.remaining_seconds
+        if bpy.app.background:  # farm managers read it, as they read Cycles'
+            left = "" if remaining is None else f"Remaining:{clock_text(remaining, with_hours=True)} | "
+            text = f"{left}Mem:{used:.2f}M, Peak:{peak:.2f}M | {self._names} | {text}"
+        elif remaining is not None:
+            text += f" | Remaining {clock_text(remaining)}"
+        self._engine.update_stats("", text)
         if progress.iteration in (0, progress.iterations):
             return False  # nothing to see yet, or shown at the end
         waited = time.monotonic() - self._shown_at
@@ -246,6 +263,6 @@ def status_text(progress: "Progress", scene: Scene) -> str:
     if progress.iteration == 0:
         return f"Sample 0/{progress.iterations} | Building the deep cubemap of {scene.triangle_count} triangles"
     text = f"Sample {progress.iteration}/{progress.iterations} | {count_text(progress.photons)} photons"
-    if 0.0 < progress.fraction < 1.0:
-        text += f" | Remaining {clock_text(progress.elapsed_seconds * (1.0 / progress.fraction - 1.0))}"
+    if progress.noise > 0.0:
+        text += f" | Noise {noise_text(progress.noise, progress.noise_threshold)}"
     return text

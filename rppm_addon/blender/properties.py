@@ -42,6 +42,7 @@ VIEWPORT_PHOTONS = 1 << 14
 VIEWPORT_ITERATIONS = 4 * DEFAULTS.iterations
 """A viewport at rest goes on for longer, as its iterations have fewer photons."""
 
+VIEWPORT_SAMPLING = {"use_adaptive_sampling": False, "adaptive_threshold": 0.1, "adaptive_min_samples": 0}
 VIEWPORT_DENOISING = {
     "use_denoising": False,
     "denoising_input_passes": DenoisingInputPasses.RGB_ALBEDO,
@@ -49,7 +50,8 @@ VIEWPORT_DENOISING = {
     "denoising_quality": DenoisingQuality.BALANCED,
     "denoising_start_sample": DEFAULTS.denoising_start_sample,
 }
-"""What viewports have apart, by field of RenderSettings, with their defaults: Cycles'."""
+VIEWPORT_APART = {**VIEWPORT_SAMPLING, **VIEWPORT_DENOISING}
+"""What viewports have apart, by field of RenderSettings, with their defaults: Cycles', but for what is off at first."""
 
 _UNITS = {
     "": {},
@@ -80,9 +82,9 @@ def setting_property(info: SettingInfo, default: object) -> object:
         "soft_max": info.soft_maximum,
     }
     ends = {name: end + info.property_offset for name, end in ends.items() if end is not None}
-    steps = {"step": info.step} if info.step else {}
+    shown = {name: value for name, value in (("step", info.step), ("precision", info.precision)) if value}
     make: Callable = IntProperty if isinstance(default, int) else FloatProperty
-    return make(**texts, **ends, **_UNITS[info.unit], **steps, default=default + info.property_offset)
+    return make(**texts, **ends, **_UNITS[info.unit], **shown, default=default + info.property_offset)
 
 
 class RppmSceneProperties(bpy.types.PropertyGroup):
@@ -119,8 +121,15 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         ),
         **{
             viewport_property(name): setting_property(_INFOS[name], default)
-            for name, default in VIEWPORT_DENOISING.items()
+            for name, default in VIEWPORT_APART.items()
         },
+        "film_exposure": FloatProperty(
+            name="Exposure",
+            description="Factor on the brightness of the whole picture and of all passes that are light",
+            default=1.0,
+            min=0.0,
+            max=10.0,
+        ),
         "preview_pause": BoolProperty(
             name="Pause Preview",
             description="Hold the picture of all rendered viewports and leave the graphics device alone",

@@ -56,7 +56,8 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
         photons = settings.photons_for(width, height)
         segments, passes, aovs = settings.photon_path_length, settings.film_passes, settings.aovs
-        return expected_memory(width, height, photons, segments, rasterized, passes, aovs)
+        noise = settings.use_adaptive_sampling
+        return expected_memory(width, height, photons, segments, rasterized, passes, aovs, noise)
 
     scene_bytes = None
     if report is not None:

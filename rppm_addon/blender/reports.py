@@ -52,6 +52,8 @@ class RenderReport:
     """The route that was taken, a name of DensityEstimation; empty before the first iteration."""
     first_photon_hits: str = ""
     """The route of the last iteration, a name of FirstPhotonHits; empty before the first."""
+    noise: float = 0.0
+    """When it was measured last, in the unit of the noise threshold; 0 without one."""
     warnings: tuple[str, ...] = ()
     warning_count: int = 0
     """All of them, where ``warnings`` was cut short."""
@@ -97,6 +99,7 @@ def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
         source_photons=status.source_photons,
         density_estimation=status.density_estimation,
         first_photon_hits=status.first_photon_hits,
+        noise=status.noise,
         warnings=tuple(status.warnings),
     )
 

@@ -10,7 +10,7 @@ from bpy.app.handlers import persistent
 
 from ..scene import Camera, RenderSettings, Scene
 from ..scene.errors import RppmError
-from ..scene.quantities import rate_text
+from ..scene.quantities import noise_text, rate_text
 from ..scene.sharing import share
 from ..session.process.client import ProcessState
 from ..session.process.sessions import SessionKind, SessionStatus
@@ -226,7 +226,8 @@ def status_text(status: SessionStatus, paused: bool, radius: str, letters: int) 
         state = "Paused" if paused else "Finished"
     else:
         state = f"{rate_text(status.photons_per_second)} photons/s"
-    parts = [f"Sample {status.iteration}/{status.iterations}", state, f"Radius {radius}"]
+    noise = [f"Noise {noise_text(status.noise, status.noise_threshold)}"] if status.noise > 0.0 else []
+    parts = [f"Sample {status.iteration}/{status.iterations}", state, *noise, f"Radius {radius}"]
     while len(parts) > 1 and len(" | ".join(parts)) > letters:
         parts.pop()
     return " | ".join(parts)

@@ -10,6 +10,7 @@ from ..scene.errors import SettingsError
 from ..scene.settings import CUBEMAP_COSTS
 from .checkpoints import MINUTES
 from .frame_numbers import frame_numbers
+from .setting_options import add_setting, add_settings
 
 _Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
@@ -66,12 +67,7 @@ def _add_render(commands: _Commands, scene: argparse.ArgumentParser, common: arg
         "scene's view transform, of a saved scene by Standard); may be repeated",
     )
     limit = render.add_mutually_exclusive_group()
-    limit.add_argument(
-        "--samples",
-        type=_positive_integer,
-        metavar="N",
-        help="samples: each sends photons and looks at every pixel once",
-    )
+    add_setting(limit, "iterations")
     limit.add_argument("--seconds", type=_positive_number, metavar="S", help="render so long instead")
     limit.add_argument(
         "--samples-range",
@@ -86,7 +82,6 @@ def _add_render(commands: _Commands, scene: argparse.ArgumentParser, common: arg
         metavar="A..B",
         help="frames of a .blend file: 1..100, 1..100..5 (every fifth), 1,5,9; PICTURE has #### where the number goes",
     )
-    render.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of a sample")
     render.add_argument(
         "--snapshots",
         type=_snapshot_marks,
@@ -115,6 +110,7 @@ def _add_render(commands: _Commands, scene: argparse.ArgumentParser, common: arg
         help="go on from the checkpoint, bit for bit, and begin anew where it is missing; of --frames leave out those "
         "whose files are there",
     )
+    add_settings(render)
 
 
 def _add_merge(commands: _Commands, common: argparse.ArgumentParser) -> None:
@@ -151,9 +147,8 @@ def _add_farm(commands: _Commands, scene: argparse.ArgumentParser, common: argpa
     what.add_argument("--frames", type=_frames, metavar="A..B", help="an animation: 1..100, 1..100..5 or 1,5,9")
     what.add_argument("--parts", type=_positive_integer, metavar="K", help="a still, its samples in so many parts")
     limit = farm.add_mutually_exclusive_group()
-    limit.add_argument("--samples", type=_positive_integer, metavar="N", help="samples of a frame, or of the still")
+    add_setting(limit, "iterations")
     limit.add_argument("--seconds", type=_positive_number, metavar="S", help="render each frame so long instead")
-    farm.add_argument("--photons", type=_positive_integer, metavar="N", help="photons of a sample")
     where = farm.add_mutually_exclusive_group()
     where.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler, such as tcp://host:8786")
     where.add_argument(
@@ -171,6 +166,7 @@ def _add_farm(commands: _Commands, scene: argparse.ArgumentParser, common: argpa
         "--retries", type=_count, default=2, metavar="N", help="how often a frame or part is tried again; default: 2"
     )
     farm.add_argument("--overwrite", action="store_true", help="make pictures anew that are there")
+    add_settings(farm)
 
 
 def _add_export(commands: _Commands, scene: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:

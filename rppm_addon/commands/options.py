@@ -11,6 +11,7 @@ from ..scene.errors import SettingsError
 from .data_paths import split_assignment
 from .frame_numbers import has_place, path_of_frame
 from .recorder import apply_settings
+from .setting_options import given_settings
 
 
 def is_blend(path: Path) -> bool:
@@ -21,26 +22,28 @@ def is_blend(path: Path) -> bool:
     return suffix == ".blend"
 
 
+_OF_BLEND_FILES = frozenset({"film_exposure", "cubemap_center_object"})
+"""Properties of scene.rppm that are members of a scene and no render settings."""
+
+
 def split_values(values: list[str]) -> tuple[dict[str, object], list[tuple[str, str]]]:
     """Split --set into render settings by name, and data paths of a .blend file."""
     settings: dict[str, object] = {}
     data_values = []
     for text in values:
         path, value = split_assignment(text)
-        if path.startswith("rppm."):
-            settings[path.removeprefix("rppm.")] = value
+        name = path.removeprefix("rppm.")
+        if name != path and name not in _OF_BLEND_FILES:
+            settings[name] = value
         else:
             data_values.append((path, value))
     return settings, data_values
 
 
 def values_and_limits(options: argparse.Namespace) -> tuple[dict[str, object], list[tuple[str, str]]]:
-    """What split_values makes of --set, with --samples and --photons among the settings."""
+    """What split_values makes of --set, with the options that are settings over it."""
     settings, data_values = split_values(options.values)
-    for name in ("samples", "photons"):
-        if getattr(options, name) is not None:
-            settings[name] = getattr(options, name)
-    return settings, data_values
+    return settings | given_settings(options), data_values
 
 
 def seconds_of(options: argparse.Namespace) -> float | None:

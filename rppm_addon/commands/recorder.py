@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..pictures import Placement, standard_view, write_exr
 from ..scene import RenderSettings, Scene
-from ..scene.quantities import count_text
+from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver
 from .checkpoints import StillKeeper, attributes_of, placement_of
 from .picture_files import write_png
@@ -107,7 +107,13 @@ class RenderRecorder(RenderObserver):
             fraction = elapsed / self.request.seconds
         else:
             words += f" of {progress.iterations}"
-        self._bar.show(fraction, f"{words}, {count_text(progress.photons)} photons, {elapsed:.1f} s")
+        words += f", {count_text(progress.photons)} photons"
+        if progress.noise > 0.0:
+            words += f", noise {noise_text(progress.noise, progress.noise_threshold)}"
+        words += f", {elapsed:.1f} s"
+        if progress.remaining_seconds is not None:
+            words += f", {clock_text(progress.remaining_seconds)} left"
+        self._bar.show(fraction, words)
 
     def should_stop(self) -> bool:
         """As RenderObserver has it."""

@@ -115,8 +115,8 @@ def _render_frames(
 def _still_keeper(
     options: argparse.Namespace, settings: dict[str, object], source: dict[str, object]
 ) -> StillKeeper | None:
-    """Who keeps the still, if it is to be kept or rendered in part; the range's length and no time limit enter the
-    settings."""
+    """Who keeps the still, if it is to be kept or rendered in part; the range's length enters the settings, and that
+    nothing else ends the render."""
     if options.samples_range is None and options.checkpoint is None and not options.resume:
         return None
     first, part = 0, None
@@ -127,7 +127,7 @@ def _still_keeper(
                 "--samples-range writes one part for rppm merge; give one -o PART.exr and no --snapshots"
             )
         part = options.output[0]
-        settings |= {"samples": end - first, "time_limit": 0.0}
+        settings |= {"samples": end - first, "time_limit": 0.0, "use_adaptive_sampling": False}
     elif options.checkpoint in options.output:
         raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
     request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)

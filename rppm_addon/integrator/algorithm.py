@@ -22,7 +22,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     yield
     for band in stages.bands:
         stages.clear(context)
-        view = jittered_view(context.scene.camera, context.settings.filter_width, band, iteration)
+        view = jittered_view(context.scene.camera, context.settings, band, iteration)
         camera_hits.find(context, importons, view, band, iteration)  # DirectCameraHits
         yield
         for segment in range(context.settings.camera_path_length):  # TraceImportons
@@ -44,6 +44,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             stages.final_gather.share(context, estimator.sums, importons.radiances, band, iteration, radii)
             film.accumulate(context, importons.radiances, estimator.sums, band, iteration)
             film.add_aovs(importons, band, iteration)
+            stages.noise_estimate.add(context, importons.radiances, estimator.sums, band, iteration)
         if iteration.precedes_learning:
             photons_taken.append(estimator.sums.photons_taken(band.pixel_count)[:, 0])
             fewer = learning.fewer(iteration)

@@ -82,14 +82,17 @@ def expected_memory(
     rasterized: bool = False,
     passes: Sequence[str] = RenderSettings.passes,
     aovs: Sequence[str] = (),
+    measures_noise: bool = False,
 ) -> Memory:
     """The buffers whose size follows from the settings, known before anything is rendered.
 
     rasterized: whether photons are splatted by rasterization, not gathered from a grid.
     passes: names of those that are rendered; aovs: as the settings have them.
+    measures_noise: whether there is a noise threshold.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
-    sizes = StageSizes(width, height, photons, segments, passes_named(passes) + aov_passes(aovs))
+    rendered = passes_named(passes) + aov_passes(aovs)
+    sizes = StageSizes(width, height, photons, segments, rendered, measures_noise=measures_noise)
     groups = expected_groups(sizes)
     route = DensityEstimation.RASTERIZED if rasterized else DensityEstimation.GRID
     groups["density estimation"] |= ROUTES[route].expected_bytes(sizes)

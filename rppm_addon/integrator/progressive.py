@@ -143,6 +143,11 @@ class ProgressivePhotonMapper:
         """How many iterations the film is the mean of."""
         return max(self.iteration - self._skipped, 0)
 
+    def measure_noise(self) -> float:
+        """That of the film's noisiest block (NoiseEstimate.measure); only with use_adaptive_sampling."""
+        estimate, exposure = self.stages.noise_estimate, self.scene.exposure
+        return estimate.measure(self.device_scene.context, self.film.radiance, exposure, self._skipped, self.iteration)
+
     @property
     def splat_radii(self) -> tuple[float, float]:
         """r_max of the current iteration and the wide radius of diffused photons, meters."""

@@ -39,6 +39,9 @@ class RenderState:
     """(cells, 2) uint32 of the guide: photons that left through each cell, and those that were of use."""
     learned: np.ndarray | None
     """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
+    half: np.ndarray | None = None
+    """(height, width, 3) float32: as radiance, that of half of the iterations (NoiseEstimate); None where the picture
+    does not end with its noise."""
 
     @property
     def iterations_in_film(self) -> int:
@@ -61,6 +64,7 @@ def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: 
         radius_factors=stages.caustic_radii.read().reshape(film.height, film.width),
         tallies=lights.guide.read_tallies(),
         learned=lights.guide.learned,
+        half=stages.noise_estimate.read(),
     )
 
 
@@ -83,6 +87,11 @@ def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning
         film.restore(state.radiance, state.passes, state.pass_counts)
     except KeyError as error:
         raise CheckpointError(f"the checkpoint has no pass {error}; begin anew") from error
+    if not stages.noise_estimate.restore(state.half):
+        raise CheckpointError(
+            "the checkpoint is of a render without a noise threshold; go on without one (use_adaptive_sampling) or "
+            "begin anew"
+        )
     stages.caustic_radii.restore(state.radius_factors)
     learning.photon_counts = state.photon_counts
     learning.wide_radius, learning.diffused_photons_found = state.wide_radius, state.diffused_photons_found

@@ -10,7 +10,7 @@ from .motion import CameraMovement, Deformation, Movement, Shutter
 from .moving_scene import MovingScene
 from .node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from .scene import Scene
-from .settings import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
+from .settings import DensityEstimation, DirectLight, FirstPhotonHits, PixelFilter, RenderSettings
 from .storage import load_scene, save_scene
 
 __all__ = [
@@ -38,6 +38,7 @@ __all__ = [
     "Panorama",
     "PanoramaKind",
     "Particle",
+    "PixelFilter",
     "RayVisibility",
     "RenderSettings",
     "Scene",

@@ -17,6 +17,9 @@ UNSEEN = frozenset(
     {
         "iterations",
         "time_limit",
+        "use_adaptive_sampling",
+        "adaptive_threshold",
+        "adaptive_min_samples",
         "iterations_per_frame",
         "density_estimation",
         "first_photon_hits",

@@ -28,11 +28,18 @@ def seconds_text(seconds: float) -> str:
     return f"{hours}:{minutes % 60:02d}:{whole % 60:02d} h" if hours else f"{minutes}:{whole % 60:02d} min"
 
 
-def clock_text(seconds: float) -> str:
-    """A time that is left, to whole seconds: 00:04, 12:30, 1:02:05."""
+def clock_text(seconds: float, with_hours: bool = False) -> str:
+    """A time that is left, to whole seconds: 00:04, 12:30, 1:02:05; with hours 00:12:30."""
     whole = round(seconds)
     minutes, hours = whole // 60 % 60, whole // 3600
+    if with_hours:
+        return f"{hours:02d}:{minutes:02d}:{whole % 60:02d}"
     return f"{hours}:{minutes:02d}:{whole % 60:02d}" if hours else f"{minutes:02d}:{whole % 60:02d}"
+
+
+def noise_text(noise: float, threshold: float) -> str:
+    """Noise and where a render ends: 0.0213 of 0.01."""
+    return f"{noise:.3g} of {threshold:g}"
 
 
 def rate_text(rate: float) -> str:

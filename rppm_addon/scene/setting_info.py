@@ -34,6 +34,8 @@ class SettingInfo:
     """"m", "s", "pixels", or "fraction" for what is shown as a slider from 0 to 1."""
     zero: str = ""
     """What 0 stands for: "automatic", "no limit"."""
+    precision: int = 0
+    """Digits after the point that Blender shows; 0 is Blender's own."""
     step: int = 0
     """Of Blender's buttons; 0 is Blender's own."""
     choices: Mapping[enum.Enum, tuple[str, str]] = field(default_factory=dict)

@@ -6,6 +6,7 @@ Fields have the paper's names; where Cycles has another name for users, ``proper
 
 import dataclasses
 import enum
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -53,6 +54,14 @@ class FirstPhotonHits(enum.Enum):
     """Through the deep cubemap, like all later segments."""
 
 
+class PixelFilter(enum.Enum):
+    """How light from beside a pixel counts. Names are Cycles'."""
+
+    BOX = "BOX"
+    GAUSSIAN = "GAUSSIAN"
+    BLACKMAN_HARRIS = "BLACKMAN_HARRIS"
+
+
 class DenoisingInputPasses(enum.Enum):
     """What guides denoising. Names are Cycles'."""
 
@@ -88,6 +97,31 @@ class RenderSettings:
         property_name="samples",
         minimum=1,
         soft_maximum=4096,
+    )
+    use_adaptive_sampling: bool = setting(
+        False,
+        "Noise Threshold",
+        "Stop before the last sample once every part of the picture is less noisy than the threshold. The blur of the "
+        "photons' radius is no noise and does not count",
+    )
+    adaptive_threshold: float = setting(
+        0.01,
+        "Noise Threshold",
+        "Noise at which the render stops, in Cycles' unit: the error of red, green and blue over the square root of "
+        "their sum, the mean of 16 x 16 pixels. Lower values take longer: half the noise about four times the samples",
+        minimum=0.0001,
+        maximum=1.0,
+        soft_minimum=0.001,
+        precision=4,
+    )
+    """Of the noisiest block (integrator/stages/noise_estimate.py)."""
+    adaptive_min_samples: int = setting(
+        0,
+        "Min Samples",
+        "Samples that are rendered however low the noise is; 0 is automatic, by the threshold",
+        minimum=0,
+        maximum=4096,
+        zero="automatic",
     )
     time_limit: float = setting(
         0.0,
@@ -275,10 +309,20 @@ class RenderSettings:
         maximum=16384,
         zero="automatic",
     )
+    pixel_filter_type: PixelFilter = setting(
+        PixelFilter.BLACKMAN_HARRIS,
+        "Filter Type",
+        "Pixel filter: how much light from beside a pixel counts for it",
+        choices={
+            PixelFilter.BOX: ("Box", "What is within a pixel counts alike: sharp, and jagged where things are small"),
+            PixelFilter.GAUSSIAN: ("Gaussian", "A Gaussian of the filter's width"),
+            PixelFilter.BLACKMAN_HARRIS: ("Blackman-Harris", "A Blackman-Harris window of the filter's width"),
+        },
+    )
     filter_width: float = setting(
         1.5,
         "Filter Width",
-        "Width of the Blackman-Harris pixel filter; 0 looks through the middle of pixels only",
+        "Width of the pixel filter, a box being as wide as the pixel; 0 looks through the middle of pixels only",
         minimum=0.0,
         maximum=20.0,
         soft_maximum=10.0,
@@ -370,6 +414,11 @@ class RenderSettings:
             raise SettingsError(
                 f"cubemap_resolution is {resolution}; set it to 0 (automatic) or a power of two from 16 to 16384"
             )
+
+    @property
+    def least_iterations(self) -> int:
+        """Before the noise can end a render. Where automatic, as Cycles has it: 64 for a threshold of 0.01."""
+        return self.adaptive_min_samples or math.ceil(16.0 / self.adaptive_threshold**0.3)
 
     @property
     def denoising_features(self) -> tuple[str, ...]:

@@ -37,6 +37,7 @@ _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
 _FILM, _GUIDE = "film", "guide"
 _COUNTS = ("Pass Counts.X", "Pass Counts.Y")
+_HALF = ("Half.R", "Half.G", "Half.B")
 _BLOCK = 1 << 20
 
 
@@ -149,6 +150,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             layer("Radius Factor.V"),
             pairs("left", "contributed"),
             pairs("learned.left", "learned.contributed") if "learned.left" in guide else None,
+            layer(*_HALF) if _HALF[0] in film else None,
         )
         inspections = {entry.name: layer(*entry.layers) for entry in passes if not entry.comes_of_iterations}
         return summary, Pause(state, summary.device, summary.radius_meters, inspections)
@@ -165,6 +167,8 @@ def _film_channels(
         channels |= {name: values[..., index] for index, name in enumerate(entry.layers)}
     if state.pass_counts.size:
         channels |= {name: state.pass_counts[..., index] for index, name in enumerate(_COUNTS)}
+    if state.half is not None:
+        channels |= {name: state.half[..., index] for index, name in enumerate(_HALF)}
     return {name: np.ascontiguousarray(array[::-1]) for name, array in channels.items()}
 
 

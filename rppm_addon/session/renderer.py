@@ -19,6 +19,8 @@ from ..scene.passes import DEEP_CUBEMAP, PASSES, SHADOW_CATCHER
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
 from .denoised_pictures import finished_frame, finished_result, wanted_frame
+from .noise_threshold import NoiseThreshold
+from .remaining_time import RemainingTime
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
 from .time_limit import TimeLimit
 
@@ -97,6 +99,8 @@ class SlicedRender:
         self.iterations = 0
         """Those in the film that are complete."""
         self._limit = TimeLimit(scene.settings.time_limit)
+        self._noise = NoiseThreshold(scene.settings)
+        self._remaining = RemainingTime()
         self._before: RenderResult | None = None
         """What there was before an iteration that may be given up: such a one leaves the film unfinished."""
         self._late_warnings: list[str] = []
@@ -106,7 +110,7 @@ class SlicedRender:
         """Whether the photons and the film are those of a complete iteration, or of none."""
 
     def slices(self) -> Iterator[None]:
-        """Render the settings' iterations, or as many as the time limit allows (TimeLimit), but one.
+        """Render the settings' iterations, or as many as the time limit (TimeLimit) or the noise asks for, but one.
 
         Raises the errors of scene/errors.py.
         """
@@ -118,17 +122,27 @@ class SlicedRender:
         if inspected:
             self._inspections = {DEEP_CUBEMAP.name: mapper.inspect_deep_cubemap()[..., :3]}
         yield from self._begin()
+        self._measure_noise()
         self._report()
-        while self.iterations < settings.iterations and self._limit.allows_another(self._elapsed):
+        while not self._is_done and self._limit.allows_another(self._elapsed):
             yield
             if not (yield from self._iterate()):
                 break
+            self._measure_noise()
             self._report()
             self._take_snapshots()
             if time.perf_counter() - self._kept >= self._continuation.interval:
                 self.keep()
         if self.iterations < settings.iterations:
             self._take_snapshots(settings.time_limit)
+
+    @property
+    def _is_done(self) -> bool:
+        return self.iterations >= self._scene.settings.iterations or self._noise.is_reached
+
+    def _measure_noise(self) -> None:
+        if self._noise.is_due(self.iterations):
+            self._noise.add(self.iterations, self._mapper.measure_noise())
 
     def _iterate(self) -> Generator[None, None, bool]:
         """One more iteration; returns whether it has come to its end before time was up."""
@@ -147,6 +161,7 @@ class SlicedRender:
         self.iterations += 1
         self.between_iterations = True
         self._before = None
+        self._remaining.add(self._elapsed)
         if self._limit.is_first_too_long(self._elapsed):
             self._late_warnings = [
                 f"the first sample ended after {self._elapsed:.1f} s, past the time limit of {self._limit.limit:g} s: "
@@ -203,9 +218,20 @@ class SlicedRender:
     @property
     def progress(self) -> Progress:
         """How far the render is."""
-        settings = self._scene.settings
-        photons = self._mapper.photons_emitted(self.iterations)
-        return Progress(self.iterations, settings.iterations, self._elapsed, photons, settings.time_limit)
+        settings, noise = self._scene.settings, self._noise
+        iterations = min(settings.iterations, noise.expected_iterations or settings.iterations)
+        return Progress(
+            self.iterations,
+            settings.iterations,
+            self._elapsed,
+            self._mapper.photons_emitted(self.iterations),
+            settings.time_limit,
+            noise.expected_iterations,
+            self._remaining.seconds(iterations - self.iterations, self._elapsed, settings.time_limit),
+            noise.noise,
+            noise.threshold,
+            sum(self._mapper.memory_bytes.values()),
+        )
 
     def frame(self) -> Frame:
         """The picture so far, with its noise and all passes of the film."""
@@ -238,6 +264,7 @@ class SlicedRender:
             radius_meters=mapper.splat_radii[0],
             density_estimation=mapper.density_estimation.name,
             first_photon_hits=mapper.first_photon_hits.name,
+            noise=self._noise.noise,
             stage_seconds=mapper.timers.seconds,
             memory_bytes=mapper.memory_bytes,
             flux_watts=balance,

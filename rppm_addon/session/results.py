@@ -29,11 +29,21 @@ class Progress:
     elapsed_seconds: float
     photons: int
     time_limit: float = 0.0
+    expected_iterations: int = 0
+    """With which the render is expected to end by its noise; 0 where nothing is known of that."""
+    remaining_seconds: float | None = None
+    """Until the render is expected to end; None before the first iteration."""
+    noise: float = 0.0
+    """When it was measured last; 0 before, and without a threshold."""
+    noise_threshold: float = 0.0
+    """At which the render ends; 0 is none."""
+    memory_bytes: int = 0
+    """On the device."""
 
     @property
     def fraction(self) -> float:
         """Share done, 0 to 1, of the iterations or of the time limit, whichever is nearer its end."""
-        by_iterations = self.iteration / self.iterations
+        by_iterations = self.iteration / min(self.iterations, self.expected_iterations or self.iterations)
         by_time = self.elapsed_seconds / self.time_limit if self.time_limit > 0 else 0.0
         return min(1.0, max(by_iterations, by_time))
 
@@ -53,6 +63,8 @@ class RenderStatistics:
     """The route that was taken, a name of DensityEstimation."""
     first_photon_hits: str = ""
     """The route of the last iteration, a name of FirstPhotonHits."""
+    noise: float = 0.0
+    """Of the noisiest block, in the unit of the noise threshold; 0 where there is none."""
     stage_seconds: dict[str, float] = field(default_factory=dict)
     memory_bytes: dict[str, int] = field(default_factory=dict)
     flux_watts: dict[str, float] = field(default_factory=dict)

@@ -17,10 +17,22 @@ def test_from_cycles_and_back(scene):
     assert own.max_photon_bounces == 5
     for name, value in {"samples": 7, "seed": 3, "max_camera_bounces": 2, "use_animated_seed": False}.items():
         setattr(own, name, value)
-    cycles.pixel_filter_type = "BOX"
+    own.pixel_filter_type, own.film_exposure, own.use_preview_adaptive_sampling = "BOX", 2.0, False
     assert bpy.ops.rppm.copy_to_cycles() == {"FINISHED"}
     assert (cycles.samples, cycles.seed, cycles.max_bounces, cycles.use_animated_seed) == (7, 3, 2, False)
-    assert cycles.pixel_filter_type == "BLACKMAN_HARRIS"
+    assert (cycles.pixel_filter_type, cycles.film_exposure) == ("BOX", 2.0)
+    assert not cycles.use_preview_adaptive_sampling
+
+
+def test_an_automatic_noise_threshold_is_that_of_cycles(scene):
+    cycles, own = scene.cycles, scene.rppm
+    cycles.use_adaptive_sampling, cycles.adaptive_threshold, cycles.samples = True, 0.0, 200
+    cycles.preview_adaptive_threshold, cycles.preview_adaptive_min_samples = 0.2, 9
+    cycles.pixel_filter_type, cycles.film_exposure = "GAUSSIAN", 0.5
+    bpy.ops.rppm.copy_from_cycles()
+    assert own.use_adaptive_sampling and abs(own.adaptive_threshold - 0.005) < 1e-6
+    assert abs(own.preview_adaptive_threshold - 0.2) < 1e-6 and own.preview_adaptive_min_samples == 9
+    assert (own.pixel_filter_type, own.film_exposure) == ("GAUSSIAN", 0.5)
 
 
 def test_what_is_out_of_range_is_brought_into_it(scene):

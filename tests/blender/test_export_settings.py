@@ -8,20 +8,22 @@ import pytest
 from blender_scenes import add_light, export
 
 from rppm_addon.blender.export.settings import export_settings
-from rppm_addon.blender.properties import VIEWPORT_DENOISING, viewport_property
-from rppm_addon.scene import DensityEstimation, DirectLight, FirstPhotonHits, RenderSettings
+from rppm_addon.blender.properties import VIEWPORT_APART, VIEWPORT_DENOISING, VIEWPORT_SAMPLING, viewport_property
+from rppm_addon.scene import DensityEstimation, DirectLight, FirstPhotonHits, PixelFilter, RenderSettings
 from rppm_addon.scene.setting_info import settings_of
 
 # properties that Blender itself has, and what viewports alone have
 ELSEWHERE = {"film_transparent", "passes", "aovs", "denoising_start_sample"}
-# what makes the seed another one, an object of Blender's, exported as a point, and what viewports have apart
+# what makes the seed another one, a member of the scene, an object of Blender's, exported as a point, and what
+# viewports have apart
 BESIDES = {
     "use_animated_seed",
+    "film_exposure",
     "cubemap_center_object",
     "preview_samples",
     "preview_photons",
     "preview_pause",
-    *(viewport_property(name) for name in VIEWPORT_DENOISING),
+    *(viewport_property(name) for name in VIEWPORT_APART),
 }
 
 
@@ -54,12 +56,16 @@ def test_values_are_exported(scene):
     scene.rppm.cubemap_resolution = 64
     scene.rppm.seed = 5
     scene.render.film_transparent = True
-    scene.cycles.film_exposure = 2.5
+    scene.rppm.film_exposure = 2.5
+    scene.rppm.pixel_filter_type = "GAUSSIAN"
+    scene.rppm.use_adaptive_sampling, scene.rppm.adaptive_threshold = True, 0.05
     exported = export(scene)
     settings = exported.settings
     assert (settings.iterations, settings.photons, settings.alpha, settings.seed) == (7, 1234, 0.5, 5)
     assert settings.direct_light is DirectLight.PHOTONS and settings.cubemap_resolution == 64
     assert settings.film_transparent and exported.exposure == 2.5
+    assert settings.pixel_filter_type is PixelFilter.GAUSSIAN
+    assert settings.use_adaptive_sampling and settings.adaptive_threshold == pytest.approx(0.05)
 
 
 def test_a_viewport_has_settings_of_its_own(scene):
@@ -76,8 +82,8 @@ def test_a_viewport_has_settings_of_its_own(scene):
     assert viewport.passes == () and {"Depth", "Deep Cubemap"} <= set(final.passes)
     assert (final.iterations, final.photons, final.time_limit) == (default.iterations, default.photons, 5.0)
     differing = {f.name for f in dataclasses.fields(final) if getattr(final, f.name) != getattr(viewport, f.name)}
-    denoising = {"denoising_input_passes", "denoising_prefilter", "denoising_quality"}
-    assert differing == {"iterations", "photons", "time_limit", "passes"} | denoising
+    apart = {"denoising_input_passes", "denoising_prefilter", "denoising_quality", "adaptive_threshold"}
+    assert differing == {"iterations", "photons", "time_limit", "passes"} | apart
 
 
 def test_a_viewport_is_denoised_as_cycles_does_it(scene):
@@ -91,6 +97,18 @@ def test_a_viewport_is_denoised_as_cycles_does_it(scene):
     assert (viewport.use_denoising, viewport.denoising_start_sample) == (True, 5) and not final.use_denoising
     assert (viewport.denoising_quality.name, final.denoising_quality.name) == ("FAST", "BALANCED")
     assert not export_settings(scene, viewport=True, shown_pass="Depth").use_denoising
+
+
+def test_a_viewport_ends_by_a_noise_of_its_own(scene):
+    names = {viewport_property(name) for name in VIEWPORT_SAMPLING}
+    assert names <= {*dir(scene.cycles)} and set(VIEWPORT_SAMPLING) <= {*dir(scene.cycles)}
+    for name in ("adaptive_threshold", "adaptive_min_samples"):
+        for shown in (name, f"preview_{name}"):
+            assert getattr(scene.rppm, shown) == getattr(scene.cycles, shown), shown
+    scene.rppm.use_preview_adaptive_sampling, scene.rppm.preview_adaptive_threshold = True, 0.25
+    viewport, final = export_settings(scene, viewport=True), export_settings(scene)
+    assert (viewport.use_adaptive_sampling, viewport.adaptive_threshold) == (True, 0.25)
+    assert not final.use_adaptive_sampling
 
 
 def test_what_scripts_and_presets_set_is_exported(scene):
@@ -122,6 +140,8 @@ def test_what_scripts_and_presets_set_is_exported(scene):
 def test_the_ranges_of_the_properties_are_valid_settings(scene):
     for item in scene.rppm.bl_rna.properties:
         if item.type in {"INT", "FLOAT"} and item.identifier != "cubemap_resolution":
+            if item.identifier == "film_exposure":
+                continue
             for value in (item.hard_min, min(item.hard_max, 1e9)):
                 kind = int if item.type == "INT" else float
                 settings = RenderSettings().with_properties({item.identifier.removeprefix("preview_"): kind(value)})

@@ -23,6 +23,8 @@ from rppm_addon.scene.quantities import bytes_text
 from rppm_addon.session.process.client import ProcessState
 
 OF_SWITCH = {
+    "adaptive_min_samples": "RPPM_PT_sampling_final",
+    "preview_adaptive_min_samples": "RPPM_PT_sampling_viewport",
     "time_limit": "RPPM_PT_sampling_final",
     "photons": "RPPM_PT_sampling_final",
     "preview_photons": "RPPM_PT_sampling_viewport",
@@ -60,7 +62,8 @@ def test_panels_show_every_setting(scene):
         again = drawn(next(cls for cls in PANELS if cls.__name__ == OF_SWITCH[name]), context_of(scene))
         assert again.properties.count(name) == 2
     properties = {item.identifier for item in scene.rppm.bl_rna.properties} - {"rna_type", "name"}
-    assert shown >= properties | {"film_transparent", "film_exposure", "use_pass_z", "use_pass_normal"}
+    of_blender = {"film_transparent", "use_persistent_data", "preview_pixel_size", "use_pass_z", "use_pass_normal"}
+    assert shown >= properties | of_blender
     # Nothing has been rendered: no statistics and no warnings.
     assert not set(records) & {"RPPM_PT_status", "RPPM_PT_warnings", "RPPM_PT_last_renders"}
     assert records["RPPM_PT_sampling"].popovers == ["RPPM_PT_presets"]
@@ -200,7 +203,7 @@ def test_automatic_photons_are_told(scene):
     render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.0, 0.5, 0.0, 1.0
     assert "Automatic: 15.0 k" in drawn(panel, context_of(scene)).labels
     scene.rppm.photons = 5000
-    assert drawn(panel, context_of(scene)).labels == ["No limit"]
+    assert drawn(panel, context_of(scene)).labels == ["Automatic: 64", "No limit"]
 
 
 def test_rates_and_the_last_renders(scene):

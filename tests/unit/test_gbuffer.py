@@ -7,7 +7,7 @@ import pytest
 from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS, bands_of
 from rppm_addon.integrator.common.camera_view import camera_view
 from rppm_addon.integrator.stages.gbuffer import filter_offsets
-from rppm_addon.scene import Camera
+from rppm_addon.scene import Camera, PixelFilter
 from rppm_addon.scene.errors import SceneError
 
 
@@ -27,6 +27,18 @@ def test_offsets_have_the_moments_of_the_filter():
     x = np.linspace(-0.5, 0.5, 20001)
     w = 0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
     np.testing.assert_allclose(offsets.var(axis=0), (w * (3.0 * x) ** 2).sum() / w.sum(), rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("kind", "width", "deviation", "reach"),
+    [(PixelFilter.BOX, 3.0, 12**-0.5, 0.5), (PixelFilter.GAUSSIAN, 1.5, 0.25 * 1.5, 2.25)],
+)
+def test_other_filters_are_those_of_cycles(kind, width, deviation, reach):
+    """A box is a pixel wide; a Gaussian of Cycles is exp(-2 (2 x / width)^2), as good as whole within its reach."""
+    offsets = np.array([filter_offsets(i, width, 3, kind) for i in range(1, 4001)])
+    assert np.abs(offsets).max() <= reach
+    np.testing.assert_allclose(offsets.std(axis=0), deviation, rtol=0.01)
+    assert filter_offsets(7, 0.0, 3, kind) == (0, 0)
 
 
 def test_windows_of_bands_tile_the_region():

@@ -9,7 +9,7 @@ import numpy as np
 from ...scene import RenderSettings
 from ...scene.passes import COMBINED
 from ...scene.setting_info import settings_of
-from ..properties import VIEWPORT_DENOISING, viewport_property
+from ..properties import VIEWPORT_APART, viewport_property
 from .passes import aovs_of_layer, passes_of_layer
 
 
@@ -39,7 +39,7 @@ def export_settings(
             settings.seed = seed_of_frame(stored.seed, scene.frame_current)
         if viewport:
             settings.iterations, settings.photons = stored.preview_samples, stored.preview_photons
-            apart = {name: getattr(stored, viewport_property(name)) for name in VIEWPORT_DENOISING}
+            apart = {name: getattr(stored, viewport_property(name)) for name in VIEWPORT_APART}
             settings = settings.with_values(**apart)
     if viewport:
         settings.time_limit = 0.0
@@ -81,5 +81,5 @@ def export_cubemap_center(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
 
 
 def export_exposure(scene: bpy.types.Scene) -> float:
-    """Cycles' film exposure, a factor; 1 where Cycles is not enabled."""
-    return scene.cycles.film_exposure if hasattr(scene, "cycles") else 1.0
+    """The film's, a factor; 1 where the extension is not registered."""
+    return scene.rppm.film_exposure if hasattr(scene, "rppm") else 1.0

@@ -19,10 +19,16 @@ SHARED = {
         for name in (what.format(""), what.format("preview_"))
     },
     "preview_denoising_start_sample": "preview_denoising_start_sample",
+    **{
+        name: name
+        for what in ("use_{}adaptive_sampling", "{}adaptive_threshold", "{}adaptive_min_samples")
+        for name in (what.format(""), what.format("preview_"))
+    },
+    "film_exposure": "film_exposure",
+    "pixel_filter_type": "pixel_filter_type",
 }
-"""RPPM's properties and Cycles' that stand for the same; exposure and transparent film are one property for both."""
-_FILTER = "BLACKMAN_HARRIS"
-"""RPPM's pixel filter."""
+"""RPPM's properties and Cycles' that stand for the same; transparent film is one property for both."""
+_LEAST_AUTOMATIC_THRESHOLD = 0.001
 
 
 def _clamped(owner: bpy.types.bpy_struct, name: str, value: float) -> float:
@@ -46,7 +52,7 @@ class _CopySettings(bpy.types.Operator):
 
 
 class RPPM_OT_copy_from_cycles(_CopySettings):
-    """Take samples, denoising, bounces, time limit, seed and filter width from Cycles' settings"""
+    """Take samples, noise threshold, denoising, bounces, time limit, seed, exposure and pixel filter from Cycles"""
 
     bl_idname = "rppm.copy_from_cycles"
     bl_label = "Copy from Cycles"
@@ -56,22 +62,22 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
         own, cycles = context.scene.rppm, context.scene.cycles
         _copy(cycles, own, ((other, name) for name, other in SHARED.items()))
         own.max_photon_bounces = own.max_camera_bounces
-        if cycles.pixel_filter_type != _FILTER:
-            self.report({"INFO"}, "RPPM's pixel filter is Blackman-Harris; the width was taken")
+        for prefix in ("", "preview_"):
+            if getattr(cycles, f"{prefix}adaptive_threshold") == 0.0:  # automatic, by the samples
+                automatic = max(_LEAST_AUTOMATIC_THRESHOLD, 1.0 / max(getattr(cycles, f"{prefix}samples"), 1))
+                setattr(own, f"{prefix}adaptive_threshold", automatic)
         return {"FINISHED"}
 
 
 class RPPM_OT_copy_to_cycles(_CopySettings):
-    """Give Cycles the samples, denoising, bounces, time limit, seed and pixel filter of these settings"""
+    """Give Cycles the samples, noise threshold, denoising, bounces, time limit, seed, exposure and pixel filter"""
 
     bl_idname = "rppm.copy_to_cycles"
     bl_label = "Copy to Cycles"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Copy."""
-        own, cycles = context.scene.rppm, context.scene.cycles
-        _copy(own, cycles, SHARED.items())
-        cycles.pixel_filter_type = _FILTER
+        _copy(context.scene.rppm, context.scene.cycles, SHARED.items())
         return {"FINISHED"}
 
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...scene.quantities import bytes_text, count_text, rate_text, seconds_text
+from ...scene.quantities import bytes_text, count_text, noise_text, rate_text, seconds_text
 from ..export.settings import export_settings
 from ..readings import memory_reading
 from ..renderer_process import failure
@@ -31,6 +31,22 @@ class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
         else:
             reading(column, "Scene", bytes_text(memory.scene_bytes))
         reading(column, "Expected", bytes_text(memory.total_bytes))
+
+
+class RPPM_PT_performance_final(RppmPanel, bpy.types.Panel):
+    bl_label = "Final Render"
+    bl_parent_id = "RPPM_PT_performance"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.scene.render, "use_persistent_data", text="Persistent Data")
+
+
+class RPPM_PT_performance_viewport(RppmPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "RPPM_PT_performance"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
 
 
 class RPPM_PT_diagnostics(RppmPanel, bpy.types.Panel):
@@ -78,6 +94,8 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
     reading(column, "Samples", f"{report.iterations} of {report.settings.iterations}")
+    if report.noise > 0.0:
+        reading(column, "Noise", noise_text(report.noise, report.settings.adaptive_threshold))
     reading(column, "Photons", f"{count_text(report.photons_per_iteration)} a sample")
     reading(column, "Radius", length_text(scene, report.radius_meters))
     reading(column, "Memory", bytes_text(report.memory_bytes))
@@ -130,4 +148,11 @@ _COMPARED = (
 
 
 STATUS = (RPPM_PT_status,)
-CLASSES = (RPPM_PT_performance, RPPM_PT_diagnostics, RPPM_PT_deep_cubemap, RPPM_PT_last_renders)
+CLASSES = (
+    RPPM_PT_performance,
+    RPPM_PT_performance_final,
+    RPPM_PT_performance_viewport,
+    RPPM_PT_diagnostics,
+    RPPM_PT_deep_cubemap,
+    RPPM_PT_last_renders,
+)

@@ -59,9 +59,10 @@ class RPPM_PT_film(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         scene = context.scene
         column = self.column()
-        if hasattr(scene, "cycles"):
-            column.prop(scene.cycles, "film_exposure")
-        column.prop(scene.rppm, "filter_width")
+        column.prop(scene.rppm, "film_exposure")
+        column.prop(scene.rppm, "pixel_filter_type", text="Filter")
+        if scene.rppm.pixel_filter_type != "BOX":
+            column.prop(scene.rppm, "filter_width", text="Width")
         column.prop(scene.render, "film_transparent", text="Transparent")
 
 

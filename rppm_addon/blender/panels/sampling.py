@@ -30,6 +30,22 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
             row.operator(RPPM_OT_copy_to_cycles.bl_idname, text="To Cycles")
 
 
+def _draw_samples(column: bpy.types.UILayout, scene: bpy.types.Scene, viewport: bool) -> None:
+    """Noise threshold and samples of final renders or of viewports, laid out as Cycles' panels are."""
+    prefix, settings = "preview_" if viewport else "", scene.rppm
+    is_on = getattr(settings, f"use_{prefix}adaptive_sampling")
+    row = column.row(align=True, heading="Noise Threshold")
+    row.prop(settings, f"use_{prefix}adaptive_sampling", text="")
+    threshold = row.row()
+    threshold.active = is_on
+    threshold.prop(settings, f"{prefix}adaptive_threshold", text="")
+    column.prop(settings, f"{prefix}samples", text="Max Samples" if is_on else "Samples")
+    least = column.column()
+    least.active = is_on
+    automatic = f"Automatic: {export_settings(scene, viewport=viewport).least_iterations}"
+    draw_setting(least, scene, f"{prefix}adaptive_min_samples", "Min Samples", automatic)
+
+
 class RPPM_PT_sampling_viewport(RppmPanel, bpy.types.Panel):
     bl_label = "Viewport"
     bl_parent_id = "RPPM_PT_sampling"
@@ -37,7 +53,7 @@ class RPPM_PT_sampling_viewport(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
         column = self.column()
-        column.prop(settings, "preview_samples", text="Samples")
+        _draw_samples(column, context.scene, viewport=True)
         draw_setting(column, context.scene, "preview_photons", "Photons")
         column.prop(settings, "preview_pause", text="Pause")
 
@@ -47,9 +63,8 @@ class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
     bl_parent_id = "RPPM_PT_sampling"
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
         column = self.column()
-        column.prop(settings, "samples")
+        _draw_samples(column, context.scene, viewport=False)
         photons = export_settings(context.scene).photons_for(*rendered_size(context.scene.render))
         draw_setting(column, context.scene, "photons", "Photons", f"Automatic: {count_text(photons)}")
         draw_setting(column, context.scene, "time_limit", "Time Limit")

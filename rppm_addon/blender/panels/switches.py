@@ -5,13 +5,18 @@ import bpy
 
 from ...scene import RenderSettings
 from ...scene.setting_info import settings_of
-from ..properties import VIEWPORT_PHOTONS
+from ..properties import VIEWPORT_APART, VIEWPORT_PHOTONS, viewport_property
 
-MEANINGS = {info.property_of(name): info.zero.capitalize() for name, info in settings_of(RenderSettings).items()} | {
-    "preview_photons": "Automatic"
-}
+_MEANINGS = {name: info.zero.capitalize() for name, info in settings_of(RenderSettings).items()}
+MEANINGS = (
+    {info.property_of(name): _MEANINGS[name] for name, info in settings_of(RenderSettings).items()}
+    | {viewport_property(name): _MEANINGS[name] for name in VIEWPORT_APART}
+    | {"preview_photons": _MEANINGS["photons"]}
+)
 """By property of scene.rppm, what its 0 stands for."""
 SUGGESTIONS = {
+    "adaptive_min_samples": 64,
+    "preview_adaptive_min_samples": 32,
     "time_limit": 60.0,
     "photons": 1 << 16,
     "preview_photons": VIEWPORT_PHOTONS,

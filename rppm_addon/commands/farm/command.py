@@ -12,6 +12,7 @@ from ..interruption import Interruption
 from ..options import is_blend, outputs_of_still, refuse_blend_options, values_and_limits, values_of_frames
 from ..progress_bar import ProgressBar
 from ..recorder import apply_settings
+from ..setting_options import given_settings
 
 
 def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
@@ -44,13 +45,13 @@ def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
         check_places(options.output, options.frames)
     for path in options.output:
         make_folder(path)
-    names = ["frame", "photons", *(["samples", "seconds"] if options.frames else [])]
+    names = ["frame", *(["seconds"] if options.frames else [])]
     request = FarmRequest(
         file=options.file.absolute(),
         outputs=[path.absolute() for path in options.output],
         options=_task_options(options, names),
         frames=options.frames or (),
-        iterations=options.samples or 0,
+        iterations=int(options.samples or 0),
         parts=options.parts or 0,
         chunk=options.chunk,
         scheduler=options.scheduler,
@@ -74,7 +75,7 @@ def farm(options: argparse.Namespace, bar: ProgressBar) -> int:
 
 
 def _task_options(options: argparse.Namespace, names: list[str]) -> list[str]:
-    """The options of rppm render that ``names`` and the size and values asked for make, as words."""
+    """The options of rppm render that ``names``, the size, values and settings asked for make, as words."""
     words = []
     for name in names:
         if getattr(options, name) is not None:
@@ -83,4 +84,7 @@ def _task_options(options: argparse.Namespace, names: list[str]) -> list[str]:
         words += ["--resolution", "{}x{}".format(*options.resolution)]
     for value in options.values:
         words += ["--set", value]
+    for name, value in given_settings(options).items():
+        if options.frames or name != "samples":  # of a still those of all parts
+            words += ["--set", f"rppm.{name}={value}"]
     return words

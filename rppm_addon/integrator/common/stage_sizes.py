@@ -24,6 +24,8 @@ class StageSizes:
     """Whether objects catch shadows."""
     rasterizes_camera: bool = True
     """Whether the camera's first hits are rasterized."""
+    measures_noise: bool = False
+    """Whether the picture ends with its noise."""
 
     @classmethod
     def of(cls, scene: Scene) -> "StageSizes":
@@ -37,6 +39,7 @@ class StageSizes:
             scene.settings.found_passes,
             any(instance.shadow_catcher for instance in scene.instances),
             is_rasterized(scene.camera),
+            scene.settings.use_adaptive_sampling,
         )
 
     @property

@@ -223,6 +223,11 @@ class Film(BufferSet):
                 },
             )
 
+    @property
+    def radiance(self) -> moderngl.Buffer:
+        """(pixels, 4) float32 of what read_radiance gives."""
+        return self._radiance.buffer
+
     def read_radiance(self) -> np.ndarray:
         """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""
         return self._radiance.read(np.float32, 4 * self.width * self.height).reshape(self.height, self.width, 4).copy()

@@ -7,6 +7,7 @@ import numpy as np
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.camera import Camera
+from ...scene.settings import PixelFilter, RenderSettings
 from ..common.band import Band
 from ..common.camera_view import camera_view
 from ..common.iteration import Iteration
@@ -18,26 +19,40 @@ from .camera_hits import CameraHits
 from .importons import Importons
 
 
-def filter_offsets(iteration: int, width: float, seed: int) -> tuple[float, float]:
-    """Subpixel offset of an iteration (from 1), in pixels, by the density of a Blackman-Harris
-    filter, at Owen-scrambled Sobol points.
+def _filter_density(kind: PixelFilter, x: np.ndarray) -> np.ndarray:
+    """Of a filter that reaches from -0.5 to 0.5."""
+    if kind is PixelFilter.BLACKMAN_HARRIS:
+        return (
+            0.35875
+            + 0.48829 * np.cos(2 * np.pi * x)
+            + 0.14128 * np.cos(4 * np.pi * x)
+            + 0.01168 * np.cos(6 * np.pi * x)
+        )
+    return np.exp(-72.0 * x * x) if kind is PixelFilter.GAUSSIAN else np.ones_like(x)
 
-    The filter reaches over twice its width, as Cycles' does (measured).
+
+def filter_offsets(
+    iteration: int, width: float, seed: int, kind: PixelFilter = PixelFilter.BLACKMAN_HARRIS
+) -> tuple[float, float]:
+    """Subpixel offset of an iteration (from 1), in pixels, by the density of a pixel filter, at Owen-scrambled Sobol
+    points.
+
+    As Cycles' do, a Blackman-Harris filter reaches over twice its width, a Gaussian over three times, and a box is one
+    pixel wide.
     """
     x = np.linspace(-0.5, 0.5, 1025)
-    density = (
-        0.35875 + 0.48829 * np.cos(2 * np.pi * x) + 0.14128 * np.cos(4 * np.pi * x) + 0.01168 * np.cos(6 * np.pi * x)
-    )
+    density = _filter_density(kind, x)
+    reach = {PixelFilter.BOX: float(width > 0.0), PixelFilter.GAUSSIAN: 3.0 * width}.get(kind, 2.0 * width)
     cumulated = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
     first, second, third = map(int, np.random.default_rng((seed, 2)).integers(1 << 32, size=3))
     u = scrambled_sobol(iteration - 1, (first, second, third))
-    across, up = (float(2.0 * width * np.interp(value, cumulated / cumulated[-1], x)) for value in u)
+    across, up = (float(reach * np.interp(value, cumulated / cumulated[-1], x)) for value in u)
     return across, up
 
 
-def jittered_view(camera: Camera, filter_width: float, band: Band, iteration: Iteration) -> np.ndarray:
+def jittered_view(camera: Camera, settings: RenderSettings, band: Band, iteration: Iteration) -> np.ndarray:
     """CAMERA_VIEW record of a band of the camera's region, with the iteration's subpixel offset."""
-    offset = filter_offsets(iteration.number, filter_width, iteration.seed)
+    offset = filter_offsets(iteration.number, settings.filter_width, iteration.seed, settings.pixel_filter_type)
     return camera_view(camera, band.first_row, band.rows, offset)
 
 

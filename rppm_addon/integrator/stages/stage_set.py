@@ -19,6 +19,7 @@ from .film import Film
 from .final_gather import FinalGather
 from .gbuffer import GBuffer
 from .importons import Importons
+from .noise_estimate import NoiseEstimate
 from .photons import Photons
 from .primary_rays import PrimaryRays
 from .shadow_catcher import ShadowCatcher
@@ -30,7 +31,7 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "final gather": (FinalGather,),
     "shadow catcher": (ShadowCatcher,),
     "density estimation": (DensityEstimator,),
-    "passes": (Film, CausticRadii),
+    "passes": (Film, CausticRadii, NoiseEstimate),
 }
 """How memory is reported: stages by group."""
 
@@ -46,6 +47,7 @@ class StageSet(BufferSet):
     shadow_catcher = Part(ShadowCatcher)
     film = Part(Film)
     caustic_radii = Part(CausticRadii)
+    noise_estimate = Part(NoiseEstimate)
 
     def __init__(self, context: Context, library: ProgramLibrary, scene: Scene) -> None:
         """Raises DeviceError when the device has no room for them."""

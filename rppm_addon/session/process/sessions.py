@@ -37,6 +37,9 @@ class SessionStatus:
     """As RenderStatistics has it."""
     iterations_per_second: float = 0.0
     photons_per_second: float = 0.0
+    noise: float = 0.0
+    """As Progress has it."""
+    noise_threshold: float = 0.0
     source_watts: dict[str, float] = field(default_factory=dict)
     """As RenderStatistics has it."""
     source_photons: dict[str, int] = field(default_factory=dict)

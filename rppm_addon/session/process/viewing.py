@@ -17,6 +17,7 @@ from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
 from ...scene.errors import DenoiserError, RppmError
 from ...scene.scene import Scene
+from ..noise_threshold import NoiseThreshold
 from ..renderer import exposed_passes, log, read_combined
 from .background_denoising import POLL_SECONDS, BackgroundDenoising
 from .frames import FrameWriter
@@ -155,14 +156,18 @@ class Viewing:
         built = time.perf_counter()
         self._pictures += 1
         yield
-        while mapper.iteration < settings.iterations:
+        threshold = NoiseThreshold(settings)
+        last = False
+        while not last:
             yield from mapper.steps()
+            if threshold.is_due(mapper.iteration):
+                threshold.add(mapper.iteration, mapper.measure_noise())
             now = time.perf_counter()
-            last = mapper.iteration == settings.iterations
+            last = mapper.iteration >= settings.iterations or threshold.is_reached
             at_once = last or self._first_picture_pending or now - self._given_out_at >= FRAME_SECONDS
             if last or (at_once and mapper.iteration % settings.iterations_per_frame == 0):
                 self._given_out_at = now
-                self._show_picture(scene, generation)
+                self._show_picture(scene, generation, last)
                 if not self._rendered:
                     self._rendered = True
                     self._programs.add(mapper.device_scene.materials)
@@ -189,7 +194,9 @@ class Viewing:
                     source_watts=mapper.source_watts,
                     source_photons=mapper.source_photons,
                     warnings=mapper.scene.warnings,
-                    settled=level == 1.0 and mapper.iteration >= settings.iterations,
+                    noise=threshold.noise,
+                    noise_threshold=threshold.threshold,
+                    settled=level == 1.0 and last,
                 )
             )
             yield
@@ -203,7 +210,7 @@ class Viewing:
         starts = settings.use_denoising and self._mapper.iteration >= settings.denoising_start_sample
         return starts and self._left_noisy != self._pictures
 
-    def _show_picture(self, scene: Scene, generation: int) -> None:
+    def _show_picture(self, scene: Scene, generation: int, last: bool) -> None:
         """Give the picture so far out, or have it denoised. Until there is a denoised picture, noisy ones are shown,
         so that none is waited for; from then on, only denoised ones."""
         denoise = self._is_denoised(scene) and self._denoising.is_due
@@ -213,7 +220,7 @@ class Viewing:
             if denoise:
                 self._start_denoising(combined, scene)
             if show:
-                self._give_out(combined.copy() if denoise else combined, scene, generation)
+                self._give_out(combined.copy() if denoise else combined, scene, generation, last)
 
     def _start_denoising(self, combined: np.ndarray, scene: Scene) -> None:
         key = self._pictures, self._mapper.iteration
@@ -275,10 +282,10 @@ class Viewing:
             self._told_at = now
             self._tell(SessionStatus(programs_started=self._library.started, programs=self._library.made))
 
-    def _give_out(self, combined: np.ndarray, scene: Scene, generation: int) -> None:
+    def _give_out(self, combined: np.ndarray, scene: Scene, generation: int, last: bool = False) -> None:
         """Send a picture, which is changed, unless a newer view was looked at meanwhile."""
         if generation >= self._newest_sent:
-            self._send_frame(combined, generation, self._mapper.iteration / scene.settings.iterations)
+            self._send_frame(combined, generation, 1.0 if last else self._mapper.iteration / scene.settings.iterations)
 
     def _send_frame(self, combined: np.ndarray, generation: int, progress: float) -> None:
         """Write a picture, which is changed, to a slot."""

@@ -87,4 +87,11 @@ cam(
 )
 cam("oblong pixels", _film(pixel_aspect_x=2.0, pixel_aspect_y=1.0))
 cam("transparent film", _film(film_transparent=True))
-cam("exposure", lambda camera: setattr(bpy.context.scene.cycles, "film_exposure", 1.7))
+
+
+def _expose(camera) -> None:
+    for settings in (bpy.context.scene.cycles, bpy.context.scene.rppm):
+        settings.film_exposure = 1.7
+
+
+cam("exposure", _expose)

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How noisy the film is, told by half of its iterations.
+
+The mean of half of the iterations and that of all differ as two independent estimates do, so their distance says how
+far the mean of all is from that of infinitely many. Dammertz et al., A Hierarchical Automatic Stopping Condition for
+Monte Carlo Global Illumination (2009), in the unit of Cycles (kernel/film/adaptive_sampling.h). Where points fill
+their space evenly the mean of all is better than that, by sqrt(2) at most. What both halves have alike, the blur of
+the radius, cannot be told so.
+"""
+
+import math
+
+import moderngl
+import numpy as np
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffers import GrowingBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.stage_sizes import StageSizes, film_pixels
+from ..density_estimation.splat_sums import SplatSums
+from ..device_scene.stage_context import StageContext
+
+Record("HalfParameters", count="uint", quantum="float", first_pixel="uint", number="uint")
+Record(
+    "NoiseParameters", count="uint", width="uint", height="uint", columns="uint", exposure="float", balance="float"
+)
+
+BLOCK = 16
+"""Pixels along a side of the blocks whose noise counts: of a single pixel's a few iterations say nothing."""
+Constants("NoiseBlocks", NOISE_BLOCK=BLOCK)
+BALANCED = 4
+"""Of so many iterations that follow each other, from a multiple of it on, the half has half."""
+_ODD_BITS = 0xAAAAAAAA
+
+
+def is_in_half(number: int) -> bool:
+    """Whether an iteration (from 1) belongs to the half.
+
+    Points of iterations fill their space evenly, and so do those of either half: every other one would not. After
+    Christensen, Kensler and Kilpatrick, Progressive Multi-Jittered Sample Sequences (2018), as Cycles has it.
+    """
+    return ((number - 1) & _ODD_BITS).bit_count() % 2 == 1
+
+
+def count_in_half(iterations: int) -> int:
+    """How many of the first so many iterations belong to the half."""
+    groups, rest = divmod(iterations, BALANCED)
+    return groups * BALANCED // 2 + sum(map(is_in_half, range(iterations - rest + 1, iterations + 1)))
+
+
+def _half_values(sizes: StageSizes) -> int:
+    return 3 * film_pixels(sizes) if sizes.measures_noise else 0
+
+
+def _block_count(sizes: StageSizes) -> int:
+    return math.ceil(sizes.width / BLOCK) * math.ceil(sizes.height / BLOCK) if sizes.measures_noise else 0
+
+
+class NoiseEstimate(BufferSet):
+    """The mean of half of the iterations, 12 bytes a pixel; nothing where the picture does not end with its noise."""
+
+    remedy = "lower the resolution"
+    _half = StorageBuffer("half of the film", "float", _half_values)
+    _noises = StorageBuffer("noise of blocks", "float", _block_count)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self.is_on = sizes.measures_noise
+        self._add = library.compute("noise_estimate/add.comp") if self.is_on else None
+        self._measure = library.compute("noise_estimate/measure.comp") if self.is_on else None
+        self._width, self._height = sizes.width, sizes.height
+        self._blocks = _block_count(sizes)
+
+    def add(
+        self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band, iteration: Iteration
+    ) -> None:
+        """Add the band's estimate, as Film.accumulate does, of an iteration that belongs to the half."""
+        if self._add is None or not is_in_half(iteration.number):
+            return
+        with context.timers.stage("noise"):
+            self._add.run(
+                band.pixel_count,
+                {"Radiances": radiances.buffer, "SplatSums": sums.buffer, "HalfMeans": self._half.buffer},
+                {
+                    "count": band.pixel_count,
+                    "quantum": sums.quantum,
+                    "first_pixel": band.first_pixel,
+                    "number": count_in_half(iteration.number) - count_in_half(iteration.skipped),
+                },
+            )
+
+    def measure(
+        self, context: StageContext, film: moderngl.Buffer, exposure: float, skipped: int, iteration: int
+    ) -> float:
+        """The noise of the noisiest block of a film, (pixels, 4) float32, of the iterations after ``skipped`` up to
+        ``iteration``; infinite while one of the halves is empty. Waits for the device."""
+        program = self._measure
+        if program is None:
+            raise ValueError("nothing is known of the noise: the stage is off")
+        here = count_in_half(iteration) - count_in_half(skipped)
+        rest = iteration - skipped - here
+        if not here or not rest:
+            return math.inf
+        with context.timers.stage("noise"):
+            program.run(
+                self._blocks,
+                {"Film": film, "HalfMeans": self._half.buffer, "Noises": self._noises.buffer},
+                {
+                    "count": self._blocks,
+                    "width": self._width,
+                    "height": self._height,
+                    "columns": math.ceil(self._width / BLOCK),
+                    "exposure": exposure,
+                    # Of halves that are not alike: from the spread of the distance to that of the mean of all.
+                    "balance": math.sqrt(here / rest),
+                },
+            )
+            return float(self._noises.read(np.float32, self._blocks).max())
+
+    def read(self) -> np.ndarray | None:
+        """(height, width, 3) float32 mean of the half, row 0 at the bottom; None where the stage is off."""
+        if not self.is_on:
+            return None
+        values = self._half.read(np.float32, 3 * self._width * self._height)
+        return values.reshape(self._height, self._width, 3).copy()
+
+    def restore(self, half: np.ndarray | None) -> bool:
+        """Take what read gave; whether there is what the stage needs."""
+        if self.is_on and half is not None:
+            self._half.upload(half)
+        return not self.is_on or half is not None
