@@ -2,6 +2,7 @@
 """RPPM inside Blender: the only floor that imports bpy."""
 
 from . import (
+    background,
     broken_frames,
     engine,
     following,
@@ -18,6 +19,7 @@ from .export.images import kept_images
 
 def register() -> None:
     """Add the properties, the engine, the operators, the panels and the preferences to Blender."""
+    background.register()
     properties.register()
     engine.register()
     operators.register()

@@ -2,7 +2,8 @@
 """Frames of an animation that could not be rendered: the others go on, and no wrong picture stays.
 
 Blender ends an animation when an engine reports an error, and saves a black picture when it does not. So such a frame
-is reported as a warning, and its file is removed again: whoever looks for frames that are missing finds it.
+is reported as a warning, and its file is removed again: whoever looks for frames that are missing finds it. In the
+background Blender then ends with another status than 0.
 """
 
 import contextlib
@@ -12,6 +13,8 @@ from pathlib import Path
 
 import bpy
 from bpy.app.handlers import persistent
+
+from . import background
 
 logger = logging.getLogger(__name__)
 
@@ -24,6 +27,7 @@ def report(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, text:
     global _broken
     scene = depsgraph.scene
     _broken = scene.session_uid, scene.frame_current, time.time()
+    background.lose_frame()
     engine.report({"WARNING"}, f"Frame {scene.frame_current} has no picture: {text}")
     # Blender crashes when it is to save layers of which it was given none.
     layer = depsgraph.view_layer_eval.name

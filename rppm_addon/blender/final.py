@@ -15,7 +15,7 @@ from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver, current_observer
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
-from . import broken_frames, renderer_process, renderer_thread
+from . import background, broken_frames, renderer_process, renderer_thread
 from .export import ExportStopped, FrameExporter, export_scene, is_blurred, wants_neighbors
 from .export.camera.camera import frame_size
 from .following import follow
@@ -163,6 +163,7 @@ def _fail(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observ
     if engine.is_animation:
         broken_frames.report(engine, depsgraph, text)
     else:
+        background.lose_frame()
         engine.report({"ERROR"}, text)
     if not engine.is_preview:
         record_error(depsgraph.scene.session_uid, text)

@@ -14,8 +14,9 @@ from ..scene.quantities import noise_text, rate_text
 from ..scene.sharing import share
 from ..session.process.client import ProcessState
 from ..session.process.sessions import SessionKind, SessionStatus
-from . import panels, reports
+from . import panels, reports, studio_lights
 from .export import ExportProgress, SceneSync, export_exposure, export_settings, export_view
+from .export.lights.view_lighting import relit, view_lighting
 from .frame_texture import FrameTexture
 from .panels.base import length_text, letters_across
 from .renderer_process import failure, renderer_process
@@ -82,7 +83,7 @@ class Viewport:
             self._fail(f"RPPM failed unexpectedly ({type(error).__name__}: {error}); see the system console")
             return
         self._error = ""
-        self._show(context, replace(scene, settings=_settings(context, depsgraph)))
+        self._show(context, replace(_lit(context, depsgraph, scene), settings=_settings(context, depsgraph)))
 
     def draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Draw the newest frame, and follow the view."""
@@ -108,7 +109,7 @@ class Viewport:
         settings.validate()
         exposure = export_exposure(depsgraph.scene_eval)
         members = {"camera": export_view(context, depsgraph), "settings": settings, "exposure": exposure}
-        self._show(context, replace(self._sync.scene, **members))
+        self._show(context, replace(_lit(context, depsgraph, self._sync.scene), **members))
 
     def _show(self, context: bpy.types.Context, scene: Scene) -> None:
         playing = context.screen is not None and context.screen.is_animation_playing
@@ -204,6 +205,12 @@ def _settings(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> Ren
     return export_settings(depsgraph.scene_eval, viewport=True, shown_pass=shown)
 
 
+def _lit(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph, scene: Scene) -> Scene:
+    """A scene in the light that the shading popover asks for."""
+    lighting = view_lighting(context.space_data.shading, depsgraph.scene_eval.world)
+    return relit(scene, lighting, studio_lights.picture(lighting.path))
+
+
 def _picture_by_picture(scene: Scene) -> Scene:
     """N_ipf is for playback (paper section 5.4); at rest each iteration is shown."""
     if scene.settings.iterations_per_frame == 1:
@@ -277,6 +284,7 @@ def unregister() -> None:
     """End all viewports."""
     bpy.app.handlers.load_pre.remove(_on_load)
     close_all()
+    studio_lights.forget()
 
 
 def poll_soon() -> None:
@@ -286,9 +294,12 @@ def poll_soon() -> None:
 
 
 def _poll() -> float | None:
+    lit_anew = studio_lights.load_wanted()
     for key, viewport in list(_viewports.items()):
         try:
             viewport.poll()
+            if lit_anew:
+                viewport.engine.tag_redraw()
         except ReferenceError:
             close(key)
     return POLL_SECONDS if _viewports else None

@@ -4,14 +4,12 @@
 import math
 from itertools import takewhile
 
-from ..integrator.stages.noise_estimate import BALANCED
+from ..integrator.stages.noise_estimate import LEAST_MEASURED, MEASURED_EVERY
 from ..scene.settings import RenderSettings
 
-_EXPECTED_EXPONENT = 0.5
-"""Noise falls with this power of the iterations where all is chance; photons' radii that shrink make it fall slower."""
-_TRUST = 0.25
+_TRUST = 1.0
 """In the expected exponent: as much as measurements whose logarithms of iterations spread by so much in square."""
-_LEAST_EXPONENT, _MOST_EXPONENT = 0.3, 0.7
+_LEAST_EXPONENT, _MOST_EXPONENT = 0.2, 0.7
 _RECENT = 8.0
 """What was measured at less than an eighth of the iterations is no longer looked at."""
 
@@ -26,12 +24,14 @@ class NoiseThreshold:
         self.threshold = settings.adaptive_threshold if settings.use_adaptive_sampling else 0.0
         """0 is none."""
         self._least = settings.least_iterations
+        self._exponent = 0.5 * settings.alpha
+        """Noise is expected to fall with this power of the iterations: that of photons, whose radii shrink."""
         self._measured: list[tuple[int, float]] = []
         """Iterations and noise, the newest first."""
 
     def is_due(self, iterations: int) -> bool:
-        """Whether the noise is to be measured after so many iterations of the film: once halves are alike."""
-        return self.threshold > 0.0 and iterations > 0 and iterations % BALANCED == 0
+        """Whether the noise is to be measured after so many iterations of the film."""
+        return self.threshold > 0.0 and iterations >= LEAST_MEASURED and iterations % MEASURED_EVERY == 0
 
     def add(self, iterations: int, noise: float) -> None:
         """Take note of what was measured."""
@@ -61,7 +61,7 @@ class NoiseThreshold:
             return max(self._least, newest)
         mean_x, mean_y = (sum(values) / len(points) for values in zip(*points))
         spread = _TRUST + sum((x - mean_x) ** 2 for x, _ in points)
-        slope = (_TRUST * -_EXPECTED_EXPONENT + sum((x - mean_x) * (y - mean_y) for x, y in points)) / spread
+        slope = (_TRUST * -self._exponent + sum((x - mean_x) * (y - mean_y) for x, y in points)) / spread
         exponent = min(max(-slope, _LEAST_EXPONENT), _MOST_EXPONENT)
         wanted = math.exp(min(mean_x + (mean_y - math.log(self.threshold)) / exponent, 60.0))
-        return max(math.ceil(wanted / BALANCED) * BALANCED, self._least, newest)
+        return max(math.ceil(wanted / MEASURED_EVERY) * MEASURED_EVERY, self._least, newest)

@@ -12,11 +12,11 @@ from support.render_states import assert_same_array, assert_same_state
 from rppm_addon.gl.buffers import SMALLEST
 from rppm_addon.integrator.common import band
 from rppm_addon.integrator.memory import expected_memory
-from rppm_addon.integrator.stages.noise_estimate import BLOCK, is_in_half
+from rppm_addon.integrator.stages.noise_estimate import BLOCK, LEAST_MEASURED, MEASURED_EVERY, is_in_half
 from rppm_addon.scene.errors import CheckpointError
 from rppm_addon.session.continuation import Continuation
 
-WIDTH, HEIGHT, EXPOSURE = 40, 24, 1.5
+WIDTH, HEIGHT, EXPOSURE, THRESHOLD = 40, 24, 1.5, 0.05
 
 
 def noisy_room(**settings):
@@ -48,7 +48,7 @@ def iterated(mapper, scene, iterations):
 def test_the_half_is_the_mean_of_its_iterations(mapper, other_mapper, monkeypatch):
     monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", WIDTH * 7)
     scene = noisy_room()
-    means = iterated(mapper, scene, 8)
+    means = iterated(mapper, scene, 32)
     sums = np.array([number * mean.astype(np.float64) for number, mean in enumerate(means, 1)])
     estimates = np.diff(sums, axis=0, prepend=0.0)[..., :3]
     wanted = np.mean([estimate for number, estimate in enumerate(estimates, 1) if is_in_half(number)], axis=0)
@@ -62,7 +62,7 @@ def test_the_half_is_the_mean_of_its_iterations(mapper, other_mapper, monkeypatc
     assert max(blocks) > 1.2 * np.mean(blocks)
     # The picture is the same without.
     scene.settings = dataclasses.replace(scene.settings, use_adaptive_sampling=False)
-    assert_same_array(iterated(other_mapper, scene, 8)[-1], means[-1], "radiance")
+    assert_same_array(iterated(other_mapper, scene, 32)[-1], means[-1], "radiance")
     assert other_mapper.state().half is None
     with pytest.raises(ValueError, match="off"):
         other_mapper.measure_noise()
@@ -70,9 +70,9 @@ def test_the_half_is_the_mean_of_its_iterations(mapper, other_mapper, monkeypatc
 
 def test_the_noise_told_is_that_there_is(mapper):
     """Or more: where points fill their space evenly, the error of n of them falls with between the root of n and n, and
-    what halves tell is once to sqrt(2) times that of all. Beside that 15 %, for distances of 1000 pixels of 12 seeds.
+    what two runs tell is once to sqrt(2) times that of all. Beside that 15 %, for distances of 1000 pixels of 12 seeds.
     Radii do not shrink: there is no blur."""
-    seeds, iterations = 12, 16
+    seeds, iterations = 12, 32
     pictures, told = [], []
     for seed in range(seeds):
         scene = noisy_room(seed=seed, radius_minimum=0.1, radius_maximum=0.1, filter_width=0.0)
@@ -86,15 +86,15 @@ def test_the_noise_told_is_that_there_is(mapper):
 
 
 def test_a_render_ends_with_its_noise_also_when_it_was_interrupted(renderer):
-    scene = noisy_room(iterations=400, adaptive_threshold=0.15, adaptive_min_samples=6)
+    scene = noisy_room(iterations=400, adaptive_threshold=THRESHOLD, adaptive_min_samples=6)
     told, pauses = [], []
     result = renderer.render(scene, lambda progress, _: told.append(progress))
     ended = result.statistics.iterations
-    assert 8 <= ended < 400 and ended % 4 == 0 and not result.stopped
-    assert result.statistics.noise == told[-1].noise < 0.15 == told[-1].noise_threshold
-    assert all(progress.noise >= 0.15 for progress in told if 8 <= progress.iteration < ended)
+    assert LEAST_MEASURED < ended < 400 and ended % MEASURED_EVERY == 0 and not result.stopped
+    assert result.statistics.noise == told[-1].noise < THRESHOLD == told[-1].noise_threshold
+    assert all(progress.noise >= THRESHOLD for progress in told if LEAST_MEASURED <= progress.iteration < ended)
     assert told[-1].expected_iterations == ended and told[-1].fraction == 1.0 and told[-1].remaining_seconds == 0.0
-    for stop in (5, ended):
+    for stop in (37, ended):
         scene.settings = dataclasses.replace(scene.settings, iterations=stop)
         renderer.render(scene, continuation=Continuation(keep=pauses.append))
     scene.settings = dataclasses.replace(scene.settings, iterations=400)
@@ -104,7 +104,7 @@ def test_a_render_ends_with_its_noise_also_when_it_was_interrupted(renderer):
         assert again.statistics.iterations == ended
         assert_same_array(again.frame.combined, result.frame.combined, "combined")
         assert_same_state(kept[-1].state, pauses[1].state)
-    scene.settings = dataclasses.replace(scene.settings, use_adaptive_sampling=False, iterations=6)
+    scene.settings = dataclasses.replace(scene.settings, use_adaptive_sampling=False, iterations=38)
     plain = []
     renderer.render(scene, continuation=Continuation(begin=pauses[0], keep=plain.append))  # without one from now on
     scene.settings = dataclasses.replace(scene.settings, use_adaptive_sampling=True)

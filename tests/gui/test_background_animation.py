@@ -36,8 +36,8 @@ def test_every_frame_equals_a_single_one(machine, persistent):
 
 def test_a_broken_frame_leaves_no_file_and_the_others_go_on(machine):
     file = ["/mnt/broken.blend", "--render-format", "PNG", "--render-output", "/mnt/broken_####"]
-    output = blender_in_background(machine, *file, "-s", "1", "-e", "4", "-a")
-    assert "Frame 3 has no picture: radius_maximum" in output
+    with pytest.raises(MachineError, match=r"(?s)failed with 1:.*Frame 3 has no picture: radius_maximum"):
+        blender_in_background(machine, *file, "-s", "1", "-e", "4", "-a")
     pictures(machine, "broken", (1, 2, 4))
 
 

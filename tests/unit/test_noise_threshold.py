@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.integrator.common.low_discrepancy import van_der_corput
-from rppm_addon.integrator.stages.noise_estimate import count_in_half, is_in_half
+from rppm_addon.integrator.stages.noise_estimate import LEAST_MEASURED, count_in_half, is_in_half
 from rppm_addon.scene import RenderSettings
 from rppm_addon.session.noise_threshold import NoiseThreshold
 from rppm_addon.session.remaining_time import RemainingTime
@@ -19,27 +19,29 @@ def threshold_of(value=0.1, least=8, **settings):
 
 def test_half_of_the_iterations_are_in_the_half():
     members = [is_in_half(number) for number in range(1, 1025)]
-    assert [count_in_half(count) for count in range(1025)] == [0, *np.cumsum(members).tolist()]
-    assert all(2 * count_in_half(count) == count for count in range(0, 1025, 4))
+    counts = [count_in_half(count) for count in range(1025)]
+    assert counts == [0, *np.cumsum(members).tolist()]
+    assert all(2 * counts[1 << power] == 1 << power for power in range(5, 11))
+    assert all(1 / 3 <= counts[count] / count <= 2 / 3 for count in range(LEAST_MEASURED, 1025))
 
 
 @pytest.mark.parametrize("half", [True, False])
 def test_either_half_fills_the_interval_evenly(half):
-    """Every other point would lie in one half of it."""
+    """Of every other point all would lie in one half of it."""
     points = np.array([van_der_corput(number - 1, 77) for number in range(1, 257) if is_in_half(number) == half])
-    for parts in (2, 8, 32):
+    for parts in (2, 8, 16):
         counts = np.bincount((parts * points).astype(int), minlength=parts)
         assert (counts == len(points) // parts).all()
 
 
 def test_noise_ends_a_render_after_the_least_iterations():
-    threshold = threshold_of(0.1, 8)
-    assert [count for count in range(17) if threshold.is_due(count)] == [4, 8, 12, 16]
-    threshold.add(4, 0.01)
+    threshold = threshold_of(0.1, 40)
+    assert [count for count in range(60) if threshold.is_due(count)] == [32, 40, 48, 56]
+    threshold.add(32, 0.01)
     assert not threshold.is_reached
-    threshold.add(8, 0.1)
+    threshold.add(40, 0.1)
     assert not threshold.is_reached
-    threshold.add(12, 0.0999)
+    threshold.add(48, 0.0999)
     assert threshold.is_reached and threshold.noise == 0.0999
 
 

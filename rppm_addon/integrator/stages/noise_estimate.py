@@ -4,8 +4,8 @@
 The mean of half of the iterations and that of all differ as two independent estimates do, so their distance says how
 far the mean of all is from that of infinitely many. Dammertz et al., A Hierarchical Automatic Stopping Condition for
 Monte Carlo Global Illumination (2009), in the unit of Cycles (kernel/film/adaptive_sampling.h). Where points fill
-their space evenly the mean of all is better than that, by sqrt(2) at most. What both halves have alike, the blur of
-the radius, cannot be told so.
+their space evenly the mean of all is better than that: measured, by 1.3 at 64 iterations, by 2 at 500. What both
+halves have alike, the blur of the radius, cannot be told so.
 """
 
 import math
@@ -33,24 +33,37 @@ Record(
 BLOCK = 16
 """Pixels along a side of the blocks whose noise counts: of a single pixel's a few iterations say nothing."""
 Constants("NoiseBlocks", NOISE_BLOCK=BLOCK)
-BALANCED = 4
-"""Of so many iterations that follow each other, from a multiple of it on, the half has half."""
-_ODD_BITS = 0xAAAAAAAA
+_SHORTEST_RUN, _RUNS_PER_OCTAVE = 16, 4
+LEAST_MEASURED, MEASURED_EVERY = 2 * _SHORTEST_RUN, _SHORTEST_RUN // 2
+"""Iterations of which the noise can be told, and those from one time to the next."""
+
+
+def _run_length(index: int) -> int:
+    return max(_SHORTEST_RUN, (1 << max(index.bit_length() - 1, 0)) // _RUNS_PER_OCTAVE)
 
 
 def is_in_half(number: int) -> bool:
     """Whether an iteration (from 1) belongs to the half.
 
-    Points of iterations fill their space evenly, and so do those of either half: every other one would not. After
-    Christensen, Kensler and Kilpatrick, Progressive Multi-Jittered Sample Sequences (2018), as Cycles has it.
+    Points of iterations fill their space evenly, and so do 2^k of them from a multiple of 2^k on, while those of every
+    other iteration, however chosen, are strewn: of them the halves would tell several times the noise that there is,
+    most of it along edges, as all pixels look through the same subpixel. So runs of iterations belong to the half or do
+    not, in the order of Thue and Morse, and are as long as a quarter of the iterations before. Radii shrink: a blur
+    that goes away counts as far as it differs from run to run.
     """
-    return ((number - 1) & _ODD_BITS).bit_count() % 2 == 1
+    index = number - 1
+    return (index // _run_length(index)).bit_count() % 2 == 1
 
 
 def count_in_half(iterations: int) -> int:
     """How many of the first so many iterations belong to the half."""
-    groups, rest = divmod(iterations, BALANCED)
-    return groups * BALANCED // 2 + sum(map(is_in_half, range(iterations - rest + 1, iterations + 1)))
+    count = index = 0
+    while index < iterations:
+        end = index + _run_length(index)
+        if is_in_half(index + 1):
+            count += min(end, iterations) - index
+        index = end
+    return count
 
 
 def _half_values(sizes: StageSizes) -> int:
