@@ -135,6 +135,8 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     device = device_information(options.device)
     unpacked = f", unpacked in {device.driver_folder}" if device.driver_folder else ""
     print(f"Device   {device.name}\nDriver   {device.driver}{unpacked}\nOpenGL   {device.version}")
+    for number, name in enumerate(device.devices):
+        print(f"  --device {number}: {name}")
     for name, value in device.limits.items():
         print(f"  {name} {value}")
     print("Missing  " + ("nothing" if not device.missing else "\n         ".join(device.missing)))

@@ -2,7 +2,6 @@
 """The extension's preferences: the renderer process, the graphics device that it found, and what is missing."""
 
 import importlib.util
-import os
 import sys
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ from ..denoising.places import REMEDY
 from ..scene.quantities import bytes_text
 from ..session.process.client import ProcessState
 from . import renderer_process
+from .chosen_device import device_here, device_of_environment, with_device_here
 from .denoising_libraries import denoising_libraries, root_package
 from .panels.base import letters_across, paragraph, reading
 
@@ -34,6 +34,36 @@ _LIMITS = {
 }
 
 
+_DEFAULT = "DEFAULT"
+_items: list[tuple[str, str, str, int]] = []
+"""Of the menu of devices; Blender does not keep their texts."""
+
+
+def _device_items(owner: bpy.types.AddonPreferences, _context: bpy.types.Context | None) -> list:
+    """The default, those that the renderer has found, and the one that was chosen when there were more."""
+    device = renderer_process.renderer_process().device
+    names = {str(number): name for number, name in enumerate(device.devices if device is not None else ())}
+    chosen = device_here(owner.devices)
+    if chosen:
+        names.setdefault(chosen, "not looked for yet" if device is None else "not there")
+    tooltip = "EGL device of this number"
+    _items[:] = [
+        (_DEFAULT, "Default", "The one that the driver takes by itself", 0),
+        *((number, f"{number}: {name}", tooltip, int(number) + 1) for number, name in names.items()),
+    ]
+    return _items
+
+
+def _device_of(owner: bpy.types.AddonPreferences) -> int:
+    chosen = device_here(owner.devices)
+    return int(chosen) + 1 if chosen else 0
+
+
+def _choose_device(owner: bpy.types.AddonPreferences, number: int) -> None:
+    owner.devices = with_device_here(owner.devices, str(number - 1) if number > 0 else "")
+    renderer_process.device_changed()
+
+
 def missing() -> list[str]:
     """What keeps RPPM from rendering here, a line each with the remedy."""
     problems = []
@@ -53,6 +83,16 @@ class RppmPreferences(bpy.types.AddonPreferences):
 
     bl_idname = root_package()
 
+    devices: bpy.props.StringProperty(
+        name="Devices", description="The number of the chosen device by the machine's name, as JSON", options={"HIDDEN"}
+    )
+    device: bpy.props.EnumProperty(
+        name="Device",
+        description="The graphics device that this machine renders on; others that share these preferences have theirs",
+        items=_device_items,
+        get=_device_of,
+        set=_choose_device,
+    )
     denoiser_path: bpy.props.StringProperty(
         name="Denoiser",
         description=(
@@ -81,9 +121,15 @@ class RppmPreferences(bpy.types.AddonPreferences):
         device = process.device  # the process may end meanwhile
         if device is not None:
             self._draw_device(device)
-        chosen = os.environ.get("RPPM_DEVICE")
-        if chosen:
-            reading(layout, "Chosen Device", f"{chosen}, by the environment variable RPPM_DEVICE")
+        if device_of_environment():
+            text = f"{device_of_environment()}, by the environment variable RPPM_DEVICE or --rppm-device"
+            reading(layout, "Chosen Device", text)
+        elif sys.platform.startswith("linux"):
+            split = layout.split(factor=0.4)
+            left = split.row()
+            left.alignment = "RIGHT"
+            left.label(text="Device")
+            split.prop(self, "device", text="")
         self._draw_denoiser(context)
         row = layout.row()
         row.label(text=f"Log: {process.log_path}")
@@ -101,7 +147,7 @@ class RppmPreferences(bpy.types.AddonPreferences):
 
     def _draw_device(self, device: "DeviceInformation") -> None:
         column = self.layout.column(align=True)
-        reading(column, "Device", device.name)
+        reading(column, "Renders on", device.name)
         reading(column, "Driver", device.driver)
         if device.driver_folder:
             reading(column, "Driver Folder", device.driver_folder)

@@ -15,6 +15,7 @@ from ..session.process.client import ProcessState, RendererProcess
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
 from ..session.results import RenderResult
+from .chosen_device import VARIABLE, chosen_device
 from .denoising_libraries import denoising_libraries
 
 _EXTENSIONS = "bl_ext"
@@ -32,6 +33,7 @@ def renderer_process() -> RendererProcess:
             folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
             python = [python_program(), *bpy.app.python_args]
             _process = RendererProcess(python, folders, log_path(), denoisers=denoising_libraries())
+            _process.environment = _environment()
         return _process
 
 
@@ -69,6 +71,19 @@ def libraries_changed() -> None:
         _process.denoisers = denoising_libraries()
         if _process.state is ProcessState.RUNNING:
             _process.restart()
+
+
+def device_changed() -> None:
+    """Another device was chosen: a process that runs is started anew on it."""
+    if _process is not None:
+        _process.environment = _environment()
+        if _process.state is not ProcessState.STOPPED:
+            _process.restart()
+
+
+def _environment() -> dict[str, str]:
+    device = chosen_device()
+    return {VARIABLE: device} if device else {}
 
 
 def close() -> None:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from ..denoising.denoiser import Denoiser
 from ..scene import Scene
 from ..session.render_job import POLL_SECONDS, RenderJob
+from .chosen_device import chosen_device
 from .denoising_libraries import denoising_libraries
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ class _Conversation:
     def __init__(self, scene: Scene, job: RenderJob) -> None:
         self.scene = scene
         self.libraries = denoising_libraries()
+        self.device = chosen_device() or None
         self.job = job
         self.stop = threading.Event()
         self._questions: queue.SimpleQueue = queue.SimpleQueue()
@@ -135,7 +137,7 @@ class RendererThread:
                 if renderer is None:
                     from ..session.renderer import Renderer
 
-                    renderer = Renderer(denoiser=Denoiser(conversation.libraries))
+                    renderer = Renderer(conversation.device, Denoiser(conversation.libraries))
                 result = context.run(_render, renderer, conversation)
             except BaseException as raised:
                 error = raised

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ..scene.errors import DeviceError
+from .devices import device_names
 from .project_mesa import load_project_mesa
 
 log = logging.getLogger(__name__)
@@ -43,6 +44,8 @@ class DeviceInformation:
     missing: list[str] = field(default_factory=list)
     driver_folder: str = ""
     """Where the driver was loaded from, if it is not the system's."""
+    devices: list[str] = field(default_factory=list)
+    """Names of all that EGL lists, by their numbers."""
 
     @property
     def label(self) -> str:
@@ -96,6 +99,7 @@ class Context:
             version=f"{gl.version_code // 100}.{gl.version_code % 100 // 10}",
             limits={name: info[name] for name in _LIMITS if name in info},
             driver_folder=str(mesa or ""),
+            devices=device_names(),
         )
         context = cls(gl, information, device)
         if not context.has_program_binaries:

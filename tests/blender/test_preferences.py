@@ -66,7 +66,7 @@ def test_the_device_that_was_found(scene, process, context, monkeypatch):
     process.device = DeviceInformation("Some GPU", "Some driver 1.0", "4.6", limits, ["float atomics"])
     labels = drawn(RppmPreferences, context).labels
     assert {"Some GPU", "Some driver 1.0", "4.6", "128.0 MiB", "16,384", "float atomics"} <= set(labels)
-    assert "1, by the environment variable RPPM_DEVICE" in labels
+    assert "1, by the environment variable RPPM_DEVICE or --rppm-device" in labels
 
 
 def test_why_the_renderer_does_not_run(scene, process, context):

@@ -129,6 +129,6 @@ def test_an_error_between_iterations_ends_the_render(renderers, monkeypatch):
 
 
 def test_what_the_renderer_raises_reaches_the_caller(renderers, monkeypatch):
-    monkeypatch.setattr(FakeRenderer, "__init__", lambda self, denoiser: 1 / 0)
+    monkeypatch.setattr(FakeRenderer, "__init__", lambda self, device, denoiser: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         renderers.render(SCENE, Job())

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
@@ -33,7 +33,12 @@ class ChildProcess:
     """One started process. Messages are sent by one thread and read by another; any thread may kill it."""
 
     def __init__(
-        self, python: Sequence[str], folders: Sequence[str], log_path: Path, denoisers: Sequence[LibraryPlace] = ()
+        self,
+        python: Sequence[str],
+        folders: Sequence[str],
+        log_path: Path,
+        denoisers: Sequence[LibraryPlace] = (),
+        environment: Mapping[str, str] | None = None,
     ) -> None:
         """Start ``python`` (a program and its options) and greet it; arguments as RendererProcess's. Raises OSError
         when it cannot be started."""
@@ -44,6 +49,7 @@ class ChildProcess:
                 stdout=subprocess.PIPE,
                 stderr=log,
                 creationflags=_FLAGS,
+                env={**os.environ, **(environment or {})},
             )
         self.pid = self._process.pid
         self._folders = list(folders)

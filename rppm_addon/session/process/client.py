@@ -88,6 +88,8 @@ class RendererProcess:
         self._timeouts = timeouts or Timeouts()
         self.denoisers = list(denoisers)
         """What the next process that is started is told of."""
+        self.environment: dict[str, str] = {}
+        """Variables that it has beside Blender's own."""
         self.sessions: dict[int, Session] = {}
         self._numbers = 0
         self.outbox: collections.deque[tuple[str, dict]] = collections.deque()
@@ -215,7 +217,7 @@ class RendererProcess:
     def _run_process(self) -> tuple[str, bool]:
         """Start a process and see to it until it ends: why it did, and whether another one may do better."""
         try:
-            child = ChildProcess(self._python, self._folders, self.log_path, self.denoisers)
+            child = ChildProcess(self._python, self._folders, self.log_path, self.denoisers, self.environment)
         except OSError as error:
             return f"The renderer process cannot be started ({error})", False
         with self.changed:
