@@ -2,12 +2,15 @@
 """A final render: export, render, and show the picture as it grows."""
 
 import logging
+import re
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
+from ..pictures import PictureError
 from ..scene import Scene, cryptomatte
 from ..scene.errors import RppmError, SceneError
 from ..scene.passes import COMBINED
@@ -15,6 +18,7 @@ from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver, current_observer
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
+from ..session.still_keeper import StillKeeper, continued_still
 from . import background, broken_frames, renderer_process, renderer_thread
 from .export import ExportStopped, FrameExporter, export_scene, is_blurred, wants_neighbors
 from .export.camera.camera import frame_size
@@ -60,13 +64,17 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
 
 def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> None:
     scene = _export(engine, depsgraph, observer)
-    _report_warnings(engine, scene.warnings)
+    told = list(scene.warnings)
+    _report_warnings(engine, told)
     if not observer.on_scene(scene):
         return
     engine.update_stats("", "Preparing the graphics device")
-    job = _FinalJob(engine, scene, depsgraph, observer)
+    # Whoever follows the render, as the rppm program does, keeps it as it likes.
+    checkpoint = checkpoint_of(engine, depsgraph) if type(observer) is RenderObserver else None
+    job = _FinalJob(engine, scene, depsgraph, observer, checkpoint)
     try:
         result = _render_scene(engine, scene, job)
+        job.finish_keeping()
         job.show(result.frame)
     except BaseException:
         job.end(cancel=True)
@@ -75,7 +83,8 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     if not engine.is_preview:
         _stamp(engine, scene, depsgraph.view_layer_eval.name, result.statistics)
     # The statistics repeat the scene's warnings, which have been reported.
-    _report_warnings(engine, [text for text in result.statistics.warnings if text not in scene.warnings])
+    found = dict.fromkeys((*result.statistics.warnings, *scene.warnings))
+    _report_warnings(engine, [text for text in found if text not in told])
     if result.statistics.iterations and not engine.is_preview:
         record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
@@ -114,6 +123,21 @@ def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
             lambda text: engine.update_stats("", text),
         )
     )
+
+
+def checkpoint_of(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Path | None:
+    """Where a final render is to be kept: in a place for the frame's number (#), which animations need, and a file for
+    each view layer."""
+    stored = getattr(depsgraph.scene, "rppm", None)
+    text = "" if stored is None or engine.is_preview else bpy.path.abspath(stored.checkpoint_path)
+    if not text or (engine.is_animation and "#" not in Path(text).name):
+        return None
+    frame = depsgraph.scene.frame_current
+    path = Path(text)
+    name = re.sub("#+", lambda place: f"{frame:0{len(place[0])}d}", path.name.removesuffix(".exr"))
+    if sum(layer.use for layer in depsgraph.scene.view_layers) > 1:
+        name += f"_{bpy.path.clean_name(depsgraph.view_layer_eval.name)}"
+    return path.with_name(f"{name}.exr")
 
 
 def _check_size(engine: bpy.types.RenderEngine, render: bpy.types.RenderSettings) -> None:
@@ -182,14 +206,21 @@ class _FinalJob(RenderJob):
     """Shows a render in the engine's result and tells the observer."""
 
     def __init__(
-        self, engine: bpy.types.RenderEngine, scene: Scene, source: bpy.types.Depsgraph, observer: RenderObserver
+        self,
+        engine: bpy.types.RenderEngine,
+        scene: Scene,
+        source: bpy.types.Depsgraph,
+        observer: RenderObserver,
+        checkpoint: Path | None,
     ) -> None:
-        """source: what the scene was exported from."""
+        """source: what the scene was exported from; checkpoint: where the user wants the render to be kept."""
         self._engine = engine
         self._scene = scene
         self._layer = source.view_layer_eval.name
         self._names = f"{source.scene.name}, {self._layer}"
         self._observer = observer
+        self.checkpoint = checkpoint
+        self._keeper: StillKeeper | None = None
         self._peak_bytes = 0
         self._result = None
         self._shown_at = -1e9
@@ -201,7 +232,10 @@ class _FinalJob(RenderJob):
 
     @property
     def continuation(self) -> "Continuation | None":
-        return self._observer.continuation
+        if self._observer.continuation is not None or self.checkpoint is None:
+            return self._observer.continuation
+        self._keeper, continuation = continued_still(self.checkpoint, self._scene)
+        return continuation
 
     def should_stop(self) -> bool:
         return self._engine.test_break() or self._observer.should_stop()
@@ -251,6 +285,14 @@ class _FinalJob(RenderJob):
         self._engine.update_result(self._result)
         self._shown_at = time.monotonic()
         self._showing_seconds = self._shown_at - started
+
+    def finish_keeping(self) -> None:
+        """The render has ended: what of its checkpoint failed becomes a warning of the scene's."""
+        if self._keeper is not None:
+            try:
+                self._keeper.finish()
+            except PictureError as error:
+                self._scene.warn(str(error))
 
     def end(self, cancel: bool) -> None:
         """Hand the result back to Blender."""

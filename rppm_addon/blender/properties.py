@@ -32,6 +32,7 @@ BoolProperty = functools.partial(props.BoolProperty, update=_edited)
 EnumProperty = functools.partial(props.EnumProperty, update=_edited)
 FloatProperty = functools.partial(props.FloatProperty, update=_edited)
 IntProperty = functools.partial(props.IntProperty, update=_edited)
+StringProperty = functools.partial(props.StringProperty, update=_edited)
 PointerProperty = functools.partial(props.PointerProperty, update=_edited)
 
 DEFAULTS = RenderSettings()
@@ -120,8 +121,7 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
             update=_passes_edited,
         ),
         **{
-            viewport_property(name): setting_property(_INFOS[name], default)
-            for name, default in VIEWPORT_APART.items()
+            viewport_property(name): setting_property(_INFOS[name], default) for name, default in VIEWPORT_APART.items()
         },
         "film_exposure": FloatProperty(
             name="Exposure",
@@ -129,6 +129,15 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
             default=1.0,
             min=0.0,
             max=10.0,
+        ),
+        "checkpoint_path": StringProperty(
+            name="Checkpoint",
+            description=(
+                "File (.exr) that a final render is kept in every five minutes and when it is stopped. The next render "
+                "goes on from it, bit for bit; of another scene or other settings it begins anew. Animations need a "
+                "place for the frame's number, as in still_####.exr"
+            ),
+            subtype="FILE_PATH",
         ),
         "preview_pause": BoolProperty(
             name="Pause Preview",

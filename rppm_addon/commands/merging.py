@@ -20,7 +20,7 @@ from ..session.denoised_pictures import finished_frame
 from ..session.merged_passes import MergedPasses
 from ..session.renderer import exposed, exposed_passes
 from ..session.results import Frame
-from .checkpoints import refuse_differences
+from ..session.still_keeper import refuse_differences
 from .picture_files import write_png
 from .recorder import picture_metadata, write_frame
 

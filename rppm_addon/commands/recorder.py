@@ -13,7 +13,7 @@ from ..pictures import Placement, standard_view, write_exr
 from ..scene import RenderSettings, Scene
 from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver
-from .checkpoints import StillKeeper, attributes_of, placement_of
+from ..session.still_keeper import StillKeeper, attributes_of, placement_of
 from .picture_files import write_png
 from .progress_bar import ProgressBar
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..pictures import make_folder
 from ..scene import RenderSettings
 from ..scene.errors import SettingsError
-from .checkpoints import CheckpointRequest, StillKeeper
+from ..session.still_keeper import CheckpointRequest, StillKeeper
 from .frame_numbers import check_places
 from .interruption import Interruption
 from .options import (

@@ -4,6 +4,8 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from .continuation import Continuation
     from .results import Frame, Progress
 
@@ -20,7 +22,10 @@ class RenderJob:
     snapshots: tuple[float, ...] = ()
 
     continuation: "Continuation | None" = None
-    """Where to begin and who keeps the render, read after on_start; renders in the renderer's process begin and end."""
+    """Where to begin and who keeps the render, read after on_start; in the renderer's process: checkpoint."""
+
+    checkpoint: "Path | None" = None
+    """The file that a render in the renderer's process goes on from and is kept in; None is none."""
 
     def should_stop(self) -> bool:
         """Whether the render is to end with what it has."""

@@ -2,6 +2,7 @@
 """bpy.ops.render.render with RPPM: pictures, passes, stopping, errors, animation."""
 
 import logging
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -14,6 +15,7 @@ from rppm_addon.blender import engine as engine_module
 from rppm_addon.blender import final, renderer_thread
 from rppm_addon.scene.errors import DeviceError
 from rppm_addon.session import renderer as session_renderer
+from rppm_addon.session.checkpoint_file import read_summary
 from rppm_addon.session.observers import RenderObserver, observing
 
 
@@ -51,6 +53,29 @@ def test_picture_and_passes(lit, tmp_path):
     assert depth[2, 2] == pytest.approx(1e10)
     np.testing.assert_allclose(normal[16, 16], (0.0, 0.0, 1.0), atol=1e-3)
     np.testing.assert_allclose(normal[2, 2], 0.0, atol=1e-6)
+
+
+def test_a_checkpoint_keeps_a_final_render(lit, tmp_path, caplog):
+    """More samples go on with it; for the frame's number and the view layer it has names of its own."""
+    lit.rppm.samples, lit.rppm.checkpoint_path = 2, str(tmp_path / "kept_##.exr")
+    render_exr(lit, tmp_path)
+    assert (tmp_path / "kept_01.exr").is_file()
+    lit.rppm.samples = 5
+    kept = render_exr(lit, tmp_path)["ViewLayer.Combined"]
+    assert read_summary(tmp_path / "kept_01.exr").iteration == 5
+    lit.rppm.checkpoint_path = ""
+    np.testing.assert_array_equal(kept, render_exr(lit, tmp_path)["ViewLayer.Combined"])
+    engine = SimpleNamespace(is_preview=False, is_animation=True)
+    depsgraph = SimpleNamespace(scene=lit, view_layer_eval=lit.view_layers[0])
+    lit.rppm.checkpoint_path = str(tmp_path / "still.exr")
+    assert final.checkpoint_of(engine, depsgraph) is None
+    engine.is_animation = False
+    assert final.checkpoint_of(engine, depsgraph) == tmp_path / "still.exr"
+    lit.view_layers.new("Other/layer")
+    depsgraph.view_layer_eval = lit.view_layers[1]
+    assert final.checkpoint_of(engine, depsgraph) == tmp_path / "still_Other_layer.exr"
+    engine.is_preview = True
+    assert final.checkpoint_of(engine, depsgraph) is None
 
 
 def test_only_the_passes_asked_for(lit, tmp_path):
@@ -263,8 +288,10 @@ def test_progress_and_status(lit, monkeypatch):
     lit.rppm.samples = 4
     bpy.ops.render.render()
     assert any(text.startswith("Exporting") for text in stats)
-    samples = [text.split(" | ")[0] for text in stats if text.startswith("Sample")]
-    assert samples == [f"Sample {iteration}/4" for iteration in range(5)]
+    lines = [text.split(" | ") for text in stats if "Sample" in text]
+    assert [line[-2] for line in lines] == [f"Sample {iteration}/4" for iteration in range(5)]
+    assert all(line[-4].startswith("Mem:") and line[-3] == "Scene, ViewLayer" for line in lines)
+    assert [line[0].split(":")[0] for line in lines] == ["Mem", *["Remaining"] * 4]
     assert progress == sorted(progress) and progress[-1] == 1.0
 
 

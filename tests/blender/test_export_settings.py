@@ -19,6 +19,7 @@ ELSEWHERE = {"film_transparent", "passes", "aovs", "denoising_start_sample"}
 BESIDES = {
     "use_animated_seed",
     "film_exposure",
+    "checkpoint_path",
     "cubemap_center_object",
     "preview_samples",
     "preview_photons",

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from support.floor import floor_scene
 
-from rppm_addon.commands.checkpoints import still_render
 from rppm_addon.commands.merging import merge_parts
 from rppm_addon.denoising.denoiser import Denoiser
 from rppm_addon.denoising.places import library_places
@@ -25,6 +24,7 @@ from rppm_addon.session.process.rendering import Rendering
 from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
 from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.still_keeper import still_render
 
 PLACES = library_places()
 needs_library = pytest.mark.skipif(

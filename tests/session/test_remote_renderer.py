@@ -20,8 +20,8 @@ from .conftest import children, open_blocks, scene_of, wait_until
 
 
 class Job(RenderJob):
-    def __init__(self, stop_at=None):
-        self.stop_at, self.iterations = stop_at, []
+    def __init__(self, stop_at=None, checkpoint=None):
+        self.stop_at, self.iterations, self.checkpoint = stop_at, [], checkpoint
 
     def should_stop(self):
         return self.stop_at is not None and self.stop_at in self.iterations
@@ -93,6 +93,31 @@ def test_who_is_stopped_does_not_stop_the_next(remote, scene, pictures):
     # Before there was anything to see, nobody waits for the process.
     assert remote.render(endless, Job(stop_at=0)).stopped
     shows(remote, scene, 0.0, pictures)
+
+
+def test_a_render_goes_on_where_it_was_stopped(remote, scene, tmp_path):
+    """Once it is complete it is there at once, and of another scene it begins anew, its file being set aside."""
+    path = tmp_path / "kept.exr"
+    longer = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, iterations=8))
+    with Renderer() as renderer:
+        whole = renderer.render(longer).frame.combined
+    first = remote.render(longer, Job(stop_at=2, checkpoint=path))
+    assert first.stopped and path.is_file() and 2 <= first.statistics.iterations < 8
+    job = Job(checkpoint=path)
+    second = remote.render(longer, job)
+    assert job.iterations == list(range(first.statistics.iterations, 9)) and not second.stopped
+    np.testing.assert_array_equal(second.frame.combined, whole)
+    job = Job(checkpoint=path)
+    third = remote.render(longer, job)
+    assert job.iterations == [8]
+    np.testing.assert_array_equal(third.frame.combined, whole)
+    job = Job(checkpoint=path)
+    other = remote.render(moved(longer, 0.3), job)
+    assert job.iterations == list(range(9)) and (tmp_path / "kept_before.exr").is_file()
+    assert any("begins anew" in text and "other camera" in text for text in other.statistics.warnings)
+    job = Job()
+    remote.render(longer, job)
+    assert job.iterations == list(range(9))  # without a checkpoint nothing is gone on with
 
 
 def test_an_error_ends_one_render(remote, scene, pictures):

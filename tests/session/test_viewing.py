@@ -143,3 +143,17 @@ def test_it_follows_the_view_while_programs_are_compiled(open_viewing):
     other.show(moved, 1, False)
     run(other)
     assert (0.0 not in [progress for _, progress in other_sent.frames]) and last(viewing) == last(other)
+
+
+def test_a_viewport_is_done_with_its_noise(open_viewing):
+    viewing, sent = open_viewing()
+    settings = dataclasses.replace(
+        floor_scene().settings, iterations=1000, use_adaptive_sampling=True, adaptive_threshold=1.0,
+        adaptive_min_samples=33,
+    )  # fmt: skip
+    viewing.show(scene_of(settings=settings), 1, False)
+    run(viewing)
+    statuses = [content["status"] for kind, content in sent.messages if kind == "status"]
+    assert statuses[-1]["settled"] and statuses[-1]["iteration"] == 40
+    assert 0.0 < statuses[-1]["noise"] < statuses[-1]["noise_threshold"] == 1.0
+    assert sent.frames[-1] == (1, 1.0)

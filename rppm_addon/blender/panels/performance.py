@@ -38,7 +38,9 @@ class RPPM_PT_performance_final(RppmPanel, bpy.types.Panel):
     bl_parent_id = "RPPM_PT_performance"
 
     def draw(self, context: bpy.types.Context) -> None:
-        self.column().prop(context.scene.render, "use_persistent_data", text="Persistent Data")
+        column = self.column()
+        column.prop(context.scene.render, "use_persistent_data", text="Persistent Data")
+        column.prop(context.scene.rppm, "checkpoint_path")
 
 
 class RPPM_PT_performance_viewport(RppmPanel, bpy.types.Panel):

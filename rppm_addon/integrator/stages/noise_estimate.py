@@ -26,9 +26,7 @@ from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 
 Record("HalfParameters", count="uint", quantum="float", first_pixel="uint", number="uint")
-Record(
-    "NoiseParameters", count="uint", width="uint", height="uint", columns="uint", exposure="float", balance="float"
-)
+Record("NoiseParameters", count="uint", width="uint", height="uint", columns="uint", exposure="float", balance="float")
 
 BLOCK = 16
 """Pixels along a side of the blocks whose noise counts: of a single pixel's a few iterations say nothing."""

@@ -4,6 +4,7 @@
 import dataclasses
 import queue
 import threading
+from pathlib import Path
 from typing import Protocol
 
 from ...scene.scene import Scene
@@ -179,6 +180,7 @@ class RenderSession(Session):
         self.introduced = False
         """Whether there has been a process that knows the session; scenes shown to another one will reach it."""
         self._snapshots: tuple[float, ...] = ()
+        self._checkpoint = ""
         self._stopping = False
         self._generation = 0
 
@@ -201,6 +203,12 @@ class RenderSession(Session):
             self._snapshots = seconds
             self.process.post("expect_snapshots", session=self.number, seconds=seconds)
 
+    def keep_still(self, checkpoint: Path | None) -> None:
+        """Have the scene go on from a checkpoint and be kept in it; to be said before a scene begins."""
+        with self.process.changed:
+            self._checkpoint = str(checkpoint or "")
+            self.process.post("keep_still", session=self.number, path=self._checkpoint)
+
     def want_picture(self) -> None:
         """Ask for the picture so far."""
         with self.process.changed:
@@ -218,6 +226,7 @@ class RenderSession(Session):
         super().introduce()
         self.introduced = True
         self.process.post("expect_snapshots", session=self.number, seconds=self._snapshots)
+        self.process.post("keep_still", session=self.number, path=self._checkpoint)
         if self._stopping:
             self.process.post("stop", session=self.number, generation=self._generation)
         self.events.put(("started", {}))

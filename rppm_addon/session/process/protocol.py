@@ -13,6 +13,7 @@ show session, number, document, arrays, generation, navigating
                                       a snapshot
 pause session, paused
 expect_snapshots session, seconds     a render is to send its picture at these times
+keep_still session, path              renders go on from this checkpoint and are kept in it; "" is none
 want_picture session                  a render is to send its picture once
 received session                      the render's oldest frame is copied: its shared memory is free
 stop session, generation              the render of a scene is to end with what it has
@@ -41,7 +42,7 @@ import json
 import struct
 from typing import BinaryIO
 
-VERSION = 4
+VERSION = 5
 LONGEST_MESSAGE = 1 << 28
 _LENGTH = struct.Struct("<I")
 

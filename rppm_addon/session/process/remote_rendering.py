@@ -15,8 +15,8 @@ from .client_session import RenderSession
 from .protocol import ProtocolError
 from .sessions import SessionKind
 
-STOP_SECONDS = 10.0
-"""How long the process may take to stop; then the render ends without a picture."""
+STOP_SECONDS, KEEP_SECONDS = 10.0, 120.0
+"""How long the process may take to stop, and to keep the render as well; then it ends without a picture."""
 
 
 class RemoteRenderer:
@@ -75,6 +75,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
     def begin() -> None:
         job.on_start()
         session.expect_snapshots(tuple(job.snapshots))
+        session.keep_still(job.checkpoint)
         session.begin(scene)
 
     shown = session.introduced
@@ -85,7 +86,8 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
         if stopped_at is None and job.should_stop():
             stopped_at = time.monotonic()
             session.stop()
-        if stopped_at is not None and not (shown and time.monotonic() - stopped_at < STOP_SECONDS):
+        patience = STOP_SECONDS if job.checkpoint is None else KEEP_SECONDS
+        if stopped_at is not None and not (shown and time.monotonic() - stopped_at < patience):
             return empty_result(scene, process.device.label if process.device else "")
         try:
             event, content = session.events.get(timeout=POLL_SECONDS)

@@ -4,16 +4,19 @@
 import collections
 import dataclasses
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
 from ...denoising.denoiser import Denoiser
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
+from ...pictures import PictureError
 from ...scene.errors import RppmError
 from ...scene.scene import Scene
 from ..denoised_pictures import finished_frame, wanted_frame
 from ..renderer import SlicedRender, log
 from ..results import Frame, RenderResult
+from ..still_keeper import StillKeeper, continued_still
 from .arrays import pack
 from .background_denoising import BackgroundFinish
 from .shared_memory import SharedBlock
@@ -33,6 +36,8 @@ class Rendering:
         self._denoiser = denoiser
         self._send = send
         self._snapshots: Sequence[float] = ()
+        self._checkpoint = ""
+        self._keeper: StillKeeper | None = None
         self._scene: Scene | None = None
         self._mapper: ProgressivePhotonMapper | None = None
         self._render: SlicedRender | None = None
@@ -50,6 +55,10 @@ class Rendering:
         """Send the picture at these ascending times; to be said before the scene is shown."""
         self._snapshots = seconds
 
+    def keep_still(self, path: str) -> None:
+        """Go on from this checkpoint and keep the render in it, "" for none; to be said before the scene is shown."""
+        self._checkpoint = path
+
     def show(self, scene: Scene, generation: int, navigating: bool) -> None:
         """Render this scene."""
         self._scene = scene
@@ -64,6 +73,12 @@ class Rendering:
     @property
     def _stopping(self) -> bool:
         return self._stopped == self._generation
+
+    @property
+    def _stops_here(self) -> bool:
+        """Whether the render ends now, as it is to stop: one that is kept with its iteration."""
+        waits = self._keeper is not None and not (self._render.getting_ready or self._render.between_iterations)
+        return self._stopping and not waits
 
     def want_picture(self) -> None:
         """Send the picture as soon as an iteration is complete."""
@@ -84,9 +99,10 @@ class Rendering:
             if self._slices is None:
                 self._begin()
             if self._finish is None:
-                if not self._stopping and next(self._slices, self) is not self:
+                if not self._stops_here and next(self._slices, self) is not self:
                     self._send_wanted_picture()
                     return
+                self._keep()
                 result = self._render.result(self._stopping)
                 self._finish = BackgroundFinish(result, self._scene.settings, self._denoiser)
             finished = self._finish.take(self._stopping)
@@ -99,6 +115,9 @@ class Rendering:
 
     def _begin(self) -> None:
         self._mapper = self._mapper or ProgressivePhotonMapper(self._context, self._library)
+        self._keeper, continuation = None, None
+        if self._checkpoint:
+            self._keeper, continuation = continued_still(Path(self._checkpoint), self._scene)
         self._render = SlicedRender(
             self._context,
             self._mapper,
@@ -106,8 +125,19 @@ class Rendering:
             on_progress=lambda progress, _: self._send("progress", progress=dataclasses.asdict(progress)),
             snapshots=self._snapshots,
             on_snapshot=self._send_snapshot,
+            continuation=continuation,
         )
         self._slices = self._render.slices()
+
+    def _keep(self) -> None:
+        """Write the checkpoint of a render that ends."""
+        if self._keeper is None:
+            return
+        self._render.keep()
+        try:
+            self._keeper.finish()
+        except PictureError as error:
+            self._scene.warn(str(error))
 
     def _send_snapshot(self, seconds: float, frame: Frame) -> None:
         finished = finished_frame(frame, self._scene.settings, self._denoiser, self._scene.warnings)

@@ -28,7 +28,7 @@ from .viewing import Viewing
 
 log = logging.getLogger(__name__)
 
-_FOR_SESSIONS = frozenset(("show", "pause", "expect_snapshots", "want_picture", "received", "stop"))
+_FOR_SESSIONS = frozenset(("show", "pause", "expect_snapshots", "keep_still", "want_picture", "received", "stop"))
 LEAVE_SECONDS = 1.0
 """How long what the device is at may take to end once Blender has left."""
 

@@ -9,13 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..pictures import PictureError, Placement
-from ..scene import Camera, Scene, cryptomatte
+from ..scene import cryptomatte
+from ..scene.camera import Camera
 from ..scene.errors import CheckpointError, SettingsError
 from ..scene.fingerprint import AFTER_FILM, plain_settings, scene_digests
+from ..scene.scene import Scene
 
 if TYPE_CHECKING:
-    from ..session.checkpoint_file import CheckpointSummary, StillRender
-    from ..session.continuation import Continuation, Pause
+    from .checkpoint_file import CheckpointSummary, StillRender
+    from .continuation import Continuation, Pause
 
 log = logging.getLogger(__name__)
 
@@ -57,7 +59,7 @@ class StillKeeper:
 
     def __init__(self, request: CheckpointRequest) -> None:
         """Read the checkpoint to go on from, if it is there. Raises CheckpointError or SettingsError."""
-        from ..session.checkpoint_file import read_checkpoint
+        from .checkpoint_file import read_checkpoint
 
         request.check()
         self.request = request
@@ -84,7 +86,7 @@ class StillKeeper:
 
         Raises CheckpointError when the checkpoint is of another scene, has other settings or more iterations.
         """
-        from ..session.continuation import Continuation
+        from .continuation import Continuation
 
         self._render = still_render(scene, self.request.source)
         summary, left_out = self._summary, self.request.left_out
@@ -120,7 +122,7 @@ class StillKeeper:
             log.warning("the checkpoint could not be written: %s", error)
 
     def _write(self, path: Path, pause: "Pause") -> None:
-        from ..session.checkpoint_file import write_checkpoint
+        from .checkpoint_file import write_checkpoint
 
         write_checkpoint(path, self._render, pause, self._seconds_before + time.perf_counter() - self._start)
 
@@ -134,9 +136,29 @@ class StillKeeper:
             raise self._failure
 
 
+def continued_still(path: Path, scene: Scene) -> tuple[StillKeeper, "Continuation"]:
+    """Go on with the still that a checkpoint keeps, for whoever has a single file for it, and keep it there.
+
+    What is there of another scene or with other settings is set aside, under another name, and the scene says so.
+    """
+    request = CheckpointRequest(path, resume=True)
+    try:
+        keeper = StillKeeper(request)
+        return keeper, keeper.begin(scene, scene.settings.iterations)
+    except CheckpointError as error:
+        aside = path.with_name(f"{path.stem}_before{path.suffix}")
+        try:
+            path.replace(aside)
+        except OSError as failure:
+            raise CheckpointError(f"{error}; and it cannot be renamed ({failure}): choose another file") from failure
+        scene.warn(f"the render begins anew, and the checkpoint of before is now {aside.name}: {error}")
+        keeper = StillKeeper(request)
+        return keeper, keeper.begin(scene, scene.settings.iterations)
+
+
 def still_render(scene: Scene, source: Mapping[str, object]) -> "StillRender":
     """What tells the render of a scene from others."""
-    from ..session.checkpoint_file import StillRender
+    from .checkpoint_file import StillRender
 
     return StillRender(
         scene_digests(scene),
