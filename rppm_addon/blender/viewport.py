@@ -16,6 +16,7 @@ from ..session.process.client import ProcessState
 from ..session.process.sessions import SessionKind, SessionStatus
 from . import panels, reports, studio_lights
 from .export import ExportProgress, SceneSync, export_exposure, export_settings, export_view
+from .export.layers import world_of
 from .export.lights.view_lighting import relit, view_lighting
 from .frame_texture import FrameTexture
 from .panels.base import length_text, letters_across
@@ -207,7 +208,7 @@ def _settings(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> Ren
 
 def _lit(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph, scene: Scene) -> Scene:
     """A scene in the light that the shading popover asks for."""
-    lighting = view_lighting(context.space_data.shading, depsgraph.scene_eval.world)
+    lighting = view_lighting(context.space_data.shading, world_of(depsgraph))
     return relit(scene, lighting, studio_lights.picture(lighting.path))
 
 

@@ -96,7 +96,6 @@ EXCLUDED = {
     "CYCLES_WORLD_PT_volume": NOT_RENDERED,
     "OBJECT_PT_shadow_terminator": OF_CYCLES,
     "VIEWLAYER_PT_layer_passes_lightgroups": f"light groups: {NOT_RENDERED}",
-    "VIEWLAYER_PT_override": f"overrides of materials: {NOT_RENDERED}",
 }
 """Panels of Cycles that RPPM has nothing for, and why."""
 OLDER = {
@@ -104,7 +103,7 @@ OLDER = {
     "CYCLES_OBJECT_PT_shading": "is empty without the panels in it",
     "CYCLES_OBJECT_PT_shading_shadow_terminator": OF_CYCLES,
     "CYCLES_OBJECT_PT_shadow_linking": f"light linking: {NOT_RENDERED}",
-    "CYCLES_RENDER_PT_override": f"overrides of materials: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_override": "RPPM_PT_override shows it",
 }
 """Panels that Cycles had before Blender 5, and why RPPM has nothing for them."""
 EXCLUDED_BEGINNINGS = {

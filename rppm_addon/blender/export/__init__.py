@@ -12,6 +12,7 @@ from .camera.camera import export_camera
 from .camera.view import export_view
 from .context import ExportContext
 from .frames import FrameExporter
+from .layers import world_of
 from .lights.world import export_world
 from .motion import MotionExporter, is_blurred, wants_neighbors
 from .objects.assets import export_asset_names
@@ -70,7 +71,7 @@ def export_scene(
     objects = ObjectExporter(context)
     blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
     placed = objects.export(depsgraph, identify=blurred or neighbors)
-    scene.world, suns = export_world(source.world, context)
+    scene.world, suns = export_world(world_of(depsgraph), context)
     if blurred or neighbors:
         placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
     if neighbors and scene.camera.panorama is not None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from .images.images import ImageTable
+from .layers import LayerMasks, world_of
 from .report import Report
 
 
@@ -17,6 +18,9 @@ class ExportContext:
     images: ImageTable = field(default_factory=ImageTable)
     owners: tuple[bpy.types.bpy_struct | None, ...] = ()
     """View layer, scene and world, in the order in which they are asked for attributes."""
+    material_override: bpy.types.Material | None = None
+    """What all surfaces of the view layer have in place of their materials."""
+    masks: LayerMasks = field(default_factory=LayerMasks)
     owner_reads: int = 0
     """How often an attribute was read from the owners."""
 
@@ -29,4 +33,7 @@ class ExportContext:
         """What follows comes from this depsgraph, as it is now."""
         scene = depsgraph.scene_eval
         self.images.frame = scene.frame_current
-        self.owners = (depsgraph.view_layer_eval, scene, scene.world)
+        layer = depsgraph.view_layer_eval
+        self.owners = (layer, scene, world_of(depsgraph))
+        self.material_override = layer.material_override
+        self.masks = LayerMasks(layer)

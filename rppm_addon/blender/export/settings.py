@@ -41,6 +41,8 @@ def export_settings(
             settings.iterations, settings.photons = stored.preview_samples, stored.preview_photons
             apart = {name: getattr(stored, viewport_property(name)) for name in VIEWPORT_APART}
             settings = settings.with_values(**apart)
+    if not viewport and layer is not None and layer.samples > 0:
+        settings.iterations = layer.samples
     if viewport:
         settings.time_limit = 0.0
         settings.use_denoising &= shown_pass == COMBINED

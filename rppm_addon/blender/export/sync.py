@@ -13,6 +13,7 @@ from ...scene.garbage import collector_paused
 from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
+from .layers import overrides_of, world_of
 from .lights.world import export_world
 from .objects.assets import export_asset_names
 from .objects.object_pass import Placed
@@ -116,6 +117,8 @@ class SceneSync:
         self._world_may_change = False
         self._most_images = 0
         self._frame: float | None = None
+        self._overrides: tuple[object, ...] = ()
+        """What the view layer made of the scene."""
 
     @collector_paused()
     def update(
@@ -130,7 +133,7 @@ class SceneSync:
         if self._world is None:
             reads = self._context.untracked_reads
             with self._report.about("world"):
-                self._world = export_world(source.world, self._context)
+                self._world = export_world(world_of(depsgraph), self._context)
             self._world_may_change = self._context.untracked_reads > reads
         if self._placed is None or edits.others or asked or not self._patch(depsgraph, edits):
             unchanged, moved = ({}, {}) if asked else self._known(edits)
@@ -187,8 +190,10 @@ class SceneSync:
         """What has changed, of which shapes are forgotten and materials exported again; and whether those ask for
         other attributes of meshes."""
         edits = read_edits(depsgraph)
-        if edits.images or 0 < self._most_images < len(self._images.images):
+        overrides = overrides_of(depsgraph.view_layer_eval)
+        if edits.images or overrides != self._overrides or 0 < self._most_images < len(self._images.images):
             self._begin()
+            self._overrides = overrides
         self._context.read_from(depsgraph)
         self._advance(depsgraph.scene_eval, depsgraph, edits)
         # Not any(): each is to be exported.

@@ -33,8 +33,9 @@ FITTING = {
     "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
     "MATERIAL_PT_preview",
+    "VIEWLAYER_PT_override",
 }
-"""Panels of EEVEE that edit what RPPM reads: depth of field and material slots."""
+"""Panels of EEVEE that edit what RPPM reads: depth of field, material slots, and what view layers override."""
 
 
 def _is_fit(panel: type) -> bool:

@@ -33,4 +33,22 @@ class RPPM_PT_passes_aov(RppmPanel, ViewLayerAOVPanelHelper, bpy.types.Panel):
     bl_parent_id = "RPPM_PT_passes"
 
 
-CLASSES = (RPPM_PT_passes, RPPM_PT_passes_cryptomatte, RPPM_PT_passes_aov)
+class RPPM_PT_override(RppmPanel, bpy.types.Panel):
+    bl_label = "Override"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "view_layer"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Blender 5 has such a panel for all engines."""
+        return super().poll(context) and not hasattr(bpy.types, "VIEWLAYER_PT_override")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column, layer = self.column(), context.view_layer
+        column.prop(layer, "material_override")
+        if hasattr(layer, "world_override"):
+            column.prop(layer, "world_override")
+        column.prop(layer, "samples")
+
+
+CLASSES = (RPPM_PT_passes, RPPM_PT_passes_cryptomatte, RPPM_PT_passes_aov, RPPM_PT_override)

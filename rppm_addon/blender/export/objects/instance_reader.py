@@ -52,6 +52,7 @@ class InstanceReader:
     ) -> Instance:
         """What Blender does not name as changed may be animated, but for mesh and materials."""
         name, materials = source.name, before.materials
+        visibility, holdout = self.masked(source, visibility, source.is_holdout)
         return Instance(
             before.mesh,
             matrix,
@@ -62,7 +63,7 @@ class InstanceReader:
             _random(name),
             None,
             visibility,
-            source.is_holdout,
+            holdout,
             source.is_shadow_catcher,
             self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
         )
@@ -85,15 +86,25 @@ class InstanceReader:
         instancer: what multiplies the object.
         """
         materials = self._material_slots(source)
+        visibility, holdout = self.masked(instancer or source, visibility, source.is_holdout)
         return {
             "materials": materials,
             "color": tuple(source.color),
             "random": 0.0 if instancer is not None else _random(source.name),
             "visibility": visibility,
-            "holdout": source.is_holdout,
+            "holdout": holdout,
             "shadow_catcher": source.is_shadow_catcher,
             "attributes": self.attribute_values(source, materials, instancer),
         }
+
+    @property
+    def has_masks(self) -> bool:
+        """Whether any collection of the view layer is a mask."""
+        return self._context.masks.any
+
+    def masked(self, owner: bpy.types.Object, visibility: RayVisibility, holdout: bool) -> tuple[RayVisibility, bool]:
+        """Visibility and holdout in the view layer (LayerMasks.of)."""
+        return self._context.masks.of(owner, visibility, holdout)
 
     def attribute_values(
         self, source: bpy.types.Object, materials: list[int], instancer: bpy.types.Object | None
@@ -133,6 +144,9 @@ class InstanceReader:
         made = list(source.data.materials)
         # Geometry nodes may give the evaluated data slots that the object does not have.
         slots += made[len(slots) :]
+        override = self._context.material_override
+        if override is not None:
+            slots = [override]
         return [self.materials.index(material) for material in slots or [None]]
 
 

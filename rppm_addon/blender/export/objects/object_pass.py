@@ -214,6 +214,9 @@ class ObjectPass:
         if kind.converted:
             self._converted.add((kind.converted, matrix.tobytes()))
         shading = kind.shading
+        visibility, holdout = shading["visibility"], shading["holdout"]
+        if self._reader.has_masks:  # another one may multiply it that is in other collections
+            visibility, holdout = self._reader.masked(parent, visibility_of(source), source.is_holdout)
         placed = Instance(
             kind.mesh,
             matrix,
@@ -223,8 +226,8 @@ class ObjectPass:
             tuple(source.color),
             _random_of(instance),
             self._particles.of(instance) if owner.has_particles else None,
-            shading["visibility"],
-            shading["holdout"],
+            visibility,
+            holdout,
             shading["shadow_catcher"],
             shading["attributes"],
         )

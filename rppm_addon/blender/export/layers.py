@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a view layer makes of a scene: other materials, another world, and collections that are masks."""
+
+from collections.abc import Iterator
+
+import bpy
+
+from ...scene import RayVisibility
+
+_Mask = tuple[str, bool, bool]
+
+
+def world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
+    """The world of the depsgraph's view layer, evaluated."""
+    return getattr(depsgraph.view_layer_eval, "world_override", None) or depsgraph.scene_eval.world
+
+
+def overrides_of(layer: bpy.types.ViewLayer) -> tuple[object, ...]:
+    """What tells whether a layer makes the same of its scene as before."""
+    override, world = layer.material_override, getattr(layer, "world_override", None)
+    blocks = [None if block is None else block.original.session_uid for block in (override, world)]
+    return (*blocks, *_masks(layer.layer_collection))
+
+
+def _masks(collection: bpy.types.LayerCollection) -> Iterator[_Mask]:
+    if collection.holdout or collection.indirect_only:
+        yield collection.name, collection.holdout, collection.indirect_only
+    for child in collection.children:
+        yield from _masks(child)
+
+
+class LayerMasks:
+    """Which objects are holes in the picture, or are not seen by the camera, because a collection of theirs is."""
+
+    def __init__(self, layer: bpy.types.ViewLayer | None = None) -> None:
+        # Each object is only asked where any collection is one.
+        self._layer = layer if layer is not None and any(_masks(layer.layer_collection)) else None
+
+    @property
+    def any(self) -> bool:
+        """Whether there are such collections."""
+        return self._layer is not None
+
+    def of(self, owner: bpy.types.Object, visibility: RayVisibility, holdout: bool) -> tuple[RayVisibility, bool]:
+        """Visibility and holdout of what an object brings, itself or what it multiplies, from those of its own. As in
+        Cycles, a holdout is seen by the camera."""
+        if self._layer is None:
+            return visibility, holdout
+        holdout = holdout or owner.holdout_get(view_layer=self._layer)
+        if not holdout and owner.indirect_only_get(view_layer=self._layer):
+            visibility &= ~RayVisibility.CAMERA
+        return visibility, holdout

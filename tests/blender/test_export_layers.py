@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What view layers make of a scene: overrides, samples, and collections that are masks."""
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_mesh, add_object, export, new_material, set_world
+from emission import world_map
+
+from rppm_addon.blender.export import SceneSync
+from rppm_addon.blender.export.camera.camera import export_camera
+from rppm_addon.blender.export.report import Report
+from rppm_addon.scene import RayVisibility
+
+
+@pytest.fixture
+def masked(scene):
+    """A quad in a collection of its own, one beside it, and a third that an empty of the collection multiplies."""
+    collection = bpy.data.collections.new("Masks")
+    scene.collection.children.link(collection)
+    inside, _outside, multiplied = (add_mesh(scene, name) for name in ("Inside", "Outside", "Multiplied"))
+    scene.collection.objects.unlink(inside)
+    collection.objects.link(inside)
+    for quad in (inside, multiplied):
+        quad.data.materials.append(new_material(quad.name))
+    source = bpy.data.collections.new("Source")
+    scene.collection.objects.unlink(multiplied)
+    source.objects.link(multiplied)
+    for name, owner in (("Masked", collection), ("Free", scene.collection)):
+        empty = add_object(scene, name, None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", source
+        if owner is collection:
+            scene.collection.objects.unlink(empty)
+            owner.objects.link(empty)
+    return scene
+
+
+def mask_of(scene):
+    return scene.view_layers[0].layer_collection.children["Masks"]
+
+
+def masks(exported):
+    """By name, whether instances are seen by the camera, and whether they are holes."""
+    return sorted((i.object_name, bool(i.visibility & RayVisibility.CAMERA), i.holdout) for i in exported.instances)
+
+
+FREE = [("Inside", True, False), ("Multiplied", True, False), ("Multiplied", True, False), ("Outside", True, False)]
+
+
+def test_collections_are_holes_or_unseen(masked):
+    assert masks(export(masked)) == FREE
+    mask_of(masked).holdout = True
+    holes = [("Inside", True, True), ("Multiplied", True, False), ("Multiplied", True, True), ("Outside", True, False)]
+    assert masks(export(masked)) == holes
+    mask_of(masked).indirect_only = True  # a holdout first of all, as in Cycles
+    assert masks(export(masked)) == holes
+    mask_of(masked).holdout = False
+    unseen = [("Inside", False, False), ("Multiplied", False, False), ("Multiplied", True, False),
+              ("Outside", True, False)]  # fmt: skip
+    exported = export(masked)
+    assert masks(exported) == unseen
+    assert all(instance.visibility & RayVisibility.DIFFUSE for instance in exported.instances)
+
+
+def test_materials_and_world_are_overridden(masked):
+    set_world(masked, (1.0, 1.0, 1.0))
+    layer = masked.view_layers[0]
+    assert len(export(masked).materials) > 1
+    layer.material_override = new_material("Clay")
+    exported = export(masked)
+    assert [material.name for material in exported.materials] == ["Clay"]
+    assert all(instance.materials == [0] for instance in exported.instances)
+    if hasattr(layer, "world_override"):
+        own, layer.world_override = masked.world, set_world(masked, (0.5, 0.25, 0.0))
+        masked.world = own
+        np.testing.assert_allclose(world_map(export(masked))[0, 0], (0.5, 0.25, 0.0))
+
+
+def test_samples_of_a_layer(scene):
+    scene.rppm.samples, layer = 50, scene.view_layers[0]
+    assert export(scene).settings.iterations == 50
+    layer.samples = 7
+    assert export(scene).settings.iterations == 7
+    layer.samples = 0
+    assert export(scene).settings.iterations == 50
+
+
+def test_a_scene_that_lives_on_follows_its_layer(masked):
+    """What a viewport or persistent data keep of the objects is not taken for what they are now."""
+    sync, layer = SceneSync(viewport=False), masked.view_layers[0]
+
+    def followed():
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return sync.update(depsgraph, export_camera(masked, depsgraph, Report()))
+
+    assert masks(followed()) == FREE
+    mask_of(masked).holdout = True
+    assert [holdout for *_, holdout in masks(followed())] == [True, False, True, False]
+    mask_of(masked).holdout = False
+    assert masks(followed()) == FREE
+    layer.material_override = new_material("Clay")
+    assert [material.name for material in followed().materials] == ["Clay"]
+    layer.material_override = None
+    assert len(followed().materials) > 1
