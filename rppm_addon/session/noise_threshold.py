@@ -23,7 +23,7 @@ class NoiseThreshold:
     def __init__(self, settings: RenderSettings) -> None:
         self.threshold = settings.adaptive_threshold if settings.use_adaptive_sampling else 0.0
         """0 is none."""
-        self._least = settings.least_iterations
+        self._least = _measured_after(max(settings.least_iterations, LEAST_MEASURED))
         self._exponent = 0.5 * settings.alpha
         """Noise is expected to fall with this power of the iterations: that of photons, whose radii shrink."""
         self._measured: list[tuple[int, float]] = []
@@ -64,4 +64,9 @@ class NoiseThreshold:
         slope = (_TRUST * -self._exponent + sum((x - mean_x) * (y - mean_y) for x, y in points)) / spread
         exponent = min(max(-slope, _LEAST_EXPONENT), _MOST_EXPONENT)
         wanted = math.exp(min(mean_x + (mean_y - math.log(self.threshold)) / exponent, 60.0))
-        return max(math.ceil(wanted / MEASURED_EVERY) * MEASURED_EVERY, self._least, newest)
+        return max(_measured_after(wanted), self._least, newest)
+
+
+def _measured_after(iterations: float) -> int:
+    """The first number of iterations, not below this one, after which the noise is measured."""
+    return math.ceil(iterations / MEASURED_EVERY) * MEASURED_EVERY

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What users do with a render and a viewport beside looking: pause and go on, and light the scene otherwise."""
 
+import time
+
 import numpy as np
 import pytest
 from viewport_window import arrange, show_rendered, wait_for_rest
@@ -13,11 +15,15 @@ def test_esc_pauses_and_f12_goes_on(machine, open_blender):
     blender = open_blender("endless.blend")
     blender.step("assign", path="scene.rppm.checkpoint_path", value="/mnt/kept.exr")
     blender.point_at("VIEW_3D")
-    blender.press("F12")
-    blender.wait_until("render_counts", 60.0, lambda counts: counts["started"] == 1)
-    blender.wait_until("rendering", 60.0)
-    blender.press("Escape")
-    blender.wait_until("render_counts", 120.0, lambda counts: counts["cancelled"] == 1)
+    for number, seconds in enumerate((3.0, 10.0, 30.0, 90.0), 1):  # until it was stopped within a sample but the first
+        blender.press("F12")
+        blender.wait_until("render_counts", 60.0, lambda counts, number=number: counts["started"] == number)
+        blender.wait_until("rendering", 60.0)
+        time.sleep(seconds)
+        blender.press("Escape")
+        blender.wait_until("render_counts", 120.0, lambda counts, number=number: counts["cancelled"] == number)
+        if (machine.folder / "kept.exr").is_file():
+            break
     paused = read_summary(machine.folder / "kept.exr").iteration
     assert paused >= 1
     blender.step("assign", path="scene.rppm.samples", value=paused + 2)
