@@ -4,8 +4,8 @@
 The mean of half of the iterations and that of all differ as two independent estimates do, so their distance says how
 far the mean of all is from that of infinitely many. Dammertz et al., A Hierarchical Automatic Stopping Condition for
 Monte Carlo Global Illumination (2009), in the unit of Cycles (kernel/film/adaptive_sampling.h). Where points fill
-their space evenly the mean of all is better than that: measured, by 1.3 at 64 iterations, by 2 at 500. What both
-halves have alike, the blur of the radius, cannot be told so.
+their space evenly the mean of all is better than that: measured along edges, by 1.5 at 64 iterations and 2.3 at 512.
+What both halves have alike, the blur of the radius, cannot be told so.
 """
 
 import math
