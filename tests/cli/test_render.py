@@ -178,7 +178,7 @@ def test_an_exported_scene_renders_like_its_blend_file(tmp_path, rppm, blend_fil
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--set", "render.fps=3"], 1, "needs a .blend"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--set", "rppm.alfa=3"], 1, "no setting alfa"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--set", "rppm.alpha=3"], 1, "set it to 0.01 to 0.999999"),
-        (["render", "{npz}", "-o", "{tmp}/a.exr", "--photons", "99999999"], 1, "photons"),
+        (["render", "{npz}", "-o", "{tmp}/a.exr", "--photons", "99999999"], 2, "photons"),
         (["render", "{npz}", "-o", "{tmp}/a.exr", "--device", "77"], 1, "device"),
         (["render", "{tmp}/absent.npz", "-o", "{tmp}/a.exr"], 1, "absent.npz"),
         (["render", "{tmp}/absent.blend", "-o", "{tmp}/a.exr"], 1, "does not exist"),
