@@ -35,13 +35,14 @@ vec2 disk_to_square(vec2 p) {
     return 0.5 + 0.5 * (wide ? vec2(r, across) : vec2(across, r));
 }
 
-// Around n with density cosine / pi.
-vec3 sample_cosine_hemisphere(vec3 n, vec2 u) {
-    vec2 d = sample_disk(u);
+// Around n with density cosine / pi, of a point evenly spread on the unit disk.
+vec3 cosine_hemisphere(vec3 n, vec2 d) {
     vec3 t, b;
     tangent_frame(n, t, b);
     return normalize(d.x * t + d.y * b + sqrt(max(0.0, 1.0 - dot(d, d))) * n);
 }
+
+vec3 sample_cosine_hemisphere(vec3 n, vec2 u) { return cosine_hemisphere(n, sample_disk(u)); }
 
 vec2 hemisphere_to_square(vec3 n, vec3 direction) {
     vec3 t, b;

@@ -30,7 +30,8 @@ float smoothest_lit(bool gathered) {
 // Whether any part of a closure is.
 bool can_be_lit(Closure closure, bool gathered) {
     bool lit = largest(closure.diffuse) > 0.0 || largest(closure.translucent) > 0.0;
-    for (int k = 0; k < CLOSURE_LOBES; ++k) lit = lit || lobe_stores(closure_lobe(closure, k), smoothest_lit(gathered));
+    for (int k = 0; k < closure_lobes(closure); ++k)
+        lit = lit || lobe_stores(closure_lobe(closure, k), smoothest_lit(gathered));
     return lit;
 }
 
@@ -50,23 +51,26 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool 
         value *= power_heuristic(light_pdf, probability * cosine / PI);
     }
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+    for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (!lobe_stores(lobe, smoothest_lit(gathered))) continue;
+        vec3 normal = lobe_normal(lobe);
+        float cosine = dot(normal, wi);
+        if (!lobe_stores(lobe, smoothest_lit(gathered)) || (cosine > 0.0) != front) continue;
+        LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
         if (light_pdf > 0.0 && parameters.last_segment == 0u && (specular || (gathers && environment)))
-            weight *= power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.gathering,
-                                                                  shares.total, k)
-                                                     * lobe_pdf(lobe, lobe_normal(lobe), wo, wi));
-        value += weight * lobe_scattered(closure, lobe, wo, wi, front);
+            weight *= power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.stored,
+                                                                  shares.total, k) * scattered.pdf);
+        value += weight * (abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * scattered.bsdf);
     }
     return value;
 }
 
 bool lit_from_behind(Closure closure) {
     bool transmits = largest(closure.translucent) > 0.0;
-    for (int k = 0; k < CLOSURE_LOBES; ++k) transmits = transmits || lobe_transmits(closure_lobe(closure, k).kind);
+    for (int k = 0; k < closure_lobes(closure); ++k)
+        transmits = transmits || lobe_transmits(closure_lobe(closure, k).kind);
     return transmits;
 }
 
@@ -91,23 +95,24 @@ void add_candidate(inout Candidates candidates, float weight, Arriving arriving)
 Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares, vec3 wo, uint flags, uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
-    for (int k = 0; k < CLOSURE_LOBES; ++k) looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
+    for (int k = 0; k < closure_lobes(closure); ++k)
+        looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
     if (!looks) return NOTHING_ARRIVES;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u));
+    vec2 disk = sample_disk(scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)));
     Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
                                        scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).x);
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+    for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
-        LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, u_lobe, 0.0, true);
+        LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, disk, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
         PassedLights passed = passed_lights(closure.position, sampled.direction, INFINITY_DISTANCE, RAY_GLOSSY, 0.0,
                                             candidates.u);
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
-                       * reflected_share(lobe, dot(wo, normalize(wo + sampled.direction)));
+                       * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
         vec3 radiance = reflected * passed.chosen * passed.weights;
         add_candidate(candidates, largest(radiance),
                       Arriving(radiance, sampled.direction, passed.distance, NO_TRIANGLE));
@@ -128,7 +133,8 @@ float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 d
     if (!(parameters.direct_world_flux > 0.0)) return 1.0;
     float least = vertex_radius(path, -wo, closure);
     float most = caustic_radius_of(parameters.first_pixel + index, least, gathered);
-    return 1.0 - direct_photon_share(direction, disk_radius(gathered ? most : least, most));
+    return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction),
+                                     disk_radius(gathered ? most : least, most));
 }
 
 // Of a light that is chosen by what it may give at the point.

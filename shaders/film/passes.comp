@@ -105,7 +105,7 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
     vec3 albedo = closure.diffuse + closure.translucent;
     float rough = largest(albedo), total = rough;
     vec3 normal = rough * unpack_unit_vector(closure.diffuse_normal);
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+    for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (lobe.kind == LOBE_NONE) continue;
         vec3 lobe_color = lobe_albedo(lobe, lobe_cosine(lobe, viewer));

@@ -26,8 +26,8 @@ layout(std430, binding = 9) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 
-Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float least_radius, float radius, float u,
-                       uint gathers) {
+Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius, float radius,
+                       float u, uint gathers) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.diffuse_normal,
                                  throughput * closure.translucent / PI, closure.diffuse_roughness,
@@ -35,11 +35,10 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float leas
                                  closure.shading_normal, least_radius, 0u);
     // One rough lobe stands for all of them, chosen by its albedo.
     float total = 0.0;
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+    for (int k = 0; k < closure_lobes(closure); ++k) {
+        float share = shares[1 + k];
+        if (!(share > 0.0)) continue;
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (!lobe_stores(lobe, parameters.specular_alpha)) continue;
-        float share = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
-        if (share <= 0.0) continue;
         total += share;
         if (takes_candidate(share, total, u)) {
             importon.lobe_weight = throughput * lobe.weight / share;
@@ -58,21 +57,20 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, float leas
     return importon;
 }
 
-// In 1/sr, of shadow rays to the environment from a vertex that sends a ray on.
-float environment_shadow_ray_pdf(vec3 direction) {
+// The share that a ray has of the environment that shadow rays from its vertex find as well, with this pdf in 1/sr.
+float environment_weight(CameraPath path, float shadow_ray_pdf) {
     bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
-    return left_to_rays ? 0.0 : world_shadow_ray_pdf(direction);
+    return scatter_mis_weight(path.scatter_pdf, left_to_rays ? 0.0 : shadow_ray_pdf);
 }
 
 // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left to
 // photons but for the environment's. Shadow rays find direct light, and share the environment's with this ray.
-void end_gathering_ray(uint index, CameraPath path, vec3 direction) {
-    vec3 world = world_radiance(direction);
+// shadow_ray_pdf: of these.
+void end_gathering_ray(uint index, CameraPath path, vec3 world, float shadow_ray_pdf) {
     if ((path.flags & PATH_CAUSTIC) == 0u) {
         if (parameters.next_event == 0u) return;
-        float weight = scatter_mis_weight(path.scatter_pdf, environment_shadow_ray_pdf(direction));
-        vec3 arrived = path.throughput * world * weight;
-        arrived *= 1.0 - direct_photon_share(direction, gathering_vertices[index].radius);
+        vec3 arrived = path.throughput * world * environment_weight(path, shadow_ray_pdf);
+        arrived *= 1.0 - direct_photon_share(world, shadow_ray_pdf, gathering_vertices[index].radius);
         if ((path.flags & PATH_GATHERED_AGAIN) != 0u) gathering_vertices[index].found = arrived;
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
         return;
@@ -82,13 +80,10 @@ void end_gathering_ray(uint index, CameraPath path, vec3 direction) {
 }
 
 // Radiance and alpha of what lies behind everything. background: no light object was passed.
-vec4 seen_environment(CameraPath path, vec3 direction, bool background) {
-    bool straight = (path.flags & PATH_STRAIGHT) != 0u;
-    if (straight && background && parameters.film_transparent != 0u)
+vec4 seen_environment(CameraPath path, vec3 world, float shadow_ray_pdf, bool background) {
+    if ((path.flags & PATH_STRAIGHT) != 0u && background && parameters.film_transparent != 0u)
         return vec4(vec3(0.0), -(path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
-    float weight = scatter_mis_weight(path.scatter_pdf, environment_shadow_ray_pdf(direction));
-    vec3 world = straight ? world_radiance_seen(direction) : world_radiance(direction);
-    return vec4(path.throughput * world * weight, 0.0);
+    return vec4(path.throughput * world * environment_weight(path, shadow_ray_pdf), 0.0);
 }
 
 // Radiance and alpha of a surface that shines by itself or cuts a hole.
@@ -117,15 +112,14 @@ struct Event {
     uint flags;         // of the path from here on
 };
 
-Event diffuse_event(CameraPath path, Closure closure, float u, vec2 u_direction, vec4 shares, float total,
-                    float survival) {
+Event diffuse_event(CameraPath path, Closure closure, float u, vec2 disk, vec4 shares, float total, float survival) {
     Event event;
     float reflected = largest(path.throughput * closure.diffuse);
     event.transmitted = u >= reflected;
     event.probability = event.transmitted ? shares.x - reflected : reflected;
     event.normal = unpack_unit_vector(closure.diffuse_normal);
     if (event.transmitted) event.normal = -event.normal;
-    event.direction = sample_cosine_hemisphere(event.normal, u_direction);
+    event.direction = cosine_hemisphere(event.normal, disk);
     event.weight = event.transmitted ? closure.translucent : closure.diffuse;
     event.pdf = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
     event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND)) | PATH_DIFFUSE;
@@ -140,13 +134,14 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
 }
 
 // u: behind the share of what is no lobe.
-Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec3 u_lobe, vec4 shares, float total) {
+Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec2 disk, float u_event, vec4 shares,
+                 float total) {
     Event event;
     int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
     event.probability = shares[1 + chosen];
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
     event.normal = lobe_normal(lobe);
-    LobeSample sampled = sample_lobe(lobe, event.normal, viewer, u_lobe.xy, u_lobe.z, true);
+    LobeSample sampled = sample_lobe(lobe, event.normal, viewer, disk, u_event, true);
     event.pdf = 0.0;
     if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
         event.pdf = lobe_probability(shares, total, chosen)
@@ -164,31 +159,30 @@ Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec3 u_
 }
 
 // The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
-void go_on(uint index, CameraPath path, Ray ray, Closure closure, bool gathers, float radius, float disk,
-           uvec4 choices, float u) {
+void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all, bool gathers, float radius,
+           float disk, uvec4 choices, float u) {
     vec3 viewer = -ray.direction;
-    PathShares all = path_shares(closure, path.throughput, viewer, parameters.specular_alpha, gathers);
-    float gathering = sum(all.gathering), total = all.total;
+    float gathering = gathers ? sum(all.stored) : 0.0, total = all.total;
     if (total <= 0.0) return;
     float survival = path_survival(total);
     if (u >= survival) return;
-    vec2 u_direction = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices));
+    vec2 on_disk = sample_disk(scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
     float u_event = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)).x;
     u *= total / survival;
     bool sets_out = u < gathering, gathered = (path.flags & PATH_GATHERED) != 0u;
     if (sets_out) {
         path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED | (gathered ? PATH_GATHERED_AGAIN : 0u);
     } else u -= gathering;
-    vec4 shares = sets_out ? all.gathering : all.specular;
+    vec4 shares = sets_out ? all.stored : all.specular;
     Event event;
     bool diffuse = sets_out && u < shares.x;
     vec3 found_weight = vec3(1.0);
     if (diffuse) {
-        event = diffuse_event(path, closure, u, u_direction, shares, total, survival);
+        event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
         found_weight = diffuse_factor(closure, facing, viewer, event.direction);
     } else if (u < shares.x) event = straight_event(path, closure, ray.direction, shares);
-    else event = lobe_event(path, closure, viewer, u - shares.x, vec3(u_direction, u_event), shares, total);
+    else event = lobe_event(path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
     if (event.probability <= 0.0) return;
     path.flags = event.flags;
     path.scatter_pdf = event.pdf;
@@ -223,8 +217,14 @@ void main() {
     if (!(ray.maximum_distance > 0.0)) return;
     Closure closure = closures[index];
     bool hit = closure_hit(closure), gathered = (path.flags & PATH_GATHERED) != 0u;
+    vec3 world = vec3(0.0);
+    float shadow_ray_pdf = 0.0;
+    if (!hit) {
+        world = world_radiance(ray.direction, (path.flags & PATH_STRAIGHT) != 0u && !gathered);
+        shadow_ray_pdf = world_shadow_ray_pdf(ray.direction);
+    }
     if (gathered && !hit) {
-        end_gathering_ray(index, path, ray.direction);
+        end_gathering_ray(index, path, world, shadow_ray_pdf);
         return;
     }
     vec3 lights_passed = vec3(0.0);
@@ -233,7 +233,7 @@ void main() {
                                       camera_ray_kind(path.flags), path.scatter_pdf);
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);
     if (!hit) {
-        radiances[index] += seen + seen_environment(path, ray.direction, largest(lights_passed) <= 0.0);
+        radiances[index] += seen + seen_environment(path, world, shadow_ray_pdf, largest(lights_passed) <= 0.0);
         return;
     }
     path.throughput *= segment_transmittance(path.flags, closure);
@@ -248,9 +248,12 @@ void main() {
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
+    PathShares shares = path_shares(closure, path.throughput, -ray.direction, parameters.specular_alpha, gathers);
     float least_radius = gathered ? caustic_radius : radius;
-    importons[index] = make_importon(closure, path.throughput, -ray.direction, least_radius, caustic_radius, u_lobe.y,
+    importons[index] = make_importon(closure, path.throughput, -ray.direction, shares.stored, least_radius,
+                                     caustic_radius, u_lobe.y,
                                      (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u));
     if (parameters.last_segment == 0u)
-        go_on(index, path, ray, closure, gathers, radius, disk_radius(least_radius, caustic_radius), choices, u_lobe.x);
+        go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, caustic_radius), choices,
+              u_lobe.x);
 }

@@ -23,9 +23,13 @@ vec3 world_radiance(vec3 direction) {
 }
 
 // Light Path nodes may show the camera another world than the one that gives light.
-vec3 world_radiance_seen(vec3 direction) {
+vec3 world_radiance(vec3 direction, bool seen) {
     if (parameters.environment_width == 0u) return parameters.world_radiance;
-    return parameters.world_radiance * textureLod(environment_seen, direction_to_equirectangular(direction), 0.0).rgb;
+    vec2 at = direction_to_equirectangular(direction);
+    vec3 texel;
+    if (seen) texel = textureLod(environment_seen, at, 0.0).rgb;
+    else texel = textureLod(environment_image, at, 0.0).rgb;
+    return parameters.world_radiance * texel;
 }
 
 // Without textures: gathering rays then find it so well that no shadow rays are sent to it.

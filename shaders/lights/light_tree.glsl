@@ -46,9 +46,10 @@ float node_importance(LightNode node, LitPoint point) {
 
 // Of a tree whose root is the first node but one: its children together know more than it does.
 float tree_importance(uint first, uint leaves, LitPoint point) {
-    if (leaves == 0u) return 0.0;
-    if (leaves == 1u) return node_importance(light_nodes[first + 1u], point);
-    return node_importance(light_nodes[first + 2u], point) + node_importance(light_nodes[first + 3u], point);
+    uint begin = min(leaves, 2u), end = 2u * begin;
+    float importance = 0.0;
+    for (uint node = begin; node < end; ++node) importance += node_importance(light_nodes[first + node], point);
+    return importance;
 }
 
 float sun_importance(LightNode sun, LitPoint point) {
@@ -79,18 +80,28 @@ float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep
     return probability;
 }
 
+// Kinds of light that a choice is made among: the light objects' tree, the emissive triangles', the environment, and
+// each sun.
+const uint KIND_OBJECTS = 0u, KIND_TRIANGLES = 1u, KIND_ENVIRONMENT = 2u, KIND_FIRST_SUN = 3u;
+
+float kind_importance(uint kind, LitPoint point, float environment_irradiance) {
+    if (kind >= KIND_FIRST_SUN)
+        return sun_importance(light_nodes[parameters.first_sun + kind - KIND_FIRST_SUN], point);
+    if (kind == KIND_ENVIRONMENT) return environment_irradiance;
+    bool objects = kind == KIND_OBJECTS;
+    return tree_importance(objects ? 0u : parameters.triangle_tree,
+                           objects ? parameters.light_tree_leaves : parameters.triangle_tree_leaves, point);
+}
+
 // environment_irradiance: what the environment counts for, W/m^2. u_deep takes over where u has been used up.
 LightChoice choose_light_at(LitPoint point, float environment_irradiance, float u, float u_deep) {
-    uint kinds = 3u + parameters.sun_count;
+    uint kinds = KIND_FIRST_SUN + parameters.sun_count;
     float total = 0.0, shining = 0.0;
     // The first sun's is kept as well: most scenes have no other.
-    vec4 importances = vec4(tree_importance(0u, parameters.light_tree_leaves, point),
-                            tree_importance(parameters.triangle_tree, parameters.triangle_tree_leaves, point),
-                            environment_irradiance,
-                            parameters.sun_count > 0u ? sun_importance(light_nodes[parameters.first_sun], point) : 0.0);
+    vec4 importances = vec4(0.0);
     for (uint kind = 0u; kind < kinds; ++kind) {
-        float importance = kind < 4u ? importances[kind]
-                           : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+        float importance = kind_importance(kind, point, environment_irradiance);
+        if (kind < 4u) importances[kind] = importance;
         total += importance;
         shining += importance > 0.0 ? 1.0 : 0.0;
     }
@@ -99,7 +110,7 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     uint chosen = kinds;
     for (uint kind = 0u; kind < kinds; ++kind) {
         float importance = kind < 4u ? importances[kind]
-                           : sun_importance(light_nodes[parameters.first_sun + kind - 3u], point);
+                           : sun_importance(light_nodes[parameters.first_sun + kind - KIND_FIRST_SUN], point);
         if (!(importance > 0.0)) continue;
         float probability = (1.0 - EVEN_FRACTION_OF_KINDS) * importance / total + EVEN_FRACTION_OF_KINDS / shining;
         chosen = kind;
@@ -108,17 +119,18 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
         u -= probability;
     }
     u = clamp(u / choice.probability, 0.0, 0.99999994);
-    uint member = 0u;
-    if (chosen == 0u) {
-        choice.probability *= choose_leaf(0u, parameters.light_tree_leaves, point, u, u_deep, member);
-        choice.light = member;
-    } else if (chosen == 1u) {
-        choice.probability *= choose_leaf(parameters.triangle_tree, parameters.triangle_tree_leaves, point, u, u_deep,
-                                          member);
-        choice.light = parameters.mesh_light;
-        choice.triangle = member;
-    } else choice.light = chosen == 2u ? parameters.world_light
-        : light_nodes[parameters.first_sun + chosen - 3u].member;
+    if (chosen == KIND_ENVIRONMENT) choice.light = parameters.world_light;
+    else if (chosen >= KIND_FIRST_SUN)
+        choice.light = light_nodes[parameters.first_sun + chosen - KIND_FIRST_SUN].member;
+    else {
+        bool objects = chosen == KIND_OBJECTS;
+        uint member = 0u;
+        choice.probability *= choose_leaf(objects ? 0u : parameters.triangle_tree,
+                                          objects ? parameters.light_tree_leaves : parameters.triangle_tree_leaves,
+                                          point, u, u_deep, member);
+        choice.light = objects ? member : parameters.mesh_light;
+        choice.triangle = objects ? 0u : member;
+    }
     return choice;
 }
 
@@ -149,26 +161,31 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
     passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
-// The light objects that a ray passes; they hide nothing.
+// The light objects that a ray passes; they hide nothing. Suns first, then down the tree: one loop, since drivers
+// without calls have the code of a light as often as it stands here.
 PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf,
                            float u) {
     PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0.0, 0.0, u);
-    if (maximum_distance >= INFINITY_DISTANCE)
-        for (uint sun = 0u; sun < parameters.sun_count; ++sun)
-            pass_light(passed, light_nodes[parameters.first_sun + sun].member, origin, direction, maximum_distance,
-                       ray, scatter_pdf);
-    if (parameters.light_tree_leaves == 0u) return passed;
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    uint node = 1u;
-    do {
-        LightNode at = light_nodes[node];
-        bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, maximum_distance);
-        if (met && node < parameters.light_tree_leaves) { node *= 2u; continue; }
+    uint sun = maximum_distance >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
+    uint node = parameters.light_tree_leaves > 0u ? 1u : 0u;  // 0: none left
+    while (sun < parameters.sun_count || node > 0u) {
+        bool is_sun = sun < parameters.sun_count;
+        LightNode at = light_nodes[is_sun ? parameters.first_sun + sun : node];
+        bool met = is_sun || (at.intensity > 0.0
+                              && ray_meets_box(at.low, at.high, origin, inverse_direction, maximum_distance));
+        if (is_sun) sun += 1u;
+        else if (met && node < parameters.light_tree_leaves) {
+            node *= 2u;
+            met = false;
+        } else {
+            // The node beside it, or beside the nearest one above that has one.
+            node += 1u;
+            node >>= uint(findLSB(node));
+            if (node == 1u) node = 0u;
+        }
         if (met) pass_light(passed, at.member, origin, direction, maximum_distance, ray, scatter_pdf);
-        // The node beside it, or beside the nearest one above that has one.
-        node += 1u;
-        node >>= uint(findLSB(node));
-    } while (node > 1u);
+    }
     return passed;
 }
 

@@ -47,10 +47,10 @@ vec3 radiant_strength(Light light, vec3 direction) {
 float world_shadow_ray_pdf(vec3 direction) { return parameters.world_selection * world_pdf(direction); }
 
 // Of direct light of the environment, what photons bring to an importon with this radius; rays find the rest.
-float direct_photon_share(vec3 direction, float radius) {
+// shadow_ray_pdf: world_shadow_ray_pdf.
+float direct_photon_share(vec3 radiance, float shadow_ray_pdf, float radius) {
     if (!(parameters.direct_world_flux > 0.0)) return 0.0;
-    return world_direct_photon_share(largest(world_radiance(direction)), world_shadow_ray_pdf(direction),
-                                     parameters.direct_world_flux, radius);
+    return world_direct_photon_share(largest(radiance), shadow_ray_pdf, parameters.direct_world_flux, radius);
 }
 
 // By its selection probability.
@@ -113,6 +113,8 @@ float soft_light_distance(Light light, vec3 origin, vec3 direction) {
 // extent). weight 0: nothing arrives.
 struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; float pdf; };
 
+const LightSample NO_LIGHT_SAMPLE = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
+
 // Surfaces are sampled by the solid angle that they have from the point: by area, what a surface gets from a
 // light that it meets has no bound.
 
@@ -123,12 +125,43 @@ float soft_light_cone(Light light, vec3 to_center) {
     return radius2 / (slant * (slant + distance));
 }
 
-LightSample sample_soft_light(Light light, vec3 to_center, vec2 u) {
-    float one_minus_cosine = soft_light_cone(light, to_center), distance = length(to_center);
-    vec3 axis = to_center / max(distance, 1e-20), direction = sample_cone(axis, one_minus_cosine, u);
-    return LightSample(direction, distance / max(dot(direction, axis), 1e-6),
-                       radiant_strength(light, -direction) * (2.0 * one_minus_cosine / (light.radius * light.radius)),
-                       NO_TRIANGLE, 1.0 / (2.0 * PI * one_minus_cosine));
+// Toward a sun, a sphere, or the disk of a soft light that faces the point: a direction within a cone.
+LightSample sample_cone_light(Light light, vec3 point, vec2 u) {
+    LightSample result = NO_LIGHT_SAMPLE;
+    bool sun = light.kind == LIGHT_SUN, soft = !sun && (light.flags & LIGHT_SOFT) != 0u;
+    vec3 to_center = light.position - point;
+    float distance2 = dot(to_center, to_center), radius2 = light.radius * light.radius, sine2 = radius2 / distance2;
+    if (!sun && !soft && distance2 <= radius2) return result;
+    float one_minus_cosine = sun ? 1.0 - light.cosine_cone
+                             : soft ? soft_light_cone(light, to_center) : sine2 / (1.0 + sqrt(1.0 - sine2));
+    vec3 axis = sun ? light.normal
+                : soft ? to_center / max(length(to_center), 1e-20) : to_center * inversesqrt(distance2);
+    result.direction = sample_cone(axis, one_minus_cosine, u);
+    if (sun) {
+        result.direction = -result.direction;
+        result.distance = INFINITY_DISTANCE;
+        result.weight = light.strength;
+        if (light.cosine_cone < 1.0) result.pdf = 1.0 / (2.0 * PI * (1.0 - light.cosine_cone));
+        return result;
+    }
+    bool is_point = !soft && sine2 < 1e-7;
+    if (is_point) result.direction = axis;
+    result.weight = radiant_strength(light, -result.direction);
+    if (is_point) {
+        result.distance = sqrt(distance2) - light.radius;
+        result.weight /= distance2;
+        return result;
+    }
+    result.pdf = 1.0 / (2.0 * PI * one_minus_cosine);
+    if (soft) {
+        result.distance = length(to_center) / max(dot(result.direction, axis), 1e-6);
+        result.weight *= 2.0 * one_minus_cosine / (light.radius * light.radius);
+        return result;
+    }
+    float along = dot(to_center, result.direction), area = PI * light.radius * light.radius;
+    result.distance = along - sqrt(max(0.0, light.radius * light.radius - (distance2 - along * along)));
+    result.weight *= 2.0 * PI * one_minus_cosine / area;
+    return result;
 }
 
 // A parallelogram is two triangles. Of an area light: itself, or what bounds the ellipse.
@@ -155,98 +188,64 @@ vec2 area_light_coordinates(Light light, vec3 offset) {
     return vec2(pu * vv - pv * uv, pv * uu - pu * uv) / (uu * vv - uv * uv);
 }
 
-// Pdf in 1/sr with which sample_area_light gives the direction to a place on the light.
-float area_light_pdf(Light light, vec3 point, vec3 to_light) {
-    if (sampled_by_solid_angle(light, point)) {
-        vec2 angles = area_light_solid_angles(light, point);
-        return angles.x + angles.y > 0.0 ? 1.0 / (angles.x + angles.y) : 0.0;
-    }
+float pdf_by_area(Light light, vec3 to_light) {
     float distance2 = dot(to_light, to_light);
     return distance2 * sqrt(distance2) / (abs(dot(to_light, light.normal)) * light.area);
 }
 
-// To a place on an area light, with its pdf in 1/sr; 0 where there is none.
-vec3 sample_area_light(Light light, vec3 point, vec2 u, out float pdf) {
-    vec3 offset = light.position - point;
-    if (sampled_by_solid_angle(light, point)) {
-        vec2 angles = area_light_solid_angles(light, point);
-        float total = angles.x + angles.y, chosen = u.x * total;
-        pdf = total > 0.0 ? 1.0 / total : 0.0;
-        if (total <= 0.0) return offset;
-        bool first = chosen < angles.x;
-        vec2 within = vec2(first ? chosen / angles.x : (chosen - angles.x) / angles.y, u.y);
-        float side = first ? -1.0 : 1.0;
-        vec3 to_light = sample_spherical_triangle(point, area_light_corner(light, 1.0, -1.0),
-                                                  area_light_corner(light, -1.0, 1.0),
-                                                  area_light_corner(light, side, side), first ? angles.x : angles.y,
-                                                  within);
-        vec2 at = area_light_coordinates(light, to_light - offset);
-        if (light.kind == LIGHT_ELLIPSE && dot(at, at) > 1.0) pdf = 0.0;
-        return to_light;
-    }
-    vec2 place = sample_disk(u);
-    vec3 to_light = offset + place.x * light.axis_u + place.y * light.axis_v;
-    pdf = area_light_pdf(light, point, to_light);
-    return to_light;
+// Pdf in 1/sr with which sample_surface_light gives the direction to a place on an area light.
+float area_light_pdf(Light light, vec3 point, vec3 to_light) {
+    if (!sampled_by_solid_angle(light, point)) return pdf_by_area(light, to_light);
+    vec2 angles = area_light_solid_angles(light, point);
+    return angles.x + angles.y > 0.0 ? 1.0 / (angles.x + angles.y) : 0.0;
 }
 
-LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 point, vec2 u) {
-    LightSample result = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
-    if (light.kind == LIGHT_WORLD) {
-        result.direction = sample_world(u, result.pdf);
-        result.distance = INFINITY_DISTANCE;
-        result.weight = world_radiance(result.direction) / result.pdf;
-        return result;
-    }
-    if (light.kind == LIGHT_SUN) {
-        result.direction = -sample_cone(light.normal, 1.0 - light.cosine_cone, u);
-        result.distance = INFINITY_DISTANCE;
-        result.weight = light.strength;
-        if (light.cosine_cone < 1.0) result.pdf = 1.0 / (2.0 * PI * (1.0 - light.cosine_cone));
-        return result;
-    }
-    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
-        vec3 to_center = light.position - point;
-        float distance2 = dot(to_center, to_center);
-        if ((light.flags & LIGHT_SOFT) != 0u) return sample_soft_light(light, to_center, u);
-        if (distance2 <= light.radius * light.radius) return result;
-        vec3 axis = to_center * inversesqrt(distance2);
-        float sine2 = light.radius * light.radius / distance2;
-        if (sine2 < 1e-7) {
-            result.direction = axis;
-            result.distance = sqrt(distance2) - light.radius;
-            result.weight = radiant_strength(light, -axis) / distance2;
-            return result;
+// Toward an emissive triangle, or an area light, which is two triangles that share an edge.
+LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+    LightSample result = NO_LIGHT_SAMPLE;
+    bool mesh = light.kind == LIGHT_MESH;
+    if (!mesh && dot(point - light.position, light.normal) <= 0.0) return result;
+    vec3 to_light, radiance = vec3(0.0), offset = light.position - point;
+    if (mesh || sampled_by_solid_angle(light, point)) {
+        vec3 v0 = area_light_corner(light, 1.0, -1.0), v1 = area_light_corner(light, -1.0, 1.0),
+             v2 = area_light_corner(light, -1.0, -1.0), other = area_light_corner(light, 1.0, 1.0);
+        if (mesh) {
+            EmissiveTriangle emissive = emissive_triangles[emissive_triangle];
+            triangle_corners(emissive.triangle, v0, v1, v2);
+            radiance = sampled_radiance(emissive);
+            result.triangle = emissive.triangle;
         }
-        float one_minus_cosine = sine2 / (1.0 + sqrt(1.0 - sine2));
-        result.direction = sample_cone(axis, one_minus_cosine, u);
-        float along = dot(to_center, result.direction);
-        result.distance = along - sqrt(max(0.0, light.radius * light.radius - (distance2 - along * along)));
-        float area = PI * light.radius * light.radius;
-        result.pdf = 1.0 / (2.0 * PI * one_minus_cosine);
-        result.weight = radiant_strength(light, -result.direction) * (2.0 * PI * one_minus_cosine / area);
-        return result;
-    }
-    vec3 to_light, radiance;
-    if (light.kind == LIGHT_MESH) {
-        EmissiveTriangle emissive = emissive_triangles[emissive_triangle];
-        vec3 v0, v1, v2;
-        triangle_corners(emissive.triangle, v0, v1, v2);
-        float solid_angle = triangle_solid_angle(point, v0, v1, v2);
-        if (solid_angle <= 0.0) return result;
-        to_light = sample_spherical_triangle(point, v0, v1, v2, solid_angle, u);
-        radiance = sampled_radiance(emissive);
-        result.pdf = 1.0 / solid_angle;
-        result.triangle = emissive.triangle;
+        vec2 angles = vec2(triangle_solid_angle(point, v0, v1, v2), 0.0);
+        if (!mesh) angles.y = triangle_solid_angle(point, v0, v1, other);
+        float total = angles.x + angles.y, chosen = u.x * total;
+        if (total <= 0.0) return NO_LIGHT_SAMPLE;
+        result.pdf = 1.0 / total;
+        bool first = mesh || chosen < angles.x;
+        if (!mesh) u.x = first ? chosen / angles.x : (chosen - angles.x) / angles.y;
+        to_light = sample_spherical_triangle(point, v0, v1, first ? v2 : other, first ? angles.x : angles.y, u);
+        vec2 at = area_light_coordinates(light, to_light - offset);
+        if (light.kind == LIGHT_ELLIPSE && dot(at, at) > 1.0) result.pdf = 0.0;
     } else {
-        if (dot(point - light.position, light.normal) <= 0.0) return result;
-        to_light = sample_area_light(light, point, u, result.pdf);
-        radiance = light.strength * spread_attenuation(light, -dot(normalize(to_light), light.normal));
+        vec2 place = sample_disk(u);
+        to_light = offset + place.x * light.axis_u + place.y * light.axis_v;
+        result.pdf = pdf_by_area(light, to_light);
     }
+    if (!mesh) radiance = light.strength * spread_attenuation(light, -dot(normalize(to_light), light.normal));
     result.distance = length(to_light);
     if (!(result.pdf > 0.0 && result.distance > 0.0)) return result;
     result.direction = to_light / result.distance;
     result.weight = radiance / result.pdf;
+    return result;
+}
+
+LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_SUN)
+        return sample_cone_light(light, point, u);
+    if (light.kind != LIGHT_WORLD) return sample_surface_light(light, emissive_triangle, point, u);
+    LightSample result = NO_LIGHT_SAMPLE;
+    result.direction = sample_world(u, result.pdf);
+    result.distance = INFINITY_DISTANCE;
+    result.weight = world_radiance(result.direction) / result.pdf;
     return result;
 }
 
@@ -284,12 +283,14 @@ LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u
 
 // Of the emissive meshes: of any triangle, by its share.
 LightSample sample_whole_light(Light light, vec3 point, float u_choice, vec2 u) {
-    if (light.kind != LIGHT_MESH) return sample_light(light, 0u, point, u);
-    uint index = search_emissive_triangle(u_choice);
+    bool mesh = light.kind == LIGHT_MESH;
+    uint index = mesh ? search_emissive_triangle(u_choice) : 0u;
     LightSample result = sample_light(light, index, point, u);
-    float share = emissive_triangles[index].share;
-    result.pdf *= share;
-    result.weight /= share;
+    if (mesh) {
+        float share = emissive_triangles[index].share;
+        result.pdf *= share;
+        result.weight /= share;
+    }
     return result;
 }
 

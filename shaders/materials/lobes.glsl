@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lobes that shader nodes add, with the energy that Cycles gives them.
+// The lobes of shader nodes, with the energy that Cycles gives them.
 
 #include "materials/builder.glsl"
 #include "materials/albedo_tables.glsl"
@@ -61,36 +61,49 @@ vec3 multiscatter_factor(Microfacets at, vec3 average_reflectance) {
     return restored_energy(white_albedo(roughness, at.cosine), white_average_albedo(roughness), average_reflectance);
 }
 
-void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3 color, bool multiscatter) {
-    vec3 factor = multiscatter ? multiscatter_factor(at, color) : vec3(1.0);
-    add_lobe(builder, microfacet_lobe(at, LOBE_MIRROR, weight * color * factor, vec3(1.0), vec3(1.0), 1.0));
+MicrofacetLobe mirror_lobe(Microfacets at, vec3 weight) {
+    return microfacet_lobe(at, LOBE_MIRROR, weight, vec3(1.0), vec3(1.0), 1.0);
 }
 
-// f0: at normal incidence; edge: the tint at 82 degrees. Under a film the base is taken for a dielectric that reflects
-// as much.
-void add_metal(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 f0, vec3 edge, Film film,
-               bool multiscatter) {
+void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3 color, bool multiscatter) {
+    vec3 factor = multiscatter ? multiscatter_factor(at, color) : vec3(1.0);
+    add_lobe(builder, mirror_lobe(at, weight * color * factor));
+}
+
+// What a film reflects on a base, for the angle of the viewer. base: reflectances of the base at normal incidence, or
+// where the first is negative, Fresnel's between the indices.
+vec3 film_reflectance(Microfacets at, Film film, float before, float behind, vec3 base) {
+    return thin_film_reflectance(at.cosine, film.thickness, before, film.ior, behind, base);
+}
+
+// Under a film a metal is taken for a dielectric that reflects as much: f0 at normal incidence.
+vec3 metal_below_film(vec3 f0, Film film) {
+    vec3 root = sqrt(clamp(f0, 0.0, 0.99)), index = (1.0 + root) / (1.0 - root),
+         amplitude = (index - film.ior) / (index + film.ior);
+    return amplitude * amplitude;
+}
+
+vec3 covered_metal(Microfacets at, vec3 reflectance) {
+    return at_normal_incidence(reflectance, schlick_interpolation(at.cosine));
+}
+
+// f0: at normal incidence; edge: the tint at 82 degrees.
+MicrofacetLobe metal_lobe(Microfacets at, vec3 weight, vec3 f0, vec3 edge, bool multiscatter) {
     vec3 factor = vec3(1.0);
-    if (film.thickness > THINNEST_FILM) {
-        vec3 root = sqrt(clamp(f0, 0.0, 0.99)), index = (1.0 + root) / (1.0 - root),
-            amplitude = (index - film.ior) / (index + film.ior);
-        vec3 reflectance = thin_film_reflectance(at.cosine, film.thickness, 1.0, film.ior, 1.0, amplitude * amplitude);
-        f0 = at_normal_incidence(reflectance, schlick_interpolation(at.cosine));
-        edge = vec3(1.0);
-    }
     if (multiscatter) {
         // Cosine-weighted mean of the Fresnel curve: 1/21 of Schlick's rise, 1/126 of the bend.
         const float far = 6.0 / 7.0, far5 = far * far * far * far * far;
         vec3 bend = mix(f0, vec3(1.0), far5) * (7.0 / (far5 * far)) * (1.0 - edge);
         factor = multiscatter_factor(at, clamp(mix(f0, vec3(1.0), 1.0 / 21.0) - bend / 126.0, 0.0, 1.0));
     }
-    add_lobe(builder, microfacet_lobe(at, LOBE_METAL, weight * factor, f0, edge, 1.0));
+    return microfacet_lobe(at, LOBE_METAL, weight * factor, f0, edge, 1.0);
 }
 
-// tint: of the reflectance at normal incidence; repeated: of light that facets send to each other.
-void add_glass(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, vec3 tint, vec3 repeated,
-               float ior, bool multiscatter) {
-    float relative = builder.backfacing ? 1.0 / ior : ior;
+float relative_ior(ClosureBuilder builder, float ior) { return builder.backfacing ? 1.0 / ior : ior; }
+
+// tint: of the reflectance at normal incidence; repeated: of light that facets send to each other; relative: index.
+MicrofacetLobe glass_lobe(Microfacets at, vec3 reflected, vec3 passed, vec3 tint, vec3 repeated, float relative,
+                          bool multiscatter) {
     if (multiscatter) {
         float roughness = sqrt(at.alpha);
         vec3 factor = restored_energy(max(glass_albedo(relative, roughness, at.cosine), 0.05),
@@ -98,38 +111,38 @@ void add_glass(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec
         reflected *= factor;
         passed *= factor;
     }
-    add_lobe(builder, microfacet_lobe(at, LOBE_GLASS, reflected, passed, tint, relative));
+    return microfacet_lobe(at, LOBE_GLASS, reflected, passed, tint, relative);
+}
+
+// reflectance: of the film.
+MicrofacetLobe covered_glass_lobe(Microfacets at, vec3 reflected, vec3 passed, vec3 reflectance, float relative) {
+    vec3 f0 = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, relative));
+    return microfacet_lobe(at, LOBE_COATED_GLASS, reflected, passed, f0, relative);
+}
+
+vec3 glass_film_reflectance(ClosureBuilder builder, Microfacets at, Film film, float ior) {
+    return film_reflectance(at, film, builder.backfacing ? ior : 1.0, builder.backfacing ? 1.0 : ior, vec3(-1.0));
 }
 
 void add_refraction(inout ClosureBuilder builder, Microfacets at, vec3 weight, float ior) {
-    add_lobe(builder, microfacet_lobe(at, LOBE_REFRACTION, weight, vec3(0.0), vec3(1.0),
-                                      builder.backfacing ? 1.0 / ior : ior));
+    add_lobe(builder, microfacet_lobe(at, LOBE_REFRACTION, weight, vec3(0.0), vec3(1.0), relative_ior(builder, ior)));
 }
 
-// Albedo of the sheen, by which it hides what lies below.
-float add_sheen(inout ClosureBuilder builder, vec3 weight, float roughness, vec3 normal) {
+const MicrofacetLobe NO_LOBE = MicrofacetLobe(vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, vec3(1.0), 1.0, 0u, ISOTROPIC);
+
+// albedo: of the sheen, by which it hides what lies below; where that is 0 there is no lobe.
+MicrofacetLobe sheen_lobe(ClosureBuilder builder, vec3 weight, float roughness, vec3 normal, out float albedo) {
     vec3 n = given_normal(builder, normal);
     float cosine = dot(n, builder.viewer);
-    if (cosine <= 0.0) return 0.0;
     vec3 parameters = sheen_parameters(clamp(roughness, 1e-3, 1.0), cosine);
-    if (parameters.x <= 0.0 || parameters.z <= 0.0) return 0.0;
-    add_lobe(builder, MicrofacetLobe(weight * parameters.z, LOBE_SHEEN, vec3(parameters.xy, 0.0), 1.0, vec3(1.0), 1.0,
-                                     pack_unit_vector(n), ISOTROPIC));
-    return parameters.z;
+    albedo = 0.0;
+    if (cosine <= 0.0 || parameters.x <= 0.0 || parameters.z <= 0.0) return NO_LOBE;
+    albedo = parameters.z;
+    return MicrofacetLobe(weight * parameters.z, LOBE_SHEEN, vec3(parameters.xy, 0.0), 1.0, vec3(1.0), 1.0,
+                          pack_unit_vector(n), ISOTROPIC);
 }
 
-void add_velvet(inout ClosureBuilder builder, vec3 weight, float sigma, vec3 normal) {
-    add_lobe(builder, MicrofacetLobe(weight, LOBE_VELVET, vec3(max(sigma, 0.01), 0.0, 0.0), 1.0, vec3(1.0), 1.0,
-                                     pack_unit_vector(given_normal(builder, normal)), ISOTROPIC));
-}
-
-void add_glass_with_film(inout ClosureBuilder builder, Microfacets at, vec3 reflected, vec3 passed, Film film,
-                         float ior) {
-    vec3 reflectance = builder.backfacing ? thin_film_reflectance(at.cosine, film.thickness, ior, film.ior, 1.0,
-                                                                  vec3(-1.0))
-                                          : thin_film_reflectance(at.cosine, film.thickness, 1.0, film.ior, ior,
-                                                                  vec3(-1.0));
-    float relative = builder.backfacing ? 1.0 / ior : ior;
-    vec3 f0 = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, relative));
-    add_lobe(builder, microfacet_lobe(at, LOBE_COATED_GLASS, reflected, passed, f0, relative));
+MicrofacetLobe velvet_lobe(ClosureBuilder builder, vec3 weight, float sigma, vec3 normal) {
+    return MicrofacetLobe(weight, LOBE_VELVET, vec3(max(sigma, 0.01), 0.0, 0.0), 1.0, vec3(1.0), 1.0,
+                          pack_unit_vector(given_normal(builder, normal)), ISOTROPIC);
 }

@@ -29,12 +29,13 @@ float index_from_reflectance(float f0) {
 // Light left below a layer.
 vec3 beneath(vec3 weight, vec3 albedo) { return weight * clamp(1.0 - largest(albedo), 0.0, 1.0); }
 
-void add_coat(inout ClosureBuilder builder, Principled p, inout vec3 weight) {
+MicrofacetLobe coat_lobe(ClosureBuilder builder, Principled p, inout vec3 weight) {
     float ior = max(p.coat_ior, 1.0);
     Microfacets at = isotropic_microfacets(builder, p.coat_normal, p.coat_roughness);
     float f0 = normal_reflectance(ior);
+    MicrofacetLobe lobe = NO_LOBE;
     if (ior > 1.0) {
-        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, vec3(f0), vec3(1.0), ior));
+        lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, vec3(f0), vec3(1.0), ior);
         float albedo = mix(dielectric_grazing_albedo(ior, p.coat_roughness, at.cosine),
                            white_albedo(p.coat_roughness, at.cosine), f0);
         weight = beneath(weight, vec3(p.coat * albedo));
@@ -42,63 +43,110 @@ void add_coat(inout ClosureBuilder builder, Principled p, inout vec3 weight) {
     // Absorbed along the refracted way through the coat, which is of length 1 at normal incidence.
     float inside = sqrt(max(1.0 - (1.0 - at.cosine * at.cosine) / (ior * ior), 1e-6));
     weight *= mix(vec3(1.0), pow(p.coat_tint, vec3(1.0 / inside)), p.coat);
+    return lobe;
+}
+
+// As in Cycles the index is the same from both sides.
+float specular_ior(Principled p, out float f0) {
+    f0 = normal_reflectance(p.ior) * 2.0 * p.specular_level;
+    float ior = index_from_reflectance(f0);
+    return p.ior < 1.0 ? 1.0 / ior : ior;
+}
+
+// What the film reflects, over each of the three that it lies on: no reflectances where it lies on none.
+struct Films { vec3 metal, glass, base; };
+
+Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, float base_ior) {
+    Films films = Films(vec3(0.0), vec3(0.0), vec3(0.0));
+    int count = p.film.thickness > THINNEST_FILM ? 3 : 0;
+    for (int k = 0; k < count; ++k) {
+        bool on_metal = k == 0, on_glass = k == 1, leaving = on_glass && builder.backfacing;
+        float before = leaving ? p.ior : 1.0, behind = on_metal || leaving ? 1.0 : on_glass ? p.ior : base_ior;
+        vec3 below = on_metal ? metal_below_film(min(p.base_color, 1.0), p.film) : vec3(-1.0);
+        vec3 reflectance = film_reflectance(at, p.film, before, behind, below);
+        if (on_metal) films.metal = reflectance;
+        else if (on_glass) films.glass = reflectance;
+        else films.base = reflectance;
+    }
+    return films;
+}
+
+MicrofacetLobe base_lobe(Principled p, Microfacets at, float f0, float ior, vec3 film, inout vec3 weight) {
+    if (p.film.thickness > THINNEST_FILM) {
+        vec3 beside = at_normal_incidence(film, dielectric_interpolation(at.cosine, ior));
+        MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight, beside, vec3(1.0), ior);
+        weight = beneath(weight, film);
+        return lobe;
+    }
+    if (f0 <= 0.0) return NO_LOBE;
+    vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
+    float white = white_albedo(p.roughness, at.cosine);
+    float grazing = dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white;
+    vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), grazing);
+    if (p.multiscatter) {
+        float base = normal_reflectance(ior);
+        factor = multiscatter_factor(at, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
+        albedo *= factor * white;
+    }
+    MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior);
+    weight = beneath(weight, albedo);
+    return lobe;
+}
+
+void add_base(inout ClosureBuilder builder, Principled p, vec3 weight) {
+    if (p.thin_wall && p.subsurface > 0.0) {
+        vec3 scattered = weight * p.subsurface * min(p.base_color, 1.0);
+        add_thin_subsurface(builder, scattered, weight * (1.0 - p.subsurface) * p.base_color, p.subsurface_anisotropy,
+                            p.normal, pack_diffuse_roughness(p.base_color, p.diffuse_roughness));
+    } else add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
 }
 
 void add_principled(inout ClosureBuilder builder, float node_weight, Principled p) {
+    // From the top; they are added together in one place, as drivers without calls have that code as often as it is
+    // called.
+    MicrofacetLobe sheen = NO_LOBE, coat = NO_LOBE, metal = NO_LOBE, glass = NO_LOBE, sheet = NO_LOBE, base = NO_LOBE;
     builder.closure.transparent += vec3(node_weight * (1.0 - p.alpha));
     vec3 weight = vec3(node_weight * p.alpha);
     if (p.sheen > 0.0) {
         vec3 normal = mix(given_normal(builder, p.normal), given_normal(builder, p.coat_normal),
                           clamp(p.coat, 0.0, 1.0));
         vec3 tint = p.sheen * p.sheen_tint;
-        weight = beneath(weight, tint * add_sheen(builder, weight * tint, p.sheen_roughness, normal));
+        float albedo;
+        sheen = sheen_lobe(builder, weight * tint, p.sheen_roughness, normal, albedo);
+        weight = beneath(weight, tint * albedo);
     }
-    if (p.coat > 0.0) add_coat(builder, p, weight);
+    if (p.coat > 0.0) coat = coat_lobe(builder, p, weight);
     builder.closure.emission += weight * p.emission;
 
     Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic),
                                              p.tangent, p.anisotropic_rotation);
+    bool film = p.film.thickness > THINNEST_FILM;
+    float f0, ior = specular_ior(p, f0);
+    Films films = film_reflectances(builder, p, at, ior);
     if (p.metallic > 0.0) {
-        add_metal(builder, at, weight * p.metallic, min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.film,
-                  p.multiscatter);
+        metal = metal_lobe(at, weight * p.metallic, film ? covered_metal(at, films.metal) : min(p.base_color, 1.0),
+                           film ? vec3(1.0) : min(p.specular_tint, 1.0), p.multiscatter);
         weight *= 1.0 - p.metallic;
     }
     if (p.transmission > 0.0) {
         vec3 share = weight * p.transmission, passed = sqrt(max(p.base_color, vec3(0.0)));
         Microfacets even = Microfacets(at.normal, at.packed_normal, ISOTROPIC, p.roughness * p.roughness, at.cosine);
+        float relative = relative_ior(builder, p.ior);
         if (p.thin_wall)
-            add_thin_glass(builder, even, share, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior);
-        else if (p.film.thickness > THINNEST_FILM)
-            add_glass_with_film(builder, even, share, share * passed, p.film, p.ior);
-        else add_glass(builder, even, share, share * passed, p.specular_tint, min(passed, 1.0), p.ior, p.multiscatter);
+            thin_glass_lobes(builder, even, share, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior, glass,
+                             sheet);
+        else if (film) glass = covered_glass_lobe(even, share, share * passed, films.glass, relative);
+        else
+            glass = glass_lobe(even, share, share * passed, p.specular_tint, min(passed, 1.0), relative,
+                               p.multiscatter);
         weight *= 1.0 - p.transmission;
     }
-    if (largest(weight) <= 0.0) return;
-    // As in Cycles the index is the same from both sides.
-    float f0 = normal_reflectance(p.ior) * 2.0 * p.specular_level;
-    float ior = index_from_reflectance(f0);
-    if (p.ior < 1.0) ior = 1.0 / ior;
-    if (p.film.thickness > THINNEST_FILM) {
-        vec3 reflectance = thin_film_reflectance(at.cosine, p.film.thickness, 1.0, p.film.ior, ior, vec3(-1.0));
-        vec3 beside = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, ior));
-        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight, beside, vec3(1.0), ior));
-        weight = beneath(weight, reflectance);
-    } else if (f0 > 0.0) {
-        vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
-        float white = white_albedo(p.roughness, at.cosine);
-        float grazing = dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white;
-        vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), grazing);
-        if (p.multiscatter) {
-            float base = normal_reflectance(ior);
-            factor = multiscatter_factor(at, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
-            albedo *= factor * white;
-        }
-        add_lobe(builder, microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior));
-        weight = beneath(weight, albedo);
+    bool reaches_base = !(largest(weight) <= 0.0);
+    if (reaches_base) base = base_lobe(p, at, f0, ior, films.base, weight);
+    int layers = node_weight > 0.0 ? 6 : 0;
+    for (int k = 0; k < layers; ++k) {
+        MicrofacetLobe lobe = k == 0 ? sheen : k == 1 ? coat : k == 2 ? metal : k == 3 ? glass : k == 4 ? sheet : base;
+        if (lobe.kind != LOBE_NONE) add_lobe(builder, lobe);
     }
-    if (p.thin_wall && p.subsurface > 0.0) {
-        vec3 scattered = weight * p.subsurface * min(p.base_color, 1.0);
-        add_thin_subsurface(builder, scattered, weight * (1.0 - p.subsurface) * p.base_color, p.subsurface_anisotropy,
-                            p.normal, pack_diffuse_roughness(p.base_color, p.diffuse_roughness));
-    } else add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
+    if (reaches_base) add_base(builder, p, weight);
 }

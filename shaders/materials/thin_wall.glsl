@@ -30,18 +30,19 @@ void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out
     reflected = outside + passed * returned;
 }
 
-// Facets have the reflectance of the whole; the lost energy is always restored.
-void add_thin_glass(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 color, vec3 tint, Film film,
-                    float ior) {
+// Facets have the reflectance of the whole; the lost energy is always restored. What passes straight is added.
+void thin_glass_lobes(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 color, vec3 tint, Film film,
+                      float ior, out MicrofacetLobe mirror, out MicrofacetLobe sheet) {
     vec3 reflected, passed;
     sheet_shares(at.cosine, color, tint, film, ior, reflected, passed);
     vec3 factor = multiscatter_factor(at, min(tint, vec3(1.0)));
-    add_lobe(builder, microfacet_lobe(at, LOBE_MIRROR, weight * reflected * factor, vec3(1.0), vec3(1.0), 1.0));
+    mirror = mirror_lobe(at, weight * reflected * factor);
+    sheet = NO_LOBE;
     at.alpha = sheet_alpha(at.alpha, ior);
     // Seen by the camera itself it is no hole in the picture.
     if (at.alpha > STRAIGHTEST_SHEET || builder.seen_by_camera)
-        add_lobe(builder, microfacet_lobe(at, LOBE_SHEET, weight * passed * multiscatter_factor(at, vec3(1.0)),
-                                          vec3(0.0), vec3(1.0), 1.0));
+        sheet = microfacet_lobe(at, LOBE_SHEET, weight * passed * multiscatter_factor(at, vec3(1.0)), vec3(0.0),
+                                vec3(1.0), 1.0);
     else builder.closure.transparent += weight * passed;
 }
 

@@ -87,22 +87,25 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
 
 Emission emit_plain_photon(Light light, EmissionChoice choice) {
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_point(light, choice);
-    if (light.kind == LIGHT_SUN)
-        return emit_from_infinity(light, sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction),
-                                  light.strength, choice);
-    if (light.kind == LIGHT_WORLD) {
-        float pdf;
-        vec3 toward = sample_world(choice.direction, pdf);
-        return emit_from_infinity(light, -toward, world_radiance(toward) / pdf, choice);
+    if (light.kind == LIGHT_SUN || light.kind == LIGHT_WORLD) {
+        vec3 direction, flux_density = light.strength;
+        if (light.kind == LIGHT_SUN) direction = sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction);
+        else {
+            float pdf;
+            vec3 toward = sample_world(choice.direction, pdf);
+            direction = -toward;
+            flux_density = world_radiance(toward) / pdf;
+        }
+        return emit_from_infinity(light, direction, flux_density, choice);
     }
-    if (light.kind == LIGHT_MESH) {
-        TrianglePoint point = sample_emissive_triangle(choice.part, choice.place);
-        return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.pdf,
-                                 choice);
+    TrianglePoint point;
+    if (light.kind == LIGHT_MESH) point = sample_emissive_triangle(choice.part, choice.place);
+    else {
+        vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;
+        point = TrianglePoint(light.position + place.x * light.axis_u + place.y * light.axis_v, light.normal,
+                              NO_TRIANGLE, light.strength, 1.0 / light.area);
     }
-    vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;
-    vec3 origin = light.position + place.x * light.axis_u + place.y * light.axis_v;
-    return emit_from_surface(light, origin, light.normal, NO_TRIANGLE, light.strength, 1.0 / light.area, choice);
+    return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.pdf, choice);
 }
 
 Emission emit_photon(Light light, EmissionChoice choice) {

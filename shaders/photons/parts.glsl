@@ -21,7 +21,8 @@ uint lobe_part(MicrofacetLobe lobe, bool transmitted) {
 vec3 sharp_share(MicrofacetLobe lobe, bool transmitted, vec3 viewer, vec3 light) {
     vec3 h = transmitted ? lobe.ior * light + viewer : light + viewer;
     float size = length(h), cosine = size > 1e-4 ? abs(dot(viewer, h)) / size : 1.0;
-    return transmitted ? lobe_transmittance(lobe, cosine) : lobe.weight * lobe_reflectance(lobe, cosine);
+    FacetShares shares = facet_shares(lobe, cosine);
+    return transmitted ? shares.transmittance : lobe.weight * shares.reflectance;
 }
 
 // Sum of all lobes that may send light this way, as is their probability. ior: of a sharp refraction.
@@ -29,7 +30,7 @@ vec3 sharp_share(MicrofacetLobe lobe, bool transmitted, vec3 viewer, vec3 light)
 vec3 lobes_share(Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
     bool transmitted = part == PART_TRANSMITTING || part == PART_SHARP_TRANSMITTING;
     vec3 share = vec3(0.0);
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+    for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (lobe.kind == LOBE_NONE || lobe_part(lobe, transmitted) != part) continue;
         if (part <= PART_TRANSMITTING)

@@ -40,48 +40,43 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
                                    PHOTON_NOT_DIFFUSE,
                                    PART_DIFFUSE, 1.0);
     float scale = 1.0 / largest(flux);
-    float share[5];
-    share[0] = largest(flux * closure.diffuse) * scale;
-    share[1] = largest(flux * closure.transparent) * scale;
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
+    float diffuse = largest(flux * closure.diffuse) * scale, translucent = largest(flux * closure.translucent) * scale,
+          transparent = largest(flux * closure.transparent) * scale;
+    vec3 shares = vec3(0.0);
+    for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
-        share[2 + k] = largest(flux * lobe_albedo(lobe, lobe_cosine(lobe, arrival))) * scale;
+        shares[k] = largest(flux * lobe_albedo(lobe, lobe_cosine(lobe, arrival))) * scale;
     }
-    float translucent = largest(flux * closure.translucent) * scale;
     if ((closure.flags & CLOSURE_KEEPS_LIGHT) != 0u) {
-        translucent = 0.0;
-        for (int k = 0; k < 5; ++k) share[k] = k == 1 ? share[k] : 0.0;
+        diffuse = translucent = 0.0;
+        shares = vec3(0.0);
     }
-    float total = share[0] + share[1] + share[2] + share[3] + share[4] + translucent;
+    float total = diffuse + transparent + shares.x + shares.y + shares.z + translucent;
     float norm = max(total, 1.0);
     float u = next_random(random) * norm;
-    vec2 u_direction = next_random2(random);
+    vec2 disk = sample_disk(next_random2(random));
     float u_event = next_random(random);
     if (u >= total) return result;
-    if (u < share[0]) {
-        result.direction = sample_cosine_hemisphere(normal, u_direction);
-        result.weight = closure.diffuse * diffuse_factor(closure, normal, arrival, result.direction)
-                        * (norm / share[0]);
-        return result;
-    }
-    u -= share[0];
-    if (u < translucent) {
-        result.direction = sample_cosine_hemisphere(-normal, u_direction);
-        result.weight = closure.translucent * diffuse_factor(closure, normal, arrival, result.direction)
-                        * (norm / translucent);
-        result.transmitted = true;
-        result.part = PART_TRANSLUCENT;
+    bool reflected = u < diffuse;
+    if (!reflected) u -= diffuse;
+    if (reflected || u < translucent) {
+        result.transmitted = !reflected;
+        result.direction = cosine_hemisphere(reflected ? normal : -normal, disk);
+        result.weight = (reflected ? closure.diffuse : closure.translucent)
+                        * diffuse_factor(closure, normal, arrival, result.direction)
+                        * (norm / (reflected ? diffuse : translucent));
+        if (!reflected) result.part = PART_TRANSLUCENT;
         return result;
     }
     u -= translucent;
-    if (u < share[1])
-        return Scattering(-arrival, closure.transparent * (norm / share[1]), normal, true, 0u, 0u, PART_TRANSPARENT,
+    if (u < transparent)
+        return Scattering(-arrival, closure.transparent * (norm / transparent), normal, true, 0u, 0u, PART_TRANSPARENT,
                           1.0);
-    u -= share[1];
-    int chosen = u < share[2] ? 0 : (u < share[2] + share[3] ? 1 : 2);
-    float probability = chosen == 0 ? share[2] : (chosen == 1 ? share[3] : share[4]);
+    u -= transparent;
+    int chosen = u < shares.x ? 0 : (u < shares.x + shares.y ? 1 : 2);
+    float probability = shares[chosen];
     MicrofacetLobe lobe = closure_lobe(closure, chosen);
-    LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, u_direction, u_event, false);
+    LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, u_event, false);
     float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     return Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
                       lobe_normal(lobe), sampled.transmitted,
@@ -198,7 +193,7 @@ void main() {
     photon.triangle = closure.triangle;
     photon.geometric_normal = closure.geometric_normal;
     bool stores = largest(closure.diffuse + closure.translucent) > 0.0;
-    for (int k = 0; k < CLOSURE_LOBES; ++k)
+    for (int k = 0; k < closure_lobes(closure); ++k)
         stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) photon.flags |= PHOTON_STORED;
 

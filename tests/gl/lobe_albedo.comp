@@ -21,7 +21,8 @@ void main() {
     MicrofacetLobe lobe = MicrofacetLobe(parameters.weight, parameters.kind, parameters.f0, parameters.alpha, parameters.tint,
                                          parameters.ior, pack_unit_vector(n), anisotropy);
     vec3 wo = normalize(sqrt(1.0 - parameters.cosine * parameters.cosine) * t + parameters.cosine * n);
-    LobeSample sampled = sample_lobe(lobe, n, wo, next_random2(random), next_random(random), parameters.radiance != 0u);
+    LobeSample sampled = sample_lobe(lobe, n, wo, sample_disk(next_random2(random)), next_random(random),
+                                     parameters.radiance != 0u);
     vec3 wi = sample_sphere(next_random2(random));
     vec3 evaluated = evaluate_lobe(lobe, n, wo, wi) * abs(dot(wi, n)) * 4.0 * PI;
     results[5u * index] = vec4(sampled.weight, sampled.transmitted ? 1.0 : 0.0);

@@ -6,6 +6,7 @@ const int CLOSURE_LOBES = 3;
 const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
            CLOSURE_KEEPS_LIGHT = 8u,  // photons light it, but it sends none on
            CLOSURE_CROWDED = 16u;     // one part, chosen by chance, stands for others
+const uint LOBE_COUNT_SHIFT = 8u;  // where in the flags the number of lobes stands
 
 Closure empty_closure() {
     vec3 none = vec3(0.0);
@@ -13,6 +14,10 @@ Closure empty_closure() {
                    none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0,
                    vec3(1.0), 0.0, uvec3(0u), 0u, uvec3(ISOTROPIC), 0u);
 }
+
+// How many lobes a closure has. Loops go so far and no further, which also keeps drivers without calls from having the
+// code of a lobe three times.
+int closure_lobes(Closure closure) { return int((closure.flags >> LOBE_COUNT_SHIFT) & 3u); }
 
 MicrofacetLobe unpacked_lobe(vec3 weight, uint kind, vec3 f0, float alpha, float ior, uint normal, uint anisotropy) {
     return MicrofacetLobe(weight, unpack_kind(kind), f0, alpha, unpack_tint(kind), ior, normal, anisotropy);
@@ -91,39 +96,24 @@ vec3 diffuse_scattered(Closure closure, vec3 wo, vec3 wi, bool front) {
            * (abs(cosine) / PI);
 }
 
-// BSDF of a lobe times cosine.
-vec3 lobe_scattered(Closure closure, MicrofacetLobe lobe, vec3 wo, vec3 wi, bool front) {
-    vec3 normal = lobe_normal(lobe);
-    float cosine = dot(normal, wi);
-    if ((cosine > 0.0) != front) return vec3(0.0);
-    return abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * evaluate_lobe(lobe, normal, wo, wi);
-}
-
-// How a camera path goes on: the shares of the transparent part and of the three lobes, where they are
-// specular; or, stored, of the diffuse and translucent parts together and of the lobes that store photons, by
-// which a path that gathers goes on once.
-vec4 camera_path_shares(Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool stored) {
-    vec4 shares = vec4(stored ? largest(throughput * closure.diffuse) + largest(throughput * closure.translucent)
-                              : largest(throughput * closure.transparent), 0.0, 0.0, 0.0);
-    for (int k = 0; k < CLOSURE_LOBES; ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
-        if (stored ? lobe_stores(lobe, specular_alpha) : lobe_is_specular(lobe, specular_alpha))
-            shares[1 + k] = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
-    }
-    return shares;
-}
-
 float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
 
-// All of a path's shares; gathering: of a path that may set out to gather, else 0; total: of both.
-struct PathShares { vec4 specular; vec4 gathering; float total; };
+// How a camera path may go on: shares of the transparent part and of the three lobes, where they are specular; and of
+// the diffuse and translucent parts together and of the lobes that store photons, by which a path that gathers goes on
+// once. total: of those by which it may go on.
+struct PathShares { vec4 specular; vec4 stored; float total; };
 
 PathShares path_shares(Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool gathers) {
-    PathShares shares;
-    shares.specular = camera_path_shares(closure, throughput, viewer, specular_alpha, false);
-    shares.gathering = vec4(0.0);
-    if (gathers) shares.gathering = camera_path_shares(closure, throughput, viewer, specular_alpha, true);
-    shares.total = sum(shares.specular) + sum(shares.gathering);
+    PathShares shares = PathShares(vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0),
+                                   vec4(largest(throughput * closure.diffuse)
+                                        + largest(throughput * closure.translucent), 0.0, 0.0, 0.0), 0.0);
+    for (int k = 0; k < closure_lobes(closure); ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        float share = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
+        if (lobe_is_specular(lobe, specular_alpha)) shares.specular[1 + k] = share;
+        else if (lobe_stores(lobe, specular_alpha)) shares.stored[1 + k] = share;
+    }
+    shares.total = sum(shares.specular) + (gathers ? sum(shares.stored) : 0.0);
     return shares;
 }
 
@@ -134,7 +124,7 @@ float path_survival(float total) { return min(1.0, 4.0 * total); }
 // paths that go there would find them seldom and then very bright. alpha: up to which lobes are smooth.
 bool looks_for_reflected_lights(MicrofacetLobe lobe, vec4 shares, float total, int k, vec3 viewer, float alpha) {
     if (!lobe_is_specular(lobe, alpha) || lobe_is_sheen(lobe.kind) || !(shares[1 + k] > 0.0)) return false;
-    float reflected = reflected_share(lobe, lobe_cosine(lobe, viewer));
+    float reflected = facet_shares(lobe, lobe_cosine(lobe, viewer)).reflected;
     return reflected > 0.0 && shares[1 + k] * reflected < 0.5 * total;
 }
 

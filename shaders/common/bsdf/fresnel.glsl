@@ -4,11 +4,10 @@
 float fresnel_dielectric(float cosine, float eta) {
     cosine = clamp(abs(cosine), 0.0, 1.0);
     float g2 = eta * eta - 1.0 + cosine * cosine;
-    if (g2 <= 0.0) return 1.0;
-    float g = sqrt(g2);
+    float g = sqrt(max(g2, 0.0));
     float a = (g - cosine) / (g + cosine);
     float b = (cosine * (g + cosine) - 1.0) / (cosine * (g - cosine) + 1.0);
-    return 0.5 * a * a * (1.0 + b * b);
+    return g2 <= 0.0 ? 1.0 : 0.5 * a * a * (1.0 + b * b);
 }
 
 float normal_reflectance(float eta) {
@@ -22,10 +21,14 @@ float average_reflectance(float eta) {
                       : 0.997118 + eta * (0.1014 - eta * (0.965241 + 0.130607 * eta));
 }
 
-// 0 at normal incidence to 1 at grazing, along the dielectric's curve; 0 for matching indices.
+// 0 at normal incidence, where f0 is reflected, to 1 at grazing.
+float interpolation_of(float reflectance, float f0) {
+    return f0 >= 1.0 ? 1.0 : clamp((reflectance - f0) / (1.0 - f0), 0.0, 1.0);
+}
+
+// The same along the dielectric's curve; 0 for matching indices.
 float dielectric_interpolation(float cosine, float eta) {
-    float f0 = normal_reflectance(eta);
-    return f0 >= 1.0 ? 1.0 : clamp((fresnel_dielectric(cosine, eta) - f0) / (1.0 - f0), 0.0, 1.0);
+    return interpolation_of(fresnel_dielectric(cosine, eta), normal_reflectance(eta));
 }
 
 float schlick_interpolation(float cosine) {
@@ -34,10 +37,13 @@ float schlick_interpolation(float cosine) {
     return m2 * m2 * m;
 }
 
-// A dielectric whose reflectance at normal incidence is tinted and that at grazing incidence is not.
-vec3 tinted_dielectric(float cosine, float eta, vec3 tint) {
-    float reflectance = fresnel_dielectric(cosine, eta), f0 = normal_reflectance(eta);
+// A dielectric whose reflectance at normal incidence, f0, is tinted and that at grazing incidence is not.
+vec3 tinted_reflectance(float reflectance, float f0, vec3 tint) {
     return reflectance + (tint - 1.0) * (f0 * (1.0 - reflectance) / max(1.0 - f0, 1e-6));
+}
+
+vec3 tinted_dielectric(float cosine, float eta, vec3 tint) {
+    return tinted_reflectance(fresnel_dielectric(cosine, eta), normal_reflectance(eta), tint);
 }
 
 // Schlick's Fresnel bent so that at 82 degrees (cosine 1/7) it is tinted (Kutz, Hasan and Edmondson 2021).

@@ -70,13 +70,12 @@ float facet_lambda(MicrofacetFrame frame, vec3 w) {
     return frame.beckmann ? beckmann_lambda(w, frame.alpha) : ggx_lambda(w, frame.alpha);
 }
 
-// By the density of GGX's visible normals (Heitz, JCGT 2018).
-vec3 sample_visible_normal(vec3 wo, vec2 alpha, vec2 u) {
+// By the density of GGX's visible normals (Heitz, JCGT 2018). p: of the unit disk.
+vec3 sample_visible_normal(vec3 wo, vec2 alpha, vec2 p) {
     vec3 v = normalize(vec3(alpha * wo.xy, max(wo.z, 1e-6)));
     float length2 = dot(v.xy, v.xy);
     vec3 t1 = length2 > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(length2) : vec3(1.0, 0.0, 0.0);
     vec3 t2 = cross(v, t1);
-    vec2 p = sample_disk(u);
     float s = 0.5 * (1.0 + v.z);
     p.y = (1.0 - s) * sqrt(max(0.0, 1.0 - p.x * p.x)) + s * p.y;
     vec3 h = p.x * t1 + p.y * t2 + sqrt(max(0.0, 1.0 - dot(p, p))) * v;

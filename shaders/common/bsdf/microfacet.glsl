@@ -33,37 +33,37 @@ float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
 
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
 
-// Share of what glass-like lobes reflect, gray: by it they choose between reflection and refraction.
-float reflected_share(MicrofacetLobe lobe, float cosine) {
-    if (lobe.kind == LOBE_GLASS) return fresnel_dielectric(cosine, lobe.ior);
-    if (lobe.kind == LOBE_COATED_GLASS)
-        return mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, dielectric_interpolation(cosine, lobe.ior));
-    return lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET ? 0.0 : 1.0;
-}
+// What becomes of light at a microfacet. Drivers without calls have the code of a function as often as it is called:
+// so one has it all, and what of it nobody asks for is left out.
+struct FacetShares {
+    vec3 reflectance;    // per channel, without the lobe's weight
+    vec3 transmittance;  // tint and share of what passes, without total internal reflection
+    float reflected;     // gray: by it glass-like lobes choose between reflection and refraction
+};
 
-// Reflected share per channel at a microfacet, without the lobe's weight.
-vec3 lobe_reflectance(MicrofacetLobe lobe, float cosine) {
-    if (lobe.kind == LOBE_MIRROR) return vec3(1.0);
-    if (lobe.kind == LOBE_METAL) return f82_reflectance(lobe.f0, lobe.tint, cosine);
-    if (lobe.kind == LOBE_DIELECTRIC) return mix(lobe.f0, vec3(1.0), dielectric_interpolation(cosine, lobe.ior));
-    if (lobe.kind == LOBE_GLASS) return tinted_dielectric(cosine, lobe.ior, lobe.tint);
-    if (lobe.kind == LOBE_COATED_GLASS) return mix(lobe.tint, vec3(1.0), dielectric_interpolation(cosine, lobe.ior));
-    if (lobe_is_sheen(lobe.kind)) return vec3(1.0);
-    return vec3(0.0);
-}
-
-// Tint and share of what passes a microfacet, without total internal reflection.
-vec3 lobe_transmittance(MicrofacetLobe lobe, float cosine) {
-    if (lobe.kind == LOBE_GLASS || lobe.kind == LOBE_COATED_GLASS)
-        return lobe.f0 * (1.0 - lobe_reflectance(lobe, cosine));
-    if (lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET) return lobe.weight;
-    return vec3(0.0);
+FacetShares facet_shares(MicrofacetLobe lobe, float cosine) {
+    float reflectance = fresnel_dielectric(cosine, lobe.ior), f0 = normal_reflectance(lobe.ior);
+    float rise = interpolation_of(reflectance, f0);
+    bool glass = lobe.kind == LOBE_GLASS, coated_glass = lobe.kind == LOBE_COATED_GLASS,
+         passes = lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET;
+    FacetShares shares = FacetShares(vec3(0.0), vec3(0.0), passes ? 0.0 : 1.0);
+    if (lobe.kind == LOBE_METAL) shares.reflectance = f82_reflectance(lobe.f0, lobe.tint, cosine);
+    else if (glass) shares.reflectance = tinted_reflectance(reflectance, f0, lobe.tint);
+    else if (coated_glass || lobe.kind == LOBE_DIELECTRIC)
+        shares.reflectance = mix(coated_glass ? lobe.tint : lobe.f0, vec3(1.0), rise);
+    else if (lobe.kind == LOBE_MIRROR || lobe_is_sheen(lobe.kind)) shares.reflectance = vec3(1.0);
+    if (glass) shares.reflected = reflectance;
+    else if (coated_glass) shares.reflected = mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, rise);
+    if (glass || coated_glass) shares.transmittance = lobe.f0 * (1.0 - shares.reflectance);
+    else if (passes) shares.transmittance = lobe.weight;
+    return shares;
 }
 
 // Estimate of the lobe's albedo toward a direction, for choosing among lobes.
 vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
-    vec3 albedo = lobe.weight * lobe_reflectance(lobe, cosine);
-    return lobe_transmits(lobe.kind) ? albedo + lobe_transmittance(lobe, cosine) : albedo;
+    FacetShares shares = facet_shares(lobe, cosine);
+    vec3 albedo = lobe.weight * shares.reflectance;
+    return lobe_transmits(lobe.kind) ? albedo + shares.transmittance : albedo;
 }
 
 // A sheet is asked as the mirror that it is for light from the other side. wi: where light comes from.
@@ -76,7 +76,8 @@ void face_sheet(inout MicrofacetLobe lobe, vec3 n, inout vec3 wi) {
 // What sampling a lobe gives: a direction and f cos / pdf. weight is zero when nothing is scattered.
 struct LobeSample { vec3 direction; vec3 weight; bool transmitted; };
 
-LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_event, bool radiance) {
+// disk: sample_disk of two random numbers, which callers that choose among lobes and diffuse parts have anyway.
+LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
     LobeSample result = LobeSample(n, vec3(0.0), false);
     bool sheet = lobe.kind == LOBE_SHEET;
     if (sheet) lobe.kind = LOBE_MIRROR;
@@ -84,7 +85,7 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
     if (lobe_is_sheen(lobe.kind)) {
         SheenFrame sheen = sheen_frame(n, wo);
         bool fitted = lobe.kind == LOBE_SHEEN;
-        result.direction = fitted ? sample_sheen(lobe.f0.xy, sheen, u) : sample_cosine_hemisphere(n, u);
+        result.direction = fitted ? sample_sheen(lobe.f0.xy, sheen, disk) : cosine_hemisphere(n, disk);
         float cosine_i = dot(n, result.direction);
         if (cosine_i <= 0.0) return result;
         result.weight = lobe.weight * (fitted ? 1.0
@@ -94,22 +95,22 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_eve
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
     vec3 local_wo = to_frame(frame, wo);
     bool smooth_lobe = lobe.alpha < 1e-6;
-    vec3 local_h = sample_visible_normal(local_wo, frame.alpha, u);
+    vec3 local_h = sample_visible_normal(local_wo, frame.alpha, disk);
     vec3 h = smooth_lobe ? n : from_frame(frame, local_h);
     float cosine = dot(wo, h);
     if (cosine <= 0.0) return result;
-    vec3 reflected = lobe.weight * lobe_reflectance(lobe, cosine);
-    float probability = reflected_share(lobe, cosine);
+    FacetShares shares = facet_shares(lobe, cosine);
+    float probability = shares.reflected;
     if (u_event < probability) {
         result.direction = normalize(2.0 * cosine * h - wo);
-        result.weight = reflected / probability;
+        result.weight = lobe.weight * shares.reflectance / probability;
         if (dot(result.direction, n) <= 0.0) result.weight = vec3(0.0);
     } else {
         float k = 1.0 - (1.0 - cosine * cosine) / (lobe.ior * lobe.ior);
         if (k <= 0.0) return result;  // total internal reflection: a lobe without reflection scatters nothing
         result.direction = normalize((cosine / lobe.ior - sqrt(k)) * h - wo / lobe.ior);
         result.transmitted = true;
-        result.weight = lobe_transmittance(lobe, cosine) / (1.0 - probability);
+        result.weight = shares.transmittance / (1.0 - probability);
         // radiance shrinks with the beam's solid angle; flux does not (Veach 1997, section 5.2)
         if (radiance) result.weight /= lobe.ior * lobe.ior;
         if (dot(result.direction, n) >= 0.0) result.weight = vec3(0.0);
@@ -146,43 +147,46 @@ bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, o
     return dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
 }
 
-// BSDF for radiance that arrives from wi and leaves to wo (unit vectors away from the surface), 1/sr.
-vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+// What a lobe gives of a pair of directions, unit vectors away from the surface.
+struct LobeValue {
+    vec3 bsdf;  // for radiance that arrives from wi and leaves to wo, 1/sr
+    float pdf;  // with which sample_lobe gives wi, 1/sr
+};
+
+LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     face_sheet(lobe, n, wi);
+    LobeValue value = LobeValue(vec3(0.0), 0.0);
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
     if (lobe_is_sheen(lobe.kind)) {
-        if (cosine_o <= 0.0 || cosine_i <= 0.0) return vec3(0.0);
-        float scattered = lobe.kind == LOBE_SHEEN ? sheen_pdf(lobe.f0.xy, n, wo, wi)
-                                                  : velvet_scattered(lobe.f0.x, n, wo, wi);
-        return lobe.weight * (scattered / cosine_i);
+        bool fitted = lobe.kind == LOBE_SHEEN;
+        float fitted_pdf = sheen_pdf(lobe.f0.xy, n, wo, wi);
+        value.pdf = fitted ? fitted_pdf : max(dot(n, wi), 0.0) / PI;
+        if (cosine_o > 0.0 && cosine_i > 0.0)
+            value.bsdf = lobe.weight * ((fitted ? fitted_pdf : velvet_scattered(lobe.f0.x, n, wo, wi)) / cosine_i);
+        return value;
     }
     vec3 h;
     float oh, ih;
-    if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return vec3(0.0);
+    if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return value;
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
-    float distribution = facet_distribution(frame, to_frame(frame, h));
-    float masking = 1.0 / (1.0 + facet_lambda(frame, to_frame(frame, wo)) + facet_lambda(frame, to_frame(frame, wi)));
-    if (cosine_i > 0.0)
-        return lobe.weight * lobe_reflectance(lobe, oh) * (distribution * masking / (4.0 * cosine_o * cosine_i));
+    vec3 local_h = to_frame(frame, h), local_wo = to_frame(frame, wo);
+    FacetShares shares = facet_shares(lobe, oh);
+    float distribution = facet_distribution(frame, local_h);
+    float masking = 1.0 / (1.0 + facet_lambda(frame, local_wo) + facet_lambda(frame, to_frame(frame, wi)));
+    float visible = ggx_distribution(local_h, frame.alpha) * oh
+                    / (cosine_o * (1.0 + ggx_lambda(local_wo, frame.alpha)));
+    if (cosine_i > 0.0) {
+        value.bsdf = lobe.weight * shares.reflectance * (distribution * masking / (4.0 * cosine_o * cosine_i));
+        value.pdf = visible * shares.reflected / (4.0 * oh);
+        return value;
+    }
     float spread = lobe.ior * ih + oh;
-    return lobe_transmittance(lobe, oh)
+    value.bsdf = shares.transmittance
         * (distribution * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * max(spread * spread, 1e-12)));
+    value.pdf = visible * (1.0 - shares.reflected) * lobe.ior * lobe.ior * abs(ih) / max(spread * spread, 1e-12);
+    return value;
 }
 
-// Density with which sample_lobe gives a direction, 1/sr.
-float lobe_pdf(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
-    face_sheet(lobe, n, wi);
-    if (lobe_is_sheen(lobe.kind))
-        return lobe.kind == LOBE_SHEEN ? sheen_pdf(lobe.f0.xy, n, wo, wi) : max(dot(n, wi), 0.0) / PI;
-    vec3 h;
-    float oh, ih;
-    if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return 0.0;
-    MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
-    float cosine_o = dot(wo, n);
-    float visible = ggx_distribution(to_frame(frame, h), frame.alpha) * oh
-                    / (cosine_o * (1.0 + ggx_lambda(to_frame(frame, wo), frame.alpha)));
-    float reflected = reflected_share(lobe, oh);
-    if (dot(wi, n) > 0.0) return visible * reflected / (4.0 * oh);
-    float spread = lobe.ior * ih + oh;
-    return visible * (1.0 - reflected) * lobe.ior * lobe.ior * abs(ih) / max(spread * spread, 1e-12);
-}
+vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) { return lobe_value(lobe, n, wo, wi).bsdf; }
+
+float lobe_pdf(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) { return lobe_value(lobe, n, wo, wi).pdf; }

@@ -25,8 +25,8 @@ float sheen_pdf(vec2 coefficients, vec3 n, vec3 wo, vec3 wi) {
     return z * ratio * ratio / PI;
 }
 
-vec3 sample_sheen(vec2 coefficients, SheenFrame frame, vec2 u) {
-    vec2 d = sample_disk(u);
+// d: of the unit disk.
+vec3 sample_sheen(vec2 coefficients, SheenFrame frame, vec2 d) {
     float z = sqrt(max(0.0, 1.0 - dot(d, d)));
     vec3 w = vec3(d.x - coefficients.y * z, d.y, z * coefficients.x);
     return normalize(w.x * frame.t + w.y * frame.b + w.z * frame.n);

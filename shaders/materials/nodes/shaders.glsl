@@ -50,11 +50,14 @@ void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distributio
     Microfacets at = isotropic_microfacets(builder, normal, unit(roughness));
     if (distribution == 0) at.anisotropy |= BECKMANN;
     Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
+    float relative = relative_ior(builder, valid_ior(ior));
+    MicrofacetLobe lobe;
     if (film.thickness > THINNEST_FILM)
-        add_glass_with_film(builder, at, weighted, weighted, film, valid_ior(ior));
+        lobe = covered_glass_lobe(at, weighted, weighted, glass_film_reflectance(builder, at, film, valid_ior(ior)),
+                                  relative);
     else
-        add_glass(builder, at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), valid_ior(ior),
-                  distribution == 2);
+        lobe = glass_lobe(at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), relative, distribution == 2);
+    add_lobe(builder, lobe);
 }
 
 void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
@@ -67,8 +70,10 @@ void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distri
 void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
                      vec3 normal) {
     vec3 weighted = weight * max(color, 0.0);
-    if (distribution == 0) add_velvet(builder, weighted, unit(roughness), normal);
-    else add_sheen(builder, weighted, unit(roughness), normal);
+    float albedo;
+    MicrofacetLobe lobe = distribution == 0 ? velvet_lobe(builder, weighted, unit(roughness), normal)
+                                            : sheen_lobe(builder, weighted, unit(roughness), normal, albedo);
+    if (lobe.kind != LOBE_NONE) add_lobe(builder, lobe);
 }
 
 // A diffuse surface of the same color stands in: as if light left where it came in.
@@ -100,8 +105,12 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
         f0 = clamp(conductor_reflectance(1.0, n, k), 0.0, 1.0);
         edge = clamp(conductor_reflectance(cosine, n, k) / mix(f0, vec3(1.0), schlick_interpolation(cosine)), 0.0, 1.0);
     }
-    add_metal(builder, at, vec3(weight), f0, edge, Film(thin_film_thickness, max(thin_film_ior, 1e-3)),
-              distribution == 2);
+    Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
+    if (film.thickness > THINNEST_FILM) {
+        f0 = covered_metal(at, film_reflectance(at, film, 1.0, 1.0, metal_below_film(f0, film)));
+        edge = vec3(1.0);
+    }
+    add_lobe(builder, metal_lobe(at, vec3(weight), f0, edge, distribution == 2));
 }
 
 // A diffuse or a glossy surface stands in.
