@@ -236,6 +236,8 @@ def status_text(status: SessionStatus, paused: bool, radius: str, letters: int) 
         state = f"{rate_text(status.photons_per_second)} photons/s"
     noise = [f"Noise {noise_text(status.noise, status.noise_threshold)}"] if status.noise > 0.0 else []
     parts = [f"Sample {status.iteration}/{status.iterations}", state, *noise, f"Radius {radius}"]
+    if status.programs_stood_in_for:
+        parts.insert(1, f"Compiling {status.programs_stood_in_for} materials")
     while len(parts) > 1 and len(" | ".join(parts)) > letters:
         parts.pop()
     return " | ".join(parts)

@@ -6,12 +6,15 @@ processor time, in a single thread. What another context has compiled it finds i
 contexts of their own take the longest programs that wait, while the renderer runs into the others one after the other.
 """
 
+import contextlib
 import ctypes
 import logging
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import moderngl
 
@@ -27,6 +30,8 @@ _MOST_THREADS = 3
 _KEEPING_SECONDS = 0.1
 """Drivers write their cache from a thread of their own, a little after the program is there."""
 _DISPATCH_INDIRECT_BUFFER = 0x90EE
+_NICENESS = 10
+"""Of a thread whose work nobody waits for."""
 
 
 class EmptyDispatch:
@@ -65,6 +70,18 @@ def is_of_use(context: Context) -> bool:
     return context.is_software and kept and usable_cores() > 1
 
 
+@dataclass(frozen=True)
+class _Job:
+    source: Source
+    needed: bool
+    """Whether a picture cannot do without it; what has a stand-in comes later."""
+
+    @property
+    def urgency(self) -> tuple[bool, int]:
+        """The greatest is next: the longest of those that are needed."""
+        return self.needed, len(self.source.text)
+
+
 class BackgroundCompiler:
     """Compiles what is submitted until it is claimed, the longest first. Methods run in the renderer's thread."""
 
@@ -72,35 +89,65 @@ class BackgroundCompiler:
         """open_context: opens another context of the renderer's device, in the thread that calls it."""
         self._open_context = open_context
         self._condition = threading.Condition()
-        self._waiting: list[Source] = []
+        self._waiting: list[_Job] = []
         self._compiling: set[str] = set()
         """Their texts."""
-        self._threads = 0
+        self._compiled: set[str] = set()
+        """Texts of those that were tried."""
+        self._threads = {True: 0, False: 0}
+        """Those that somebody waits for, and those, one at most, that work at a lower priority."""
+        self._hurries = True
 
-    def submit(self, source: Source) -> None:
-        """A program that will be run, but not at once."""
+    def submit(self, source: Source, needed: bool = True) -> None:
+        """A program that will be run, but not at once. needed: not only what has a stand-in."""
         with self._condition:
-            self._waiting.append(source)
-            if self._threads < min(usable_cores() - 1, _MOST_THREADS):
-                self._threads += 1
-                threading.Thread(target=self._run, name="RPPM compiler").start()
+            if source.text not in self._compiled:
+                self._waiting.append(_Job(source, needed))
+                self._start_thread()
+
+    def hurry(self, hurries: bool) -> None:
+        """Whether anybody waits for what is compiled: if not, a single thread does it at a lower priority."""
+        with self._condition:
+            self._hurries = hurries
+            if self._waiting:
+                self._start_thread()
+
+    def has_tried(self, source: Source) -> bool:
+        """Whether a program is compiled, or cannot be here."""
+        with self._condition:
+            return source.text in self._compiled
+
+    def knows(self, source: Source) -> bool:
+        """Whether a program has been submitted."""
+        with self._condition:
+            waiting = any(job.source == source for job in self._waiting)
+            return waiting or source.text in self._compiling or source.text in self._compiled
+
+    def _start_thread(self) -> None:
+        most = min(usable_cores() - 1, _MOST_THREADS) if self._hurries else 1
+        if self._threads[self._hurries] < most:
+            self._threads[self._hurries] += 1
+            threading.Thread(target=self._run, args=(self._hurries,), name="RPPM compiler").start()
 
     def claim(self, source: Source) -> None:
         """The program is about to be run: leave it alone, or be done with it on return."""
         with self._condition:
-            if source in self._waiting:
-                self._waiting.remove(source)
+            self._waiting = [job for job in self._waiting if job.source != source]
             self._condition.wait_for(lambda: source.text not in self._compiling)
+            self._compiled.add(source.text)
 
     def stop(self) -> None:
         """Begin no other program."""
         with self._condition:
             self._waiting.clear()
 
-    def _run(self) -> None:
+    def _run(self, hurries: bool) -> None:
         """A thread's work, until nothing waits. It only saves time: what fails here is left to the renderer."""
         context = None
-        while (source := self._next()) is not None:
+        if not hurries and sys.platform == "linux":  # where threads have priorities of their own
+            with contextlib.suppress(OSError):
+                os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)
+        while (source := self._next(hurries)) is not None:
             try:
                 if context is None:
                     context = self._open_context()
@@ -116,17 +163,18 @@ class BackgroundCompiler:
             finally:
                 with self._condition:
                     self._compiling.discard(source.text)
+                    self._compiled.add(source.text)
                     self._condition.notify_all()
         if context is not None:
             context.release()
 
-    def _next(self) -> Source | None:
+    def _next(self, hurries: bool) -> Source | None:
         """What to compile; with nothing to do, or once the process is about to end, the thread ends."""
         with self._condition:
             if not self._waiting or not threading.main_thread().is_alive():
-                self._threads -= 1
+                self._threads[hurries] -= 1
                 return None
-            source = max(self._waiting, key=lambda waiting: len(waiting.text))
-            self._waiting.remove(source)
-            self._compiling.add(source.text)
-            return source
+            job = max(self._waiting, key=lambda waiting: waiting.urgency)
+            self._waiting.remove(job)
+            self._compiling.add(job.source.text)
+            return job.source

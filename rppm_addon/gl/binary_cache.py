@@ -57,6 +57,10 @@ class BinaryCache:
     def _path(self, text: str) -> Path:
         return cache_folder() / (hashlib.sha256((self._device + text).encode()).hexdigest() + ".bin")
 
+    def holds(self, text: str) -> bool:
+        """Whether there is a binary of this source."""
+        return self.available and self._path(text).exists()
+
     def load(self, program: int, text: str) -> bool:
         """Replace the GL program's code by the stored binary of this source; False if there is none."""
         if not self.available:

@@ -221,6 +221,8 @@ class ProgramLibrary:
         self._cache = BinaryCache(context)
         self._background = Background(context) if is_of_use(context) else None
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
+        self._sources: dict[tuple, Source] = {}
+        """Of programs that something stands in for."""
         self.made = 0
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
         self.started = 0
@@ -240,6 +242,32 @@ class ProgramLibrary:
         """
         key = (path, *(tuple(sorted((given or {}).items())) for given in (defines, inserts)))
         return self._get(key, lambda: self._compute(path, dict(defines or {}), dict(inserts or {})))
+
+    def has_stand_in(self, path: str, inserts: Mapping[str, str]) -> bool:
+        """Whether a compute program that something can stand in for is still to be compiled, and is, in the background.
+
+        False where drivers compile when they are asked to, and once the program is there: then compute() takes no time.
+        """
+        if self._background is None or (path, (), tuple(sorted(inserts.items()))) in self._programs:
+            return False
+        source, compiler = self._expanded(path, inserts), self._background.compiler
+        if not compiler.knows(source):
+            if self._cache.holds(source.text):  # it has run before, so the driver has its code as well
+                return False
+            compiler.submit(source, needed=False)
+        return not compiler.has_tried(source)
+
+    def _expanded(self, path: str, inserts: Mapping[str, str]) -> Source:
+        """The same object for the same text, so that asking again costs nothing."""
+        key = (path, *sorted(inserts.items()))
+        if key not in self._sources:
+            self._sources[key] = expand(path, {}, dict(inserts))
+        return self._sources[key]
+
+    def hurry(self, hurries: bool) -> None:
+        """Whether anybody waits for what is compiled in the background."""
+        if self._background is not None:
+            self._background.compiler.hurry(hurries)
 
     def draw(
         self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None, geometry: str | None = None

@@ -21,6 +21,9 @@ _MOST_NODES = 200
 _GLOSSY = {"bsdf_glossy", "bsdf_metallic"}
 _REFRACTIVE = {"bsdf_glass", "bsdf_refraction"}
 _LIGHTS = {"emission", "background"}
+_UV_KINDS = {"tex_coord", "uvmap"}
+"""Whose output "uv" is taken for that of the UV map in use."""
+_UNMAPPED = {"scale": 1.0, "location": 0.0, "rotation": 0.0}
 
 
 @dataclass(frozen=True)
@@ -33,8 +36,29 @@ class PlainSurface:
     roughness: float
     emission: np.ndarray
     """(3,) float64 radiance, W/(m^2 sr)."""
-    opacity: float
-    """1 hides what is behind it."""
+    transparent: float
+    """Share of what is behind that is seen unbent."""
+    glass: float
+    """Share of what lets light through by refraction."""
+    texture: "PlainTexture | None" = None
+    """What the color is the mean of, at least in part."""
+
+    @property
+    def opacity(self) -> float:
+        """1 hides what is behind it."""
+        return float(np.clip(1.0 - self.transparent - (1.0 - GLASS_OPACITY) * self.glass, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class PlainTexture:
+    """An image in the coordinates of the UV map in use."""
+
+    image: int
+    """Index into Scene.images."""
+    scale: np.ndarray
+    """(3,) float64, by which the coordinates are multiplied."""
+    offset: np.ndarray
+    """(3,) float64, what is added to them then."""
 
 
 def plain_surface(graph: NodeGraph, images: Sequence[Image]) -> PlainSurface:
@@ -50,7 +74,8 @@ class _Mean:
         self._graph = graph
         self._images = images
         self._nodes_left = _MOST_NODES
-        self._weight = self._metallic = self._roughness = self._transparent = 0.0
+        self._weight = self._metallic = self._roughness = self._transparent = self._glass = 0.0
+        self._texture: PlainTexture | None = None
         self._color, self._emission = np.zeros(3), np.zeros(3)
 
     def surface(self) -> PlainSurface:
@@ -62,7 +87,9 @@ class _Mean:
             float(np.clip(self._metallic / weight, 0.0, 1.0)),
             float(np.clip(self._roughness / weight, 0.0, 1.0)) if self._weight else 1.0,
             np.maximum(self._emission, 0.0),
-            float(np.clip(1.0 - self._transparent, 0.0, 1.0)),
+            float(np.clip(self._transparent, 0.0, 1.0)),
+            float(np.clip(self._glass, 0.0, 1.0)),
+            self._texture,
         )
 
     def _add(self, shader: Link, weight: float) -> None:
@@ -89,16 +116,17 @@ class _Mean:
         if node.kind == "bsdf_transparent":
             self._transparent += weight * float(np.clip(self._color_of(node, "color"), 0.0, 1.0).mean())
             return
-        metallic, opacity = float(node.kind in _GLOSSY), GLASS_OPACITY if node.kind in _REFRACTIVE else 1.0
+        metallic, glass, alpha = float(node.kind in _GLOSSY), float(node.kind in _REFRACTIVE), 1.0
         color = self._color_of(node, "base_color" if "base_color" in KINDS[node.kind].inputs else "color")
         if node.kind == "bsdf_principled":
             metallic = self._number(node, "metallic", 0.0)
             glass = (1.0 - metallic) * self._number(node, "transmission_weight", 0.0)
             alpha = self._number(node, "alpha", 1.0)
-            opacity = alpha * (1.0 + glass * (GLASS_OPACITY - 1.0))
-            strength = self._number(node, "emission_strength", 0.0)
+            strength, texture = self._number(node, "emission_strength", 0.0), self._texture
             self._emission += weight * alpha * strength * self._color_of(node, "emission_color")
-        self._transparent += weight * (1.0 - opacity)
+            self._texture = texture
+        self._transparent += weight * (1.0 - alpha)
+        self._glass += weight * alpha * glass
         self._weight += weight
         self._color += weight * color
         self._metallic += weight * metallic
@@ -133,6 +161,7 @@ class _Mean:
         if node is None:
             return _GRAY
         if 0 <= node.image < len(self._images):
+            self._texture = self._texture or self._texture_of(node)
             return mean_color(self._images[node.image])
         colors = [name for name, (kind, _) in KINDS[node.kind].inputs.items() if kind is SocketType.COLOR]
         if colors:
@@ -140,6 +169,27 @@ class _Mean:
         if node.table is not None and node.table.ndim == 2 and node.table.shape[1] >= 3:  # a color ramp
             return node.table[:, :3].mean(axis=0, dtype=np.float64)
         return _GRAY
+
+    def _texture_of(self, node: ShaderNode) -> PlainTexture | None:
+        """The image of a node, if it lies flat on the UV map in use, moved and scaled at most."""
+        place = node.inputs.get("vector")
+        scale, offset = np.ones(3), np.zeros(3)
+        mapping = self._node(place) if isinstance(place, Link) else None
+        if mapping is not None and mapping.kind == "mapping" and mapping.options.get("vector_type", "POINT") == "POINT":
+            place = mapping.inputs.get("vector")
+            values = [mapping.inputs.get(name, start) for name, start in _UNMAPPED.items()]
+            if any(isinstance(value, Link) for value in values):
+                return None
+            scale, offset, rotation = (np.broadcast_to(np.asarray(value, np.float64), 3) for value in values)
+            if rotation.any():
+                return None
+        start = self._node(place) if isinstance(place, Link) else None
+        flat = node.kind == "tex_image" and node.options.get("projection", "FLAT") == "FLAT"
+        if not flat or start is None or start.kind not in _UV_KINDS:
+            return None
+        if not isinstance(place, Link) or place.output != "uv":
+            return None
+        return PlainTexture(node.image, scale, offset)
 
 
 def mean_color(image: Image) -> np.ndarray:

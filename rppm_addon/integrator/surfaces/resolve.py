@@ -67,6 +67,15 @@ Constants("PathKinds", PATH_OF=_PathKind)
 _STAGE = "resolve/resolve.comp"
 
 
+def _inserts(text: str) -> dict[str, str]:
+    return {"materials/generated.glsl": text}
+
+
+def has_stand_in(library: ProgramLibrary, text: str) -> bool:
+    """Whether the program of a material's GLSL is still to be compiled in the background (see ProgramLibrary)."""
+    return library.has_stand_in(_STAGE, _inserts(text))
+
+
 class Resolve(BufferSet):
     """Rays and their hits to closures: the hits are ordered by program, and each program resolves its own."""
 
@@ -122,12 +131,12 @@ class Resolve(BufferSet):
 
     def _program(self, text: str, scene: Scene, materials: MaterialTables) -> ComputeProgram:
         try:
-            return self._library.compute(_STAGE, inserts={"materials/generated.glsl": text})
+            return self._library.compute(_STAGE, inserts=_inserts(text))
         except CompileError as error:
             for name in materials.users[text]:
                 reason = first_line(error)
                 scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is gray')
-            return self._library.compute(_STAGE, inserts={"materials/generated.glsl": NEUTRAL_TEXT})
+            return self._library.compute(_STAGE, inserts=_inserts(NEUTRAL_TEXT))
 
     def run(
         self,

@@ -28,11 +28,12 @@ class KnownPrograms:
         if sum(triangles[instance.mesh] for instance in scene.instances if instance.mesh in known) > MOST_TRIANGLES:
             return False
         return bool(self._texts) and all(
-            _text(material.graph) in self._texts for material in (*scene.materials, default_material())
+            text_of(material.graph) in self._texts for material in (*scene.materials, default_material())
         )
 
 
-def _text(graph: NodeGraph) -> str:
+def text_of(graph: NodeGraph) -> str:
+    """The GLSL that a material with this graph is rendered with."""
     try:
         return compile_graph(graph).text
     except GraphError:

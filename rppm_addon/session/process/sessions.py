@@ -23,6 +23,8 @@ class SessionStatus:
     """Until the first iteration: programs that are compiled."""
     programs: int = 0
     """And those that are known to be needed."""
+    programs_stood_in_for: int = 0
+    """Programs of materials that are compiled while stand-ins are rendered in their place."""
     iteration: int = 0
     iterations: int = 0
     photons: int = 0

@@ -24,6 +24,7 @@ from .frames import FrameWriter
 from .known_programs import KnownPrograms
 from .sessions import SessionStatus
 from .sharpness import Sharpness, at_level
+from .stand_ins import StandIns
 
 NAVIGATION_SECONDS = 1.0 / 15.0
 """Time for the first picture while the view or the scene keeps changing."""
@@ -95,6 +96,7 @@ class Viewing:
         self._told_at = 0.0
         self._given_out_at = 0.0
         self._sharpness = Sharpness()
+        self._stand_ins = StandIns(library)
         self._paused = False
         self._status = SessionStatus()
 
@@ -145,13 +147,27 @@ class Viewing:
             yield from self._render_level(scene, generation, navigating, level)
 
     def _render_level(self, scene: Scene, generation: int, navigating: bool, level: float) -> Iterator[None]:
-        started = time.perf_counter()
+        """Pictures of one sharpness, begun anew as materials' own programs become ready."""
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
-        mapper, settings = self._mapper, scene.settings
         if not self._rendered and self._newest_sent < generation and not self._programs.cover(scene):
             self._look_at(scene, generation)
             yield
+        self._library.hurry(True)
+        while True:
+            shown = self._stand_ins.replace(scene)
+            yield from self._improve(shown, generation, navigating, level)
+            done = self._mapper.iteration >= scene.settings.iterations
+            while done and self._stand_ins.count and not self._stand_ins.due:
+                time.sleep(POLL_SECONDS)
+                yield
+            if not self._stand_ins.due:
+                return
+
+    def _improve(self, scene: Scene, generation: int, navigating: bool, level: float) -> Iterator[None]:
+        """Iterations of a scene, until something else is due."""
+        started = time.perf_counter()
+        mapper, settings = self._mapper, scene.settings
         mapper.update(at_level(scene, level), center_tolerance=math.inf if level < 1.0 else 0.0)
         built = time.perf_counter()
         self._pictures += 1
@@ -196,10 +212,13 @@ class Viewing:
                     warnings=mapper.scene.warnings,
                     noise=threshold.noise,
                     noise_threshold=threshold.threshold,
-                    settled=level == 1.0 and last,
+                    programs_stood_in_for=self._stand_ins.count,
+                    settled=level == 1.0 and last and not self._stand_ins.count,
                 )
             )
             yield
+            if self._stand_ins.due and not self._first_picture_pending:
+                return
             at_rest = not navigating or time.perf_counter() - self._shown_at >= REST_SECONDS
             if level < 1.0 and at_rest and not self._first_picture_pending:
                 return
