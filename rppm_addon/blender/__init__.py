@@ -9,6 +9,7 @@ from . import (
     operators,
     panels,
     preferences,
+    preparing,
     properties,
     renderer_process,
     renderer_thread,
@@ -26,6 +27,7 @@ def register() -> None:
     panels.register()
     preferences.register()
     renderer_process.register()
+    preparing.register()
     following.register()
     kept_images.register()
     broken_frames.register()
@@ -36,6 +38,7 @@ def unregister() -> None:
     broken_frames.unregister()
     kept_images.unregister()
     following.unregister()
+    preparing.unregister()
     renderer_process.unregister()
     preferences.unregister()
     panels.unregister()

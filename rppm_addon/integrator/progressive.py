@@ -73,6 +73,13 @@ class ProgressivePhotonMapper:
             self._release_stages()
         self.iteration = self._skipped = 0
 
+    def link_programs(self, scene: Scene) -> None:
+        """Have those programs made, for the first run of which there is nothing to do yet, that pictures of this size
+        and these settings need; there is nothing to iterate then. Raises as build does."""
+        self._begin(scene)
+        self._stages = StageSet(self.context, self._library, scene)
+        self._release_stages()
+
     def iterate(self) -> None:
         """One iteration of Algorithm 1."""
         for _ in self.steps():

@@ -68,6 +68,36 @@ def test_the_longest_that_nobody_has_claimed_is_next(driver):
     assert driver.compiled == ["first", "aaa", "a"]
 
 
+def test_what_pictures_need_comes_before_what_has_a_stand_in(driver):
+    compiler = BackgroundCompiler(driver.open)
+    first, needed, longer = sources("first", "aa", "aaaa")
+    submit_alone(compiler, first)
+    compiler.submit(longer, needed=False)
+    compiler.submit(needed)
+    assert compiler.knows(longer) and not compiler.has_tried(longer)
+    driver.ready.set()
+    for _ in range(3):
+        assert driver.done.acquire(timeout=60.0)
+    compiler.claim(longer)
+    assert driver.compiled == ["first", "aa", "aaaa"] and compiler.has_tried(longer)
+    compiler.submit(longer)  # is there
+    assert compiler.knows(longer) and not compiler._waiting
+
+
+def test_what_nobody_waits_for_has_one_thread(driver, monkeypatch):
+    monkeypatch.setattr(background_compiler, "usable_cores", lambda: 8)
+    compiler = BackgroundCompiler(driver.open)
+    compiler.hurry(False)
+    for source in sources("a", "aa", "aaa"):
+        compiler.submit(source)
+    assert compiler._threads == {True: 0, False: 1}
+    compiler.hurry(True)
+    assert compiler._threads == {True: 1, False: 1}
+    driver.ready.set()
+    for _ in range(3):
+        assert driver.done.acquire(timeout=60.0)
+
+
 def test_what_fails_is_left_to_whoever_runs_it(driver):
     compiler = BackgroundCompiler(driver.open)
     wrong, right = sources("wrong", "right")
@@ -76,6 +106,7 @@ def test_what_fails_is_left_to_whoever_runs_it(driver):
     driver.ready.set()
     compiler.claim(wrong)
     compiler.claim(right)
+    assert compiler.has_tried(wrong)
     closed = BackgroundCompiler(lambda: 1 / 0)  # a device that does not open
     closed.submit(right)
     closed.claim(right)

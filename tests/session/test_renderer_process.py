@@ -48,6 +48,19 @@ def expected(scene):
         return renderer.render(scene).frame
 
 
+def test_programs_are_prepared_by_a_session_that_ends_by_itself(start):
+    process = start()
+    scene = scene_of(3)
+    process.prepare(dataclasses.replace(scene, meshes=[], instances=[], lights=[]))
+    assert len(process.sessions) == 1
+    wait_until(lambda: not process.sessions)
+    assert process.state is ProcessState.RUNNING
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene, 1, False)
+    wait_until(lambda: session.status.settled)
+    assert np.array_equal(session.newest().combined, expected(scene).combined)
+
+
 def test_a_viewport_settles_on_the_picture_of_a_render(start):
     process = start()
     session = process.open(SessionKind.VIEWPORT)

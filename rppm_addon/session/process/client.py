@@ -11,11 +11,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from ...denoising.places import LibraryPlace
 from ...gl.context import DeviceInformation
+from ...scene.scene import Scene
 from .child_process import ChildProcess
-from .client_session import RenderSession, Session, ViewportSession
+from .client_session import PreparationSession, RenderSession, Session, ViewportSession
 from .connection import Connection
 from .sessions import SessionKind
 
@@ -23,6 +25,9 @@ logger = logging.getLogger(__name__)
 
 LARGEST_LOG = 1 << 24
 """Bytes; then the log begins anew."""
+_UNASKED = {SessionKind.PREVIEW, SessionKind.PREPARATION}
+"""What comes by itself."""
+_AnySession = TypeVar("_AnySession", bound=Session)
 MOST_RESTARTS = 2
 """Times that a process which died is started anew without being asked to."""
 
@@ -98,17 +103,29 @@ class RendererProcess:
         self._restarting = False
 
     def open(self, kind: SessionKind) -> ViewportSession | RenderSession:
-        """A new session; starts the process if there is none.
+        """A new session for pictures; starts the process if there is none.
 
         After a failure a viewport or a final render, which users ask for, tries again; previews come by themselves.
         """
+        if kind is SessionKind.VIEWPORT:
+            return self._open(ViewportSession, kind)
+        return self._open(RenderSession, kind)
+
+    def prepare(self, scene: Scene) -> None:
+        """Have the programs for a scene compiled before anybody waits for them; starts the process if there is none.
+
+        Only the settings and the materials' graphs count. After a failure nothing is done.
+        """
+        self._open(PreparationSession, SessionKind.PREPARATION).show(scene, 1, False)
+
+    def _open(self, made: type[_AnySession], kind: SessionKind) -> _AnySession:
         with self.changed:
             self._numbers += 1
-            made = ViewportSession if kind is SessionKind.VIEWPORT else RenderSession
-            session = self.sessions[self._numbers] = made(self, self._numbers, kind)
+            session = made(self, self._numbers, kind)
+            self.sessions[self._numbers] = session
             if self.state is ProcessState.RUNNING:
                 session.introduce()
-            elif self.state is ProcessState.FAILED and kind is SessionKind.PREVIEW:
+            elif self.state is ProcessState.FAILED and kind in _UNASKED:
                 session.fail(self.error)
             elif self.state in {ProcessState.STOPPED, ProcessState.FAILED}:
                 self._start()

@@ -246,3 +246,16 @@ class RenderSession(Session):
                 with self.process.changed:
                     self.process.post("received", session=self.number)
         self.events.put((kind, content))
+
+
+class PreparationSession(Session):
+    """Programs that are compiled before anybody waits for them. It closes by itself."""
+
+    def fail(self, text: str) -> None:
+        """As Session has it: whoever renders says what is wrong."""
+
+    def receive(self, kind: str, content: dict) -> None:
+        """As Session has it."""
+        if kind != "prepared":
+            raise ProtocolError(f"a preparation has no message {kind!r}")
+        self.close()

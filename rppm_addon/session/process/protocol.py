@@ -35,6 +35,7 @@ picture session, arrays, progress     as it was wanted
 snapshot session, arrays, seconds     as it was expected
 result session, arrays, statistics, stopped
 failed session, error, text           the render has ended with an error of this name
+prepared session                      the programs of a scene are compiled, or will be
 pong
 """
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 class SessionKind(enum.Enum):
     """What a session is for; the value is its weight when several share the device."""
 
+    PREPARATION = 0.25
     VIEWPORT = 1
     FINAL = 3
     PREVIEW = 4

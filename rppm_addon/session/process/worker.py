@@ -20,6 +20,7 @@ from ...scene.errors import RppmError
 from .arrays import unpack
 from .fair_share import FairShare
 from .known_programs import KnownPrograms
+from .preparation import Preparation
 from .protocol import VERSION, ProtocolError, read_message, write_message
 from .rendering import Rendering
 from .sessions import SessionKind
@@ -64,7 +65,7 @@ class Worker:
         self._writing = threading.Lock()
         self._receiver = SceneReceiver()
         self._inbox: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
-        self._sessions: dict[int, tuple[SessionKind, Viewing | Rendering]] = {}
+        self._sessions: dict[int, tuple[SessionKind, Viewing | Rendering | Preparation]] = {}
         self._programs = KnownPrograms()
         self._share = FairShare()
         self._whole = threading.Event()
@@ -142,9 +143,11 @@ class Worker:
         elif kind == "open":
             session_kind = SessionKind[message["session_kind"]]
             send = functools.partial(self._send, session=number)
-            session: Viewing | Rendering
+            session: Viewing | Rendering | Preparation
             if session_kind is SessionKind.VIEWPORT:
                 session = Viewing(self._context, self._library, self._denoiser, send, self._programs)
+            elif session_kind is SessionKind.PREPARATION:
+                session = Preparation(self._context, self._library, send)
             else:
                 session = Rendering(self._context, self._library, self._denoiser, send)
             self._sessions[number] = session_kind, session

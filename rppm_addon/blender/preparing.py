@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Programs that are compiled while a user still looks at the solid view of a file that was opened."""
+
+import time
+
+import bpy
+import numpy as np
+from bpy.app.handlers import persistent
+
+from ..scene import Camera, Material, Scene
+from ..scene.errors import RppmError
+from ..session.process.client import ProcessState
+from .engine import RppmRenderEngine
+from .export import export_settings
+from .export.context import ExportContext
+from .export.images.images import MISSING, ImageTable
+from .export.nodes.materials import export_material
+from .export.report import Report
+from .renderer_process import is_used, renderer_process
+
+IDLE_SECONDS = 2.0
+"""After a file is opened: whoever renders at once needs nobody to prepare."""
+_SLICE_SECONDS = 0.02
+_RESOLUTION, _WINDOW = 64, (-1.0, 1.0, -1.0, 1.0)
+"""The programs are those of any picture."""
+
+
+class _NoImages(ImageTable):
+    """Images cost their reading, and no program depends on them."""
+
+    def _index(self, *_: object) -> int:
+        return MISSING
+
+
+class _NoReport(Report):
+    """What is to be said of the materials is said when they are rendered."""
+
+    def warn(self, text: str) -> None:
+        """Say nothing."""
+
+
+class _Preparing:
+    """Exports a file's materials bit by bit, and has their programs compiled."""
+
+    def __init__(self) -> None:
+        self._context = ExportContext(_NoReport(), _NoImages())
+        self._names = [material.name for material in bpy.data.materials if material.users]
+        self._materials: list[Material] = []
+
+    def go_on(self) -> bool:
+        """Do a little; returns whether there is more to be done."""
+        end = time.monotonic() + _SLICE_SECONDS
+        while self._names and time.monotonic() < end:
+            material = bpy.data.materials.get(self._names.pop())
+            if material is not None:
+                self._materials.append(export_material(material, self._context))
+        if self._names:
+            return True
+        settings = export_settings(bpy.context.scene, bpy.context.view_layer, viewport=True)
+        camera = Camera(np.eye(4), _WINDOW, _RESOLUTION, _RESOLUTION)
+        renderer_process().prepare(Scene(camera, materials=self._materials, settings=settings))
+        return False
+
+
+_preparing: _Preparing | None = None
+
+
+def _is_wanted() -> bool:
+    """Whether RPPM is to render the file, and nobody renders yet."""
+    scene = bpy.context.scene
+    active = scene is not None and scene.render.engine == RppmRenderEngine.bl_idname
+    return active and is_used() and renderer_process().state is ProcessState.STOPPED
+
+
+def _go_on() -> float | None:
+    global _preparing
+    try:
+        if _is_wanted():
+            _preparing = _preparing or _Preparing()
+            if _preparing.go_on():
+                return _SLICE_SECONDS
+    except RppmError:
+        pass  # whoever renders says so
+    _preparing = None
+    return None
+
+
+@persistent
+def _on_load(*_: object) -> None:
+    _stop()
+    bpy.app.timers.register(_go_on, first_interval=IDLE_SECONDS)
+
+
+def _stop() -> None:
+    global _preparing
+    _preparing = None
+    if bpy.app.timers.is_registered(_go_on):
+        bpy.app.timers.unregister(_go_on)
+
+
+def register() -> None:
+    """Prepare for files that are opened from now on."""
+    bpy.app.handlers.load_post.append(_on_load)
+
+
+def unregister() -> None:
+    """Prepare for none."""
+    bpy.app.handlers.load_post.remove(_on_load)
+    _stop()

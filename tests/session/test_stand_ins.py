@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials that something stands in for until their programs are compiled, in a viewport."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from support.floor import floor_scene
+
+from rppm_addon.denoising.denoiser import Denoiser
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.scene import Material, NodeGraph
+from rppm_addon.session.process import stand_ins
+from rppm_addon.session.process.known_programs import KnownPrograms
+from rppm_addon.session.process.stand_ins import StandIns
+from rppm_addon.session.process.viewing import Viewing
+
+
+class Compiling:
+    """In a library's place: programs that are compiled until ``ready`` names the kinds of their nodes."""
+
+    def __init__(self):
+        self.ready = set()
+
+    def has_stand_in(self, path, inserts):
+        (text,) = inserts.values()
+        return not any(f"node_{kind}" in text for kind in self.ready)
+
+
+def plain(kind):
+    graph = NodeGraph()
+    graph.surface = graph.add(kind, "emission" if kind == "emission" else "bsdf")
+    return Material(kind, graph)
+
+
+KINDS = ("bsdf_diffuse", "bsdf_glossy", "bsdf_glass", "bsdf_transparent")
+
+
+@pytest.fixture
+def scene():
+    return dataclasses.replace(floor_scene(), materials=[plain(kind) for kind in KINDS])
+
+
+def stood_in_for(scene, shown):
+    return [kind for kind, old, new in zip(KINDS, scene.materials, shown.materials, strict=True) if old is not new]
+
+
+def test_each_is_replaced_until_its_own_program_is_ready(scene, monkeypatch):
+    library, now = Compiling(), [100.0]
+    monkeypatch.setattr(stand_ins.time, "perf_counter", lambda: now[0])
+    found = StandIns(library)
+    shown = found.replace(scene)
+    assert stood_in_for(scene, shown) == list(KINDS) and found.count == 4 and not found.due
+    library.ready = {"bsdf_glossy"}
+    assert not found.due  # the picture would begin anew too often
+    now[0] += stand_ins.EXCHANGE_SECONDS
+    assert found.due
+    later = found.replace(scene)
+    assert stood_in_for(scene, later) == [KINDS[0], *KINDS[2:]]
+    assert later.materials[0] is shown.materials[0]  # what stays need not be uploaded again
+    library.ready = set(KINDS)
+    assert found.due
+    assert found.replace(scene) is scene and found.count == 0 and not found.due
+
+
+def test_few_programs_are_waited_for_unless_the_stand_ins_are_there(scene):
+    library = Compiling()
+    found = StandIns(library)
+    library.ready = set(KINDS[2:])
+    assert found.replace(scene) is scene and not found.due
+    library.ready = set()
+    found.replace(scene)
+    library.ready = set(KINDS[1:])
+    assert stood_in_for(scene, found.replace(scene)) == [KINDS[0]]
+
+
+def test_the_picture_begins_anew_with_what_is_ready(monkeypatch):
+    """And ends as that of a scene which nothing stood in for."""
+    library, known, sent = Compiling(), KnownPrograms(), []
+    real, scene = ProgramLibrary(context := Context.create()), floor_scene()
+    scene.settings = dataclasses.replace(scene.settings, iterations=2)
+    # Of the structure that faces without a material have: nothing is compiled for it.
+    black = NodeGraph()
+    black.surface = black.add("bsdf_diffuse", "bsdf", color=0.0)
+    monkeypatch.setattr(stand_ins, "stand_in_graph", lambda graph, images: black)
+    monkeypatch.setattr(stand_ins, "FEWEST_PROGRAMS", 1)
+    pictures = {}
+    for waits in (False, True):
+        if waits:
+            monkeypatch.setattr(real, "has_stand_in", library.has_stand_in)
+        viewing = Viewing(context, real, Denoiser([]), lambda kind, **content: sent.append((kind, content)), known)
+        shown = []
+
+        def keep(combined, *_, shown=shown):
+            shown.append(combined.copy())
+
+        monkeypatch.setattr(viewing, "_send_frame", keep)
+        viewing.show(scene, 1, False)
+        while viewing.busy:
+            viewing.run_slice()
+            if waits and len(shown) == 2:
+                library.ready = {"bsdf_diffuse"}
+        pictures[waits] = shown
+        viewing.release()
+    real.release()
+    context.release()
+    statuses = [content["status"] for kind, content in sent if kind == "status"]
+    assert {status["programs_stood_in_for"] for status in statuses} == {0, 1}
+    assert not any(status["settled"] for status in statuses if status["programs_stood_in_for"])
+    assert not pictures[True][1][:, :8, :3].any() and pictures[True][-1][:, :8, :3].any()
+    np.testing.assert_array_equal(pictures[True][-1], pictures[False][-1])
