@@ -10,13 +10,13 @@ from bpy.app.handlers import persistent
 from ..scene import Camera, Material, Scene
 from ..scene.errors import RppmError
 from ..session.process.client import ProcessState
+from . import renderer_process
 from .engine import RppmRenderEngine
 from .export import export_settings
 from .export.context import ExportContext
 from .export.images.images import MISSING, ImageTable
 from .export.nodes.materials import export_material
 from .export.report import Report
-from .renderer_process import is_used, renderer_process
 
 IDLE_SECONDS = 2.0
 """After a file is opened: whoever renders at once needs nobody to prepare."""
@@ -50,15 +50,17 @@ class _Preparing:
     def go_on(self) -> bool:
         """Do a little; returns whether there is more to be done."""
         end = time.monotonic() + _SLICE_SECONDS
-        while self._names and time.monotonic() < end:
+        while self._names:
             material = bpy.data.materials.get(self._names.pop())
             if material is not None:
                 self._materials.append(export_material(material, self._context))
+            if time.monotonic() >= end:
+                break
         if self._names:
             return True
         settings = export_settings(bpy.context.scene, bpy.context.view_layer, viewport=True)
         camera = Camera(np.eye(4), _WINDOW, _RESOLUTION, _RESOLUTION)
-        renderer_process().prepare(Scene(camera, materials=self._materials, settings=settings))
+        renderer_process.renderer_process().prepare(Scene(camera, materials=self._materials, settings=settings))
         return False
 
 
@@ -69,7 +71,9 @@ def _is_wanted() -> bool:
     """Whether RPPM is to render the file, and nobody renders yet."""
     scene = bpy.context.scene
     active = scene is not None and scene.render.engine == RppmRenderEngine.bl_idname
-    return active and is_used() and renderer_process().state is ProcessState.STOPPED
+    if not (active and renderer_process.is_used()):
+        return False
+    return renderer_process.renderer_process().state is ProcessState.STOPPED
 
 
 def _go_on() -> float | None:

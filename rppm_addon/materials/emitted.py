@@ -11,6 +11,7 @@ from .nodes import KINDS
 _EMITTING = {
     "emission": ("color", "strength"),
     "background": ("color", "strength"),
+    "plain_surface": ("emission",),
     "volume_absorption": ("density",),
     "bsdf_principled": ("emission_color", "emission_strength"),
 }

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What stands in for a material until its own program is compiled.
 
-All stand-ins have the same structure, so one program renders them: the plain surface of a graph (plain_surface.py) as
-diffuse, glossy and glass parts, with the image of its color, transparency and emission.
+All stand-ins have the same structure, so one program renders them: the plain surface of a graph (plain_surface.py) with
+the image of its color, a glossy or a glass part, transparency and emission.
 """
 
 from collections.abc import Sequence
@@ -13,11 +13,8 @@ from ..scene.images import Image
 from ..scene.node_graphs import NodeGraph
 from .plain_surface import mean_color, plain_surface
 
-_DIELECTRIC = 0.04
-"""What a smooth surface that is no metal reflects, seen from the front."""
 _DARKEST = 1e-3
 """Of an image's mean, as far as it may be brightened."""
-_IOR = 1.45
 
 
 def stand_in_graph(graph: NodeGraph, images: Sequence[Image]) -> NodeGraph:
@@ -38,29 +35,18 @@ def stand_in_graph(graph: NodeGraph, images: Sequence[Image]) -> NodeGraph:
         vector_002=_three(offset),
     )
     image = made.add("tex_image", "color", image=-1 if texture is None else texture.image, vector=place)
-    has_image = float(texture is not None)
-    textured = made.add("mix_color", "result_color", factor_float=has_image, a_color=1.0, b_color=image)
-    color = made.add(
-        "mix_color",
-        "result_color",
-        options={"blend_type": "MULTIPLY"},
-        factor_float=1.0,
-        a_color=textured,
-        b_color=_three(tint),
+    made.surface = made.add(
+        "plain_surface",
+        "surface",
+        color=_three(tint),
+        texture=image,
+        texture_factor=float(texture is not None),
+        metallic=plain.metallic,
+        roughness=plain.roughness,
+        glass=min(plain.glass / max(1.0 - plain.transparent, 1e-6), 1.0),
+        transparent=plain.transparent,
+        emission=_three(plain.emission),
     )
-    reflected = made.add("mix_color", "result_color", factor_float=plain.metallic, a_color=1.0, b_color=color)
-    ggx: dict[str, object] = {"distribution": "GGX"}
-    glossy = made.add("bsdf_glossy", "bsdf", options=ggx, color=reflected, roughness=plain.roughness)
-    glass = made.add("bsdf_glass", "bsdf", options=ggx, color=color, roughness=plain.roughness, ior=_IOR)
-    diffuse = made.add("bsdf_diffuse", "bsdf", color=color)
-    shine = plain.metallic + (1.0 - plain.metallic) * (1.0 - plain.roughness) * _DIELECTRIC
-    share = plain.glass / max(1.0 - plain.transparent, 1e-6)
-    opaque = made.add("mix_shader", "shader", fac=shine, shader=diffuse, shader_001=glossy)
-    solid = made.add("mix_shader", "shader", fac=min(share, 1.0), shader=opaque, shader_001=glass)
-    clear = made.add("bsdf_transparent", "bsdf")
-    seen = made.add("mix_shader", "shader", fac=plain.transparent, shader=solid, shader_001=clear)
-    light = made.add("emission", "emission", color=_three(plain.emission), strength=1.0)
-    made.surface = made.add("add_shader", "shader", shader=seen, shader_001=light)
     return made
 
 

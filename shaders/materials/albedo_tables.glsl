@@ -33,13 +33,15 @@ float white_average_albedo(float roughness) {
 }
 
 float glass_albedo(float ior, float roughness, float cosine) {
-    return ior >= 1.0 ? table_volume(GLASS_ENTERING_TABLE, ior, roughness, cosine)
-                      : table_volume(GLASS_LEAVING_TABLE, 1.0 / ior, roughness, cosine);
+    bool enters = ior >= 1.0;
+    return table_volume(enters ? GLASS_ENTERING_TABLE : GLASS_LEAVING_TABLE, enters ? ior : 1.0 / ior, roughness,
+                        cosine);
 }
 
 float glass_average_albedo(float ior, float roughness) {
-    return ior >= 1.0 ? table_plane(GLASS_ENTERING_AVERAGE_TABLE, TABLE_SIZE, ior_place(ior), roughness)
-                      : table_plane(GLASS_LEAVING_AVERAGE_TABLE, TABLE_SIZE, ior_place(1.0 / ior), roughness);
+    bool enters = ior >= 1.0;
+    return table_plane(enters ? GLASS_ENTERING_AVERAGE_TABLE : GLASS_LEAVING_AVERAGE_TABLE, TABLE_SIZE,
+                       ior_place(enters ? ior : 1.0 / ior), roughness);
 }
 
 // Albedo of a lobe whose reflectance is dielectric_interpolation: what grazing incidence adds.

@@ -56,9 +56,14 @@ vec3 restored_energy(float albedo, float average, vec3 average_reflectance) {
     return 1.0 + multiple * missing;
 }
 
-vec3 multiscatter_factor(Microfacets at, vec3 average_reflectance) {
+// Albedo of white microfacets for the viewer, and in the mean.
+vec2 white_albedos(Microfacets at) {
     float roughness = sqrt(at.alpha);
-    return restored_energy(white_albedo(roughness, at.cosine), white_average_albedo(roughness), average_reflectance);
+    return vec2(white_albedo(roughness, at.cosine), white_average_albedo(roughness));
+}
+
+vec3 multiscatter_factor(vec2 white, vec3 average_reflectance) {
+    return restored_energy(white.x, white.y, average_reflectance);
 }
 
 MicrofacetLobe mirror_lobe(Microfacets at, vec3 weight) {
@@ -66,7 +71,7 @@ MicrofacetLobe mirror_lobe(Microfacets at, vec3 weight) {
 }
 
 void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3 color, bool multiscatter) {
-    vec3 factor = multiscatter ? multiscatter_factor(at, color) : vec3(1.0);
+    vec3 factor = multiscatter ? multiscatter_factor(white_albedos(at), color) : vec3(1.0);
     add_lobe(builder, mirror_lobe(at, weight * color * factor));
 }
 
@@ -87,14 +92,14 @@ vec3 covered_metal(Microfacets at, vec3 reflectance) {
     return at_normal_incidence(reflectance, schlick_interpolation(at.cosine));
 }
 
-// f0: at normal incidence; edge: the tint at 82 degrees.
-MicrofacetLobe metal_lobe(Microfacets at, vec3 weight, vec3 f0, vec3 edge, bool multiscatter) {
+// f0: at normal incidence; edge: the tint at 82 degrees; white: white_albedos.
+MicrofacetLobe metal_lobe(Microfacets at, vec3 weight, vec3 f0, vec3 edge, bool multiscatter, vec2 white) {
     vec3 factor = vec3(1.0);
     if (multiscatter) {
         // Cosine-weighted mean of the Fresnel curve: 1/21 of Schlick's rise, 1/126 of the bend.
         const float far = 6.0 / 7.0, far5 = far * far * far * far * far;
         vec3 bend = mix(f0, vec3(1.0), far5) * (7.0 / (far5 * far)) * (1.0 - edge);
-        factor = multiscatter_factor(at, clamp(mix(f0, vec3(1.0), 1.0 / 21.0) - bend / 126.0, 0.0, 1.0));
+        factor = multiscatter_factor(white, clamp(mix(f0, vec3(1.0), 1.0 / 21.0) - bend / 126.0, 0.0, 1.0));
     }
     return microfacet_lobe(at, LOBE_METAL, weight * factor, f0, edge, 1.0);
 }

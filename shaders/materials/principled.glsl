@@ -71,7 +71,8 @@ Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, fl
     return films;
 }
 
-MicrofacetLobe base_lobe(Principled p, Microfacets at, float f0, float ior, vec3 film, inout vec3 weight) {
+MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, float ior, vec3 film,
+                         inout vec3 weight) {
     if (p.film.thickness > THINNEST_FILM) {
         vec3 beside = at_normal_incidence(film, dielectric_interpolation(at.cosine, ior));
         MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight, beside, vec3(1.0), ior);
@@ -85,7 +86,7 @@ MicrofacetLobe base_lobe(Principled p, Microfacets at, float f0, float ior, vec3
     vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), grazing);
     if (p.multiscatter) {
         float base = normal_reflectance(ior);
-        factor = multiscatter_factor(at, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
+        factor = multiscatter_factor(whites, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
         albedo *= factor * white;
     }
     MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior);
@@ -123,9 +124,10 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     bool film = p.film.thickness > THINNEST_FILM;
     float f0, ior = specular_ior(p, f0);
     Films films = film_reflectances(builder, p, at, ior);
+    vec2 whites = white_albedos(at);
     if (p.metallic > 0.0) {
         metal = metal_lobe(at, weight * p.metallic, film ? covered_metal(at, films.metal) : min(p.base_color, 1.0),
-                           film ? vec3(1.0) : min(p.specular_tint, 1.0), p.multiscatter);
+                           film ? vec3(1.0) : min(p.specular_tint, 1.0), p.multiscatter, whites);
         weight *= 1.0 - p.metallic;
     }
     if (p.transmission > 0.0) {
@@ -142,7 +144,7 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         weight *= 1.0 - p.transmission;
     }
     bool reaches_base = !(largest(weight) <= 0.0);
-    if (reaches_base) base = base_lobe(p, at, f0, ior, films.base, weight);
+    if (reaches_base) base = base_lobe(p, at, whites, f0, ior, films.base, weight);
     int layers = node_weight > 0.0 ? 6 : 0;
     for (int k = 0; k < layers; ++k) {
         MicrofacetLobe lobe = k == 0 ? sheen : k == 1 ? coat : k == 2 ? metal : k == 3 ? glass : k == 4 ? sheet : base;

@@ -34,12 +34,13 @@ vec3 interference_color(float path_difference, float shift) {
 vec3 thin_film_reflectance(float cosine, float thickness, float before, float film, float behind, vec3 base) {
     float cosine_film, cosine_behind;
     vec2 first = reflection_coefficients(cosine, before, film, cosine_film);
-    if (cosine_film <= 0.0) return vec3(1.0);
     vec2 second = reflection_coefficients(cosine_film, film, behind, cosine_behind);
     float difference = 2.0 * film * thickness * 1e-9 * cosine_film;
     if (base.r >= 0.0) base = mix(base, vec3(1.0), schlick_interpolation(cosine_film));
     vec3 sum = vec3(0.0);
-    for (int k = 0; k < 2; ++k) {
+    // How often loops go round is left open for drivers, which else have what interferes six times.
+    int polarizations = cosine_film > 0.0 ? 2 : 0, orders = thickness > 0.0 ? 3 : 0;
+    for (int k = 0; k < polarizations; ++k) {
         float outer = first[k] * first[k], passed = 1.0 - outer;
         vec3 inner = base.r >= 0.0 ? base : vec3(second[k] * second[k]);
         // Half a wave where the amplitude changes its sign; reflected from within the film, the outer side turns it
@@ -48,10 +49,10 @@ vec3 thin_film_reflectance(float cosine, float thickness, float before, float fi
         vec3 both = clamp(outer * inner, 1e-5, 0.9999), repeated = passed * passed * inner / (1.0 - both),
             term = repeated - passed;
         sum += outer + repeated;
-        for (int order = 1; order <= 3; ++order) {
+        for (int order = 1; order <= orders; ++order) {
             term *= sqrt(both);
             sum += 2.0 * term * interference_color(float(order) * difference, float(order) * shift);
         }
     }
-    return clamp(0.5 * sum, 0.0, 1.0);
+    return cosine_film > 0.0 ? clamp(0.5 * sum, 0.0, 1.0) : vec3(1.0);
 }

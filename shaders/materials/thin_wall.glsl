@@ -35,13 +35,14 @@ void thin_glass_lobes(inout ClosureBuilder builder, Microfacets at, vec3 weight,
                       float ior, out MicrofacetLobe mirror, out MicrofacetLobe sheet) {
     vec3 reflected, passed;
     sheet_shares(at.cosine, color, tint, film, ior, reflected, passed);
-    vec3 factor = multiscatter_factor(at, min(tint, vec3(1.0)));
+    vec3 factor = multiscatter_factor(white_albedos(at), min(tint, vec3(1.0)));
     mirror = mirror_lobe(at, weight * reflected * factor);
     sheet = NO_LOBE;
     at.alpha = sheet_alpha(at.alpha, ior);
     // Seen by the camera itself it is no hole in the picture.
     if (at.alpha > STRAIGHTEST_SHEET || builder.seen_by_camera)
-        sheet = microfacet_lobe(at, LOBE_SHEET, weight * passed * multiscatter_factor(at, vec3(1.0)), vec3(0.0),
+        sheet = microfacet_lobe(at, LOBE_SHEET,
+                                weight * passed * multiscatter_factor(white_albedos(at), vec3(1.0)), vec3(0.0),
                                 vec3(1.0), 1.0);
     else builder.closure.transparent += weight * passed;
 }

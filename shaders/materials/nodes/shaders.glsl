@@ -110,7 +110,7 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
         f0 = covered_metal(at, film_reflectance(at, film, 1.0, 1.0, metal_below_film(f0, film)));
         edge = vec3(1.0);
     }
-    add_lobe(builder, metal_lobe(at, vec3(weight), f0, edge, distribution == 2));
+    add_lobe(builder, metal_lobe(at, vec3(weight), f0, edge, distribution == 2, white_albedos(at)));
 }
 
 // A diffuse or a glossy surface stands in.

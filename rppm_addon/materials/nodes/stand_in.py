@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What stands in for materials (materials/stand_in.py), which is no node of Blender's."""
+
+from ..node_kinds import COLOR, FLOAT, SHADER, NodeKind
+
+KINDS = {
+    "plain_surface": NodeKind(
+        "plain_surface.glsl",
+        {
+            "color": (COLOR, 1.0),
+            "texture": (COLOR, 1.0),
+            "texture_factor": (FLOAT, 0.0),
+            "metallic": (FLOAT, 0.0),
+            "roughness": (FLOAT, 1.0),
+            "glass": (FLOAT, 0.0),
+            "transparent": (FLOAT, 0.0),
+            "emission": (COLOR, 0.0),
+        },
+        {"surface": SHADER},
+    )
+}

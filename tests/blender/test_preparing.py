@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is compiled while the solid view of a file is looked at."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from blender_scenes import add_node, export, link, new_material, to_surface
+
+from rppm_addon.blender import preparing, renderer_process
+from rppm_addon.blender.export.images import images
+from rppm_addon.session.process.client import ProcessState
+from rppm_addon.session.process.known_programs import text_of
+
+
+@pytest.fixture
+def prepared(monkeypatch):
+    """Scenes that a process was to prepare for, as where Blender has a window."""
+    scenes = []
+    process = SimpleNamespace(state=ProcessState.STOPPED, prepare=scenes.append)
+    monkeypatch.setattr(renderer_process, "is_used", lambda: True)
+    monkeypatch.setattr(renderer_process, "renderer_process", lambda: process)
+    return SimpleNamespace(scenes=scenes, process=process)
+
+
+def go_on():
+    """Until there is no more to be done."""
+    while preparing._go_on() is not None:
+        pass
+
+
+def add_picture():
+    """A material with an image on the quad."""
+    material = new_material("Picture")
+    texture = add_node(material.node_tree, "ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("Picture", 4, 4)
+    surface = add_node(material.node_tree, "ShaderNodeBsdfPrincipled")
+    link(material.node_tree, texture.outputs["Color"], surface.inputs["Base Color"])
+    to_surface(material, surface)
+    bpy.data.objects["Quad"].data.materials.append(material)
+    return material
+
+
+def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepared, monkeypatch):
+    add_picture()
+    exported = export(lit)
+    expected = {text_of(material.graph) for material in exported.materials}
+
+    def read(*_):
+        raise AssertionError("an image was read")
+
+    monkeypatch.setattr(images, "read_pixels", read)
+    monkeypatch.setattr(preparing, "_SLICE_SECONDS", 1e-9)  # a material at a time
+    go_on()
+    (scene,) = prepared.scenes
+    assert {text_of(material.graph) for material in scene.materials} == expected
+    assert (scene.settings.direct_light, scene.warnings) == (exported.settings.direct_light, [])
+
+
+def test_nothing_is_prepared_for_other_engines_or_beside_a_render(lit, prepared):
+    prepared.process.state = ProcessState.RUNNING
+    go_on()
+    prepared.process.state = ProcessState.STOPPED
+    lit.render.engine = "BLENDER_WORKBENCH"
+    go_on()
+    assert prepared.scenes == []
+
+
+def test_another_file_begins_anew(lit, prepared):
+    preparing._preparing = preparing._Preparing()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert preparing._preparing is None and bpy.app.timers.is_registered(preparing._go_on)
+    preparing._stop()
+    assert not bpy.app.timers.is_registered(preparing._go_on)
