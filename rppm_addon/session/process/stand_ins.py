@@ -11,8 +11,8 @@ from ...scene.materials import Material
 from ...scene.scene import Scene
 from .known_programs import text_of
 
-FEWEST_PROGRAMS = 3
-"""Where fewer are to be compiled, that of the stand-ins would come no earlier than they."""
+FEWEST_PROGRAMS = 2
+"""Where fewer are to be compiled, that of the stand-ins is one more."""
 EXCHANGE_SECONDS = 4.0
 """Between two exchanges of stand-ins for what is ready: the picture begins anew with each."""
 
