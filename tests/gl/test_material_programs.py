@@ -74,6 +74,20 @@ def test_moving_a_slider_compiles_nothing(mapper, library, change):
         assert np.abs(after - before).max() > 1e-3 * before.mean()
 
 
+def test_moving_sliders_of_worlds_and_lights_compiles_nothing(mapper, library):
+    def lit(strength: float) -> Scene:
+        scene = shown(gray())
+        for owner, kind in ((scene.world, "background"), (scene.lights[0], "emission")):
+            owner.graph = NodeGraph()
+            owner.graph.surface = owner.graph.add(kind, kind, color=(strength, 0.5, 0.5), strength=strength)
+        return scene
+
+    before = picture(mapper, lit(1.0))
+    made = library.made
+    after = picture(mapper, lit(2.0))
+    assert library.made == made and after.mean() > 1.2 * before.mean()
+
+
 def test_another_structure_compiles_one_program(mapper, library):
     picture(mapper, shown(painted()))
     made = library.made
