@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Programs that are compiled while a user still looks at the solid view of a file that was opened."""
 
+import logging
 import time
 
 import bpy
@@ -8,7 +9,6 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from ..scene import Camera, Material, Scene
-from ..scene.errors import RppmError
 from ..session.process.client import ProcessState
 from . import renderer_process
 from .engine import RppmRenderEngine
@@ -17,6 +17,8 @@ from .export.context import ExportContext
 from .export.images.images import MISSING, ImageTable
 from .export.nodes.materials import export_material
 from .export.report import Report
+
+logger = logging.getLogger(__name__)
 
 IDLE_SECONDS = 2.0
 """After a file is opened: whoever renders at once needs nobody to prepare."""
@@ -44,7 +46,7 @@ class _Preparing:
 
     def __init__(self) -> None:
         self._context = ExportContext(_NoReport(), _NoImages())
-        self._names = [material.name for material in bpy.data.materials if material.users]
+        self._names = [material.name for material in bpy.data.materials if material.users > material.use_fake_user]
         self._materials: list[Material] = []
 
     def go_on(self) -> bool:
@@ -83,8 +85,8 @@ def _go_on() -> float | None:
             _preparing = _preparing or _Preparing()
             if _preparing.go_on():
                 return _SLICE_SECONDS
-    except RppmError:
-        pass  # whoever renders says so
+    except Exception:  # whoever renders says so
+        logger.info("nothing is prepared", exc_info=True)
     _preparing = None
     return None
 

@@ -237,7 +237,7 @@ def status_text(status: SessionStatus, paused: bool, radius: str, letters: int) 
     noise = [f"Noise {noise_text(status.noise, status.noise_threshold)}"] if status.noise > 0.0 else []
     parts = [f"Sample {status.iteration}/{status.iterations}", state, *noise, f"Radius {radius}"]
     if status.programs_stood_in_for:
-        parts.insert(1, f"Compiling {status.programs_stood_in_for} materials")
+        parts.insert(1, f"Materials to compile: {status.programs_stood_in_for}")
     while len(parts) > 1 and len(" | ".join(parts)) > letters:
         parts.pop()
     return " | ".join(parts)

@@ -114,6 +114,7 @@ class Rendering:
             self._fail(error)
 
     def _begin(self) -> None:
+        self._library.hurry(True)
         self._mapper = self._mapper or ProgressivePhotonMapper(self._context, self._library)
         self._keeper, continuation = None, None
         if self._checkpoint:
