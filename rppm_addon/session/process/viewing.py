@@ -3,7 +3,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -156,16 +156,15 @@ class Viewing:
         self._library.hurry(True)
         while True:
             shown = self._stand_ins.replace(scene)
-            yield from self._improve(shown, generation, navigating, level)
-            done = self._mapper.iteration >= scene.settings.iterations
+            done = yield from self._improve(shown, generation, navigating, level)
             while done and self._stand_ins.count and not self._stand_ins.due:
                 time.sleep(POLL_SECONDS)
                 yield
             if not self._stand_ins.due:
                 return
 
-    def _improve(self, scene: Scene, generation: int, navigating: bool, level: float) -> Iterator[None]:
-        """Iterations of a scene, until something else is due."""
+    def _improve(self, scene: Scene, generation: int, navigating: bool, level: float) -> Generator[None, None, bool]:
+        """Iterations of a scene, until something else is due. Returns whether there are no more."""
         started = time.perf_counter()
         mapper, settings = self._mapper, scene.settings
         mapper.update(at_level(scene, level), center_tolerance=math.inf if level < 1.0 else 0.0)
@@ -218,10 +217,11 @@ class Viewing:
             )
             yield
             if self._stand_ins.due and not self._first_picture_pending:
-                return
+                return False
             at_rest = not navigating or time.perf_counter() - self._shown_at >= REST_SECONDS
             if level < 1.0 and at_rest and not self._first_picture_pending:
-                return
+                return False
+        return True
 
     def _is_denoised(self, scene: Scene) -> bool:
         """Whether the picture so far is to be denoised."""
