@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { FilmParameters parameters; };
 #include "splat_sums/read.glsl"
 layout(std430, binding = 0) readonly buffer Radiances;
-layout(std430, binding = 2) buffer Film { vec4 film[]; };
+layout(std430, binding = 2) buffer Film;
 
 void main() {
     uint index = invocation_index();

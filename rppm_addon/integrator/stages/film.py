@@ -12,6 +12,7 @@ from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ...scene.passes import FILM_PASSES, SHADOW_CATCHER, VECTOR, Accumulation
 from ..common.band import Band
 from ..common.iteration import Iteration
@@ -36,6 +37,7 @@ Record(
     mist_exponent="float",
 )
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
+StorageBlock("Film", "vec4 film[];")
 Record("AovParameters", count="uint", first_value="uint", iteration="uint")
 Constants(
     "Passes",

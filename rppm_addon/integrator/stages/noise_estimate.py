@@ -19,6 +19,7 @@ from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.stage_sizes import StageSizes, film_pixels
@@ -27,6 +28,7 @@ from ..device_scene.stage_context import StageContext
 
 Record("HalfParameters", count="uint", quantum="float", first_pixel="uint", number="uint")
 Record("NoiseParameters", count="uint", width="uint", height="uint", columns="uint", exposure="float", balance="float")
+StorageBlock("HalfMeans", "float half_means[];")
 
 BLOCK = 16
 """Pixels along a side of the blocks whose noise counts: of a single pixel's a few iterations say nothing."""
