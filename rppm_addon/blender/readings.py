@@ -10,7 +10,7 @@ import numpy as np
 from ..integrator.density_estimation.radii import radius_in_pixels, shrinkage
 from ..integrator.memory import Memory, expected_memory
 from ..scene import Camera, DensityEstimation, RenderSettings
-from .reports import RenderReport
+from .reports import RenderKind, RenderReport
 
 
 @dataclass(frozen=True)
@@ -52,16 +52,16 @@ class MemoryReading:
 def memory_reading(settings: RenderSettings, width: int, height: int, report: RenderReport | None) -> MemoryReading:
     """What rendering width x height pixels takes, with what a former render of the scene needed beside."""
 
-    def expected(settings: RenderSettings, width: int, height: int) -> Memory:
+    def expected(settings: RenderSettings, width: int, height: int, in_viewport: bool = False) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
         photons = settings.photons_for(width, height)
         segments, passes, aovs = settings.photon_path_length, settings.film_passes, settings.aovs
         noise = settings.use_adaptive_sampling
-        return expected_memory(width, height, photons, segments, rasterized, passes, aovs, noise)
+        return expected_memory(width, height, photons, segments, rasterized, passes, aovs, noise, in_viewport)
 
     scene_bytes = None
     if report is not None:
-        before = expected(report.settings, report.width, report.height)
+        before = expected(report.settings, report.width, report.height, report.kind is RenderKind.VIEWPORT)
         scene_bytes = max(0, report.memory_bytes - before.total_bytes)
     return MemoryReading(expected(settings, width, height), scene_bytes)
 

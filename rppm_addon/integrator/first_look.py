@@ -5,6 +5,7 @@ import moderngl
 import numpy as np
 
 from ..gl.buffers import GrowingBuffer
+from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
@@ -23,7 +24,9 @@ PLAIN_SURFACE = Record(
 StorageBlock("PlainSurfaces", "PlainSurface plain_surfaces[];")
 StorageBlock("InstanceOpacities", "float instance_opacities[];")
 """Below 0 of what the camera does not see, 0 of a holdout."""
-Record("FirstLookParameters", sky="vec3", headlight="float", exposure="float", blended="uint")
+Record("FirstLookParameters", sky="vec3", headlight="float", exposure="float", drawn="uint")
+_SOLID, _TRANSPARENT = 1, 2
+Constants("FirstLookDrawn", DRAWN_SOLID=_SOLID, DRAWN_TRANSPARENT=_TRANSPARENT)
 
 HEADLIGHT = 0.6
 """Radiance of a white diffuse surface that faces the viewer, whatever the exposure: nothing is known of the lights."""
@@ -62,25 +65,42 @@ class FirstLook:
         A lens is a pinhole. Raises DeviceError when the device cannot hold the scene, and SceneError for a camera
         that sees nothing.
         """
-        self._take(scene)
+        self.take(scene)
         width, height = scene.camera.resolution
         self._camera.upload(camera_view(scene.camera, 0, height, (0.0, 0.0)))
         gl = self._context.moderngl
         color, depth = gl.texture((width, height), 4, dtype="f4"), gl.depth_texture((width, height))
         framebuffer = gl.framebuffer([color], depth)
         try:
-            opaque = not scene.settings.film_transparent
-            framebuffer.clear(*(scene.exposure * self._sky if opaque else np.zeros(3)), float(opaque), depth=1.0)
-            self._draw_surfaces(framebuffer, scene)
+            framebuffer.clear(*self._background(scene), depth=1.0)
+            self._draw_surfaces(framebuffer, scene, self._camera.buffer, _SOLID)
+            if self._blends:
+                self._draw_surfaces(framebuffer, scene, self._camera.buffer, _TRANSPARENT)
             pixels = np.frombuffer(framebuffer.read(components=4, dtype="f4"), np.float32)
             return pixels.reshape(height, width, 4).copy()
         finally:
             for resource in (framebuffer, color, depth):
                 resource.release()
 
-    def _draw_surfaces(self, framebuffer: moderngl.Framebuffer, scene: Scene) -> None:
+    def rasterize(self, framebuffer: moderngl.Framebuffer, scene: Scene, camera: moderngl.Buffer) -> None:
+        """The nearest surfaces, transparent ones too, for which take() was called.
+
+        framebuffer: of three float textures: color, premultiplied; normal and view depth, meters; numbers of instance
+        and material, 0 where there is no surface (shaders/first_look/first_look.frag).
+        camera: CAMERA_VIEW.
+        """
+        framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        self._draw_surfaces(framebuffer, scene, camera, _SOLID | _TRANSPARENT)
+
+    def _background(self, scene: Scene) -> tuple[float, ...]:
+        opaque = not scene.settings.film_transparent
+        return (*(scene.exposure * self._sky if opaque else np.zeros(3)), float(opaque))
+
+    def _draw_surfaces(
+        self, framebuffer: moderngl.Framebuffer, scene: Scene, camera: moderngl.Buffer, drawn: int
+    ) -> None:
         buffers = {
-            "Camera": self._camera.buffer,
+            "Camera": camera,
             "Triangles": self._geometry.triangles.buffer,
             "Attributes": self._geometry.attributes.buffer,
             "PlainSurfaces": self._surfaces.buffer,
@@ -90,19 +110,19 @@ class FirstLook:
         sky = self._sky * (np.clip(brightest * scene.exposure, _DARKEST_SKY, _BRIGHTEST_SKY) / brightest)
         if not sky.any():
             sky = np.full(3, _DARKEST_SKY)
-        for blended in range(1 + self._blends):
-            framebuffer.depth_mask = not blended  # what is transparent hides nothing
-            self._context.moderngl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-            self._draw.draw(
-                framebuffer,
-                3 * self._geometry.triangle_count,
-                buffers,
-                {"sky": sky, "headlight": HEADLIGHT, "exposure": scene.exposure, "blended": blended},
-                state=moderngl.DEPTH_TEST | (moderngl.BLEND if blended else moderngl.NOTHING),
-            )
+        blended = drawn == _TRANSPARENT
+        framebuffer.depth_mask = not blended  # what is transparent hides nothing
+        self._context.moderngl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        self._draw.draw(
+            framebuffer,
+            3 * self._geometry.triangle_count,
+            buffers,
+            {"sky": sky, "headlight": HEADLIGHT, "exposure": scene.exposure, "drawn": drawn},
+            state=moderngl.DEPTH_TEST | (moderngl.BLEND if blended else moderngl.NOTHING),
+        )
         framebuffer.depth_mask = True
 
-    def _take(self, scene: Scene) -> None:
+    def take(self, scene: Scene) -> None:
         """Upload what is not the very object of the scene before."""
         if not self.shows_parts_of(scene):
             self._shown = None

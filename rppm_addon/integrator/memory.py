@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from ..scene.passes import aov_passes, passes_named
 from ..scene.settings import DensityEstimation, RenderSettings
 from .common.stage_sizes import StageSizes, film_pixels
+from .common.viewport_demands import with_filtered
 from .density_estimation.density_estimator import ROUTES
 from .stages.stage_set import expected_groups
+from .viewport.pictures import expected_bytes
 
 PPM_BUFFERS = ("film", "gathered radiance", "photons")
 """Running mean of radiance (16 R), sums of splats (48 bytes a pixel of one band of rows), photons (64 M L)."""
@@ -83,17 +85,22 @@ def expected_memory(
     passes: Sequence[str] = RenderSettings.passes,
     aovs: Sequence[str] = (),
     measures_noise: bool = False,
+    in_viewport: bool = False,
 ) -> Memory:
     """The buffers whose size follows from the settings, known before anything is rendered.
 
     rasterized: whether photons are splatted by rasterization, not gathered from a grid.
     passes: names of those that are rendered; aovs: as the settings have them.
     measures_noise: whether there is a noise threshold.
+    in_viewport: whether a viewport shows the pictures, which it filters and moves.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
     rendered = passes_named(passes) + aov_passes(aovs)
-    sizes = StageSizes(width, height, photons, segments, rendered, measures_noise=measures_noise)
+    kept = with_filtered(rendered) if in_viewport else rendered
+    sizes = StageSizes(width, height, photons, segments, kept, measures_noise=measures_noise, is_filtered=in_viewport)
     groups = expected_groups(sizes)
+    if in_viewport:
+        groups["viewport"] = expected_bytes(sizes)
     route = DensityEstimation.RASTERIZED if rasterized else DensityEstimation.GRID
     groups["density estimation"] |= ROUTES[route].expected_bytes(sizes)
     return compute_memory(groups, film_pixels(sizes), photons, segments)

@@ -15,6 +15,7 @@ from ..scene.settings import DensityEstimation, FirstPhotonHits
 from .algorithm import iterate, store_photons, trace_photons
 from .common.iteration import LEARNING_ITERATIONS, Iteration, learns_after
 from .common.known import known
+from .common.viewport_demands import NO_DEMANDS, ViewportDemands
 from .deep_cubemap.deep_cubemap import DeepCubemap
 from .deep_cubemap.inspection import inspect_deep_cubemap
 from .device_scene.device_scene import DeviceScene
@@ -40,6 +41,7 @@ class ProgressivePhotonMapper:
         """The last that was run, counted from 1."""
         self._skipped = 0
         """So many iterations come before those of the film."""
+        self._demands = NO_DEMANDS
         self.build_seconds = 0.0
 
     def build(self, scene: Scene) -> None:
@@ -51,26 +53,27 @@ class ProgressivePhotonMapper:
         self.update(scene)
 
     @collector_paused()
-    def update(self, scene: Scene, center_tolerance: float = 0.0) -> None:
+    def update(self, scene: Scene, center_tolerance: float = 0.0, demands: ViewportDemands = NO_DEMANDS) -> None:
         """Take another scene like build, but build only what has changed (DeviceScene.update).
 
         Nobody may change members of the scene before. Raises as build does.
         """
         start = time.perf_counter()
-        self._begin(scene)
+        self._begin(scene, demands)
         if self._stages is None:  # before the scene, so that their programs are compiled meanwhile
-            self._stages = StageSet(self.context, self._library, scene)
+            self._stages = StageSet(self.context, self._library, scene, demands)
         self.device_scene.update(scene, center_tolerance)
         context = self.device_scene.context
         pilot = view_pilot(context, self.stages, follows_rays=may_share_world_light(context))
         self._learning = Learning(context, pilot)
         self.build_seconds = time.perf_counter() - start
 
-    def _begin(self, scene: Scene) -> None:
+    def _begin(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> None:
         """Iterations begin anew with a scene."""
         scene.settings.validate()
-        if self._stages is not None and not self._stages.fits(scene):
+        if self._stages is not None and not self._stages.fits(scene, demands):
             self._release_stages()
+        self._demands = demands
         self.iteration = self._skipped = 0
 
     def link_programs(self, scene: Scene) -> None:
@@ -94,8 +97,9 @@ class ProgressivePhotonMapper:
         photons = self.learning.photon_counts.of(self.iteration)
         if self.iteration > 1 and learns_after(self.iteration - 1):
             self.learning.learn(self.device_scene.context, self.iteration - 1)
+        seed, shadow_rays = self.scene.settings.seed, self._demands.shadow_rays
         direct_world_flux = self.learning.direct_world_flux(self.device_scene.lights)
-        iteration = Iteration(self.iteration, self.scene.settings.seed, photons, self._skipped, direct_world_flux)
+        iteration = Iteration(self.iteration, seed, photons, self._skipped, direct_world_flux, shadow_rays)
         if self.device_scene.moves:
             self.device_scene.move_to(iteration)
             yield

@@ -169,7 +169,7 @@ NOISY_IMAGE = RenderPass("Noisy Image", "RGBA", PassKind.COLOR, Accumulation.MEA
 ALWAYS_TAKEN = frozenset({COMBINED, NOISY_IMAGE.name, *(entry.name for entry in PASSES if entry.group)})
 """Names that AOVs cannot have whatever was asked for: passes come with pictures that are denoised."""
 VECTOR, SHADOW_CATCHER = "Vector", "Shadow Catcher"
-DENOISING_ALBEDO, DENOISING_NORMAL = "Denoising Albedo", "Denoising Normal"
+DENOISING_ALBEDO, DENOISING_NORMAL, DENOISING_DEPTH = "Denoising Albedo", "Denoising Normal", "Denoising Depth"
 """Passes that guide denoising."""
 
 

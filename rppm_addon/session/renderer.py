@@ -13,7 +13,7 @@ from ..gl.context import Context, DeviceInformation
 from ..gl.programs import ProgramLibrary
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
-from ..integrator.stages.film import Film
+from ..integrator.stages.film import Film, exposed
 from ..scene.cryptomatte import ranked
 from ..scene.passes import DEEP_CUBEMAP, PASSES, SHADOW_CATCHER
 from ..scene.scene import Scene
@@ -34,13 +34,6 @@ Measured in a room of 100 k triangles, so far off rays cost a tenth more, buildi
 def read_combined(film: Film, exposure: float) -> np.ndarray:
     """The film's current picture, as Frame.combined."""
     return exposed(film.read_radiance(), exposure)
-
-
-def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
-    """(height, width, 4) radiance and alpha of a film, which is changed, as Frame.combined."""
-    radiance[..., :3] *= exposure
-    radiance[..., 3] = np.clip(radiance[..., 3], 0.0, 1.0)
-    return radiance
 
 
 def exposed_passes(passes: Mapping[str, np.ndarray], exposure: float) -> dict[str, np.ndarray]:

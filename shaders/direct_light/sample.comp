@@ -99,9 +99,9 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
         looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
     if (!looks) return NOTHING_ARRIVES;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    vec2 disk = sample_disk(scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)));
+    vec2 disk = sample_disk(scrambled_sobol(parameters.light_sample, pcg4d(choices + 1u)));
     Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
-                                       scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).x);
+                                       scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).x);
     for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = closure_lobe(closure, k);
         if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
@@ -141,8 +141,8 @@ float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 d
 Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 throughput, PathShares shares, vec3 wo,
                              bool gathered, bool gathers, uvec4 choices) {
     if (!can_be_lit(closure, gathered)) return NOTHING_ARRIVES;
-    vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices),
-                  scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
+    vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
+                  scrambled_sobol(parameters.light_sample, pcg4d(choices)));
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
@@ -193,12 +193,12 @@ void main() {
     if (!(weight + reflected_weight > 0.0)) return;
     if (reflected_weight > 0.0) {
         float total = weight + reflected_weight;
-        float u = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 2u)).y;
+        float u = scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).y;
         bool takes_reflected = takes_candidate(reflected_weight, total, u);
         if (takes_reflected) arriving = reflected;
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
     }
-    contributions[index] = vec4(arriving.radiance, gathered ? 1.0 : 0.0);
+    contributions[index] = vec4(parameters.sample_weight * arriving.radiance, gathered ? 1.0 : 0.0);
     light_triangles[index] = arriving.triangle;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec3 origin = offset_from_surface(closure.position,

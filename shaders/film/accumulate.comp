@@ -8,14 +8,21 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { FilmParameters parameters; };
 #include "splat_sums/read.glsl"
+#include "common/luminance.glsl"
 layout(std430, binding = 0) readonly buffer Radiances;
 layout(std430, binding = 2) buffer Film;
+layout(std430, binding = 3) buffer PhotonLight;
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    vec4 estimate = radiances[index] + vec4(read_sum(index, false) * parameters.quantum, 0.0);
+    vec4 radiance = radiances[index], photons = vec4(read_sum(index, false) * parameters.quantum, 0.0);
+    vec4 estimate = radiance + photons;
     uint pixel = parameters.first_pixel + index;
     vec4 mean = parameters.iteration == 1u ? vec4(0.0) : film[pixel];
     film[pixel] = mean + (estimate - mean) / float(parameters.iteration);
+    if (parameters.is_filtered == 0u) return;
+    photons.a = luminance(radiance.rgb) * luminance(radiance.rgb);
+    mean = parameters.iteration == 1u ? vec4(0.0) : photon_light[pixel];
+    photon_light[pixel] = mean + (photons - mean) / float(parameters.iteration);
 }

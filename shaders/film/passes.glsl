@@ -3,7 +3,7 @@
 // parameters.
 
 #include <Passes>
-layout(std430, binding = 4) buffer PassValues { float pass_values[]; };
+layout(std430, binding = 4) buffer PassValues;
 // Of a band's paths before they are scattered: radiance, and what they are, as flags.
 layout(std430, binding = 8) buffer PassPaths { vec4 pass_paths[]; };
 const uint PASS_PATH_HIT = 1u, PASS_PATH_STRAIGHT = 2u, PASS_PATH_DENOISED = 4u;

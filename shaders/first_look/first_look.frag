@@ -11,11 +11,16 @@ layout(std430, binding = 3) readonly buffer PlainSurfaces;
 #include "gbuffer/rasterize.glsl"
 
 flat in uint material;
+flat in uint instance;
 flat in float opacity;
 in float view_depth;
 in vec3 to_viewer;
 in vec3 normal;
 layout(location = 0) out vec4 combined;
+layout(location = 1) out vec4 surface_seen;   // normal toward the viewer, and view depth
+layout(location = 2) out vec2 surface_number; // which instance, from 1, and material, odd where it is specular
+
+const float SPECULAR_ROUGHNESS = 0.5;
 
 // The lower half of the surroundings is half as bright.
 vec3 surroundings(float height) { return parameters.sky * (0.75 + 0.25 * height); }
@@ -34,4 +39,7 @@ void main() {
     light += diffuse * surroundings(n.z) + f0 * surroundings(2.0 * facing * n.z - viewer.z);
     float seen = max(opacity, 0.0);
     combined = vec4(seen * (light + parameters.exposure * surface.emission), seen);
+    bool specular = surface.opacity < 1.0 || (surface.metallic > 0.5 && surface.roughness < SPECULAR_ROUGHNESS);
+    surface_seen = vec4(n, view_depth);
+    surface_number = vec2(instance + 1u, 2u * material + (specular ? 1u : 0u));
 }

@@ -4,6 +4,7 @@
 
 #include "gbuffer/projections.glsl"
 #include <FirstLookParameters>
+#include <FirstLookDrawn>
 #include "common/geometry.glsl"
 
 layout(std140, binding = 0) uniform Parameters { FirstLookParameters parameters; };
@@ -15,6 +16,7 @@ layout(std430, binding = 4) readonly buffer InstanceOpacities;
 #include "gbuffer/rasterize.glsl"
 
 flat out uint material;
+flat out uint instance;
 flat out float opacity;
 out float view_depth;
 out vec3 to_viewer;
@@ -24,7 +26,8 @@ void main() {
     uint triangle = uint(gl_VertexID) / 3u, corner = uint(gl_VertexID) % 3u;
     TriangleAttributes shading = attributes[triangle];
     material = shading.material;
-    float instance_opacity = instance_opacities[shading.instance];
+    instance = shading.instance;
+    float instance_opacity = instance_opacities[instance];
     opacity = plain_surfaces[material].opacity * instance_opacity;
     vec3 point = triangle_vertices[gl_VertexID].xyz;
     normal = unpack_unit_vector(corner == 0u ? shading.normal0 : corner == 1u ? shading.normal1 : shading.normal2);
@@ -34,5 +37,6 @@ void main() {
     gl_Position = clip_position(p);
     // A holdout, of opacity 0, hides what is behind it; what is transparent is drawn when all else is there.
     bool solid = opacity >= 1.0 || instance_opacity == 0.0;
-    if (instance_opacity < 0.0 || solid != (parameters.blended == 0u)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    bool drawn = (parameters.drawn & (solid ? DRAWN_SOLID : DRAWN_TRANSPARENT)) != 0u;
+    if (instance_opacity < 0.0 || !drawn) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

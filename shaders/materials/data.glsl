@@ -8,5 +8,5 @@ vec3 constant_vec3(uint at) { return vec3(material_data[at], material_data[at + 
 // Indices are stored as numbers: small integers' bits would be denormal floats, which devices may flush to zero.
 uint constant_index(uint at) { return uint(material_data[at]); }
 
-float luminance(vec3 color) { return dot(color, vec3(0.2126391, 0.7151691, 0.0721928)); }
+#include "common/luminance.glsl"
 float mean(vec3 v) { return (v.x + v.y + v.z) / 3.0; }

@@ -3,6 +3,7 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 from support.floor import floor_scene
 
@@ -82,7 +83,6 @@ def test_a_first_look_comes_before_anything_is_compiled(open_viewing):
     assert sent.frames[-1] == (1, 1.0) and sorted(sent.frames) == sent.frames
     assert [progress for _, progress in sent.frames].count(0.0) == 1
     assert sent.compiled == sorted(sent.compiled) and sent.compiled[-1] > 2
-    assert viewing._first_look is None
 
 
 def test_there_is_none_once_there_was_a_frame(open_viewing):
@@ -157,3 +157,60 @@ def test_a_viewport_is_done_with_its_noise(open_viewing):
     assert statuses[-1]["settled"] and statuses[-1]["iteration"] == 40
     assert 0.0 < statuses[-1]["noise"] < statuses[-1]["noise_threshold"] == 1.0
     assert sent.frames[-1] == (1, 1.0)
+
+
+def turned(scene, columns):
+    """The same, so many columns on."""
+    left, right, bottom, top = scene.camera.window
+    step = columns * (right - left) / scene.camera.width
+    return dataclasses.replace(
+        scene, camera=dataclasses.replace(scene.camera, window=(left + step, right + step, bottom, top))
+    )
+
+
+def picture(viewing, sent):
+    """The frame that was sent last."""
+    frame = [content for kind, content in sent.messages if kind == "frame"][-1]
+    pixels = viewing._frames._slots.pixels[frame["slot"]]
+    return pixels[: 4 * 16 * 12].reshape(12, 16, 4).copy()
+
+
+def test_the_last_picture_moves_with_the_view_until_there_is_a_new_one(open_viewing):
+    viewing, sent = open_viewing()
+    scene = scene_of()
+    viewing.show(scene, 1, False)
+    run(viewing)
+    before, rendered = picture(viewing, sent), viewing._mapper.iteration
+    viewing.show(turned(scene, 2), 2, True)
+    viewing.run_slice()
+    assert sent.frames[-1] == (2, 0.0) and viewing._mapper.iteration <= rendered
+    moved = picture(viewing, sent)
+    np.testing.assert_allclose(moved[:, :5], before[:, 2:7], atol=2e-3)
+    viewing.show(turned(scene, 4), 3, True)
+    run(viewing)
+    generations = [generation for generation, _ in sent.frames]
+    assert sorted(generations) == generations, "the view jumps back"
+    assert sent.frames[-1] == (3, 1.0)
+    other, other_sent = open_viewing()
+    other.show(turned(scene, 4), 1, False)
+    run(other)
+    np.testing.assert_array_equal(picture(viewing, sent), picture(other, other_sent))
+
+
+def test_after_another_change_nothing_is_moved(open_viewing):
+    viewing, sent = open_viewing()
+    viewing.show(scene_of(), 1, False)
+    run(viewing)
+    seen = len(sent.frames)
+    viewing.show(turned(scene_of(exposure=0.5), 2), 2, True)
+    run(viewing)
+    assert 0.0 not in [progress for _, progress in sent.frames[seen:]]
+
+
+def test_the_memory_of_pictures_is_told(open_viewing):
+    viewing, sent = open_viewing()
+    viewing.show(scene_of(), 1, False)
+    run(viewing)
+    told = [content["status"]["memory_bytes"] for kind, content in sent.messages if kind == "status"][-1]
+    of_pictures = sum(viewing._viewport_pictures.memory_bytes.values())
+    assert of_pictures > 0 and told == sum(viewing._mapper.memory_bytes.values()) + of_pictures

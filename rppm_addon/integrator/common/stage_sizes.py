@@ -7,6 +7,7 @@ from ...scene.passes import RenderPass
 from ...scene.scene import Scene
 from .band import Band, bands_of
 from .camera_view import is_rasterized
+from .viewport_demands import NO_DEMANDS, ViewportDemands, with_filtered
 
 
 @dataclass(frozen=True)
@@ -26,20 +27,26 @@ class StageSizes:
     """Whether the camera's first hits are rasterized."""
     measures_noise: bool = False
     """Whether the picture ends with its noise."""
+    is_filtered: bool = False
+    """Whether the film keeps what the noise filter of viewports takes."""
 
     @classmethod
-    def of(cls, scene: Scene) -> "StageSizes":
+    def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
         """Those of a scene."""
         width, height = scene.camera.resolution
+        passes = scene.settings.found_passes
+        if demands.is_filtered:
+            passes = with_filtered(passes)
         return cls(
             width,
             height,
             scene.photon_count,
             scene.settings.photon_path_length,
-            scene.settings.found_passes,
+            passes,
             any(instance.shadow_catcher for instance in scene.instances),
             is_rasterized(scene.camera),
             scene.settings.use_adaptive_sampling,
+            demands.is_filtered,
         )
 
     @property

@@ -30,11 +30,13 @@ Record(
     specular_alpha="float",
     final_gather="uint",
     gathers_again_below="float",
+    light_sample="uint",
+    sample_weight="float",
 )
 
 
 class DirectLight(BufferSet):
-    """One sampled light and one shadow ray for every camera path and segment."""
+    """A sampled light and a shadow ray, or several, for every camera path and segment."""
 
     remedy = "lower the resolution"
     _rays = StorageBuffer("shadow rays", RAY, band_pixels)
@@ -68,27 +70,28 @@ class DirectLight(BufferSet):
         if context.settings.direct_light is not DirectLightMode.RAYS or not iteration.enters_film:
             return
         with context.timers.stage("direct light"):
-            self._sample_lights(context, importons, blocks, band, iteration, segment, radii)
-            living = self._living_rays
-            living.take(importons.living, self._rays.buffer)
-            context.lights.emitters.tint_contributions(
-                context.resolve,
-                self._rays.buffer,
-                self._triangles.buffer,
-                self._contributions.buffer,
-                living,
-                iteration.number,
-            )
-            context.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, living)
-            living.run(
-                self._add,
-                {
-                    "Visibility": self._visibility.buffer,
-                    "Contributions": self._contributions.buffer,
-                    "FoundRadiances": blocks["FoundRadiances"],
-                    "Radiances": importons.radiances.buffer,
-                },
-            )
+            for ray in range(iteration.shadow_rays):
+                self._sample_lights(context, importons, blocks, band, iteration, segment, radii, ray)
+                living = self._living_rays
+                living.take(importons.living, self._rays.buffer)
+                context.lights.emitters.tint_contributions(
+                    context.resolve,
+                    self._rays.buffer,
+                    self._triangles.buffer,
+                    self._contributions.buffer,
+                    living,
+                    iteration.number,
+                )
+                context.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, living)
+                living.run(
+                    self._add,
+                    {
+                        "Visibility": self._visibility.buffer,
+                        "Contributions": self._contributions.buffer,
+                        "FoundRadiances": blocks["FoundRadiances"],
+                        "Radiances": importons.radiances.buffer,
+                    },
+                )
 
     def _sample_lights(
         self,
@@ -99,8 +102,9 @@ class DirectLight(BufferSet):
         iteration: Iteration,
         segment: int,
         radii: Radii,
+        ray: int,
     ) -> None:
-        """A light for each vertex, the shadow ray to it, and what it adds where nothing is in between."""
+        """A light for each vertex, the how many-th shadow ray to it, and what it adds where nothing is in between."""
         context.lights.use_maps()
         importons.living.run(
             self._sample,
@@ -125,5 +129,7 @@ class DirectLight(BufferSet):
                 "specular_alpha": context.settings.specular_roughness**2,
                 "final_gather": context.settings.use_final_gather,
                 "gathers_again_below": radii.corner,
+                "light_sample": (iteration.number - 1) * iteration.shadow_rays + ray,
+                "sample_weight": 1.0 / iteration.shadow_rays,
             },
         )

@@ -36,9 +36,13 @@ Record(
     mist_inverse_depth="float",
     mist_exponent="float",
 )
-Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint")
-StorageBlock("Film", "vec4 film[];")
+Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint", is_filtered="uint")
 Record("AovParameters", count="uint", first_value="uint", iteration="uint")
+StorageBlock("Film", "vec4 film[];")
+StorageBlock("PhotonLight", "vec4 photon_light[];")
+"""Means of what photons bring, W/(m^2 sr), and of the squared luminance of all else."""
+StorageBlock("PassValues", "float pass_values[];")
+"""Those of a pass lie together, pass by pass (shaders/film/passes.glsl)."""
 Constants(
     "Passes",
     ACCUMULATION=Accumulation,
@@ -75,13 +79,25 @@ def _pass_paths(sizes: StageSizes) -> int:
     return band_pixels(sizes) if _show_seen_light(sizes) else 0
 
 
+def _filtered_pixels(sizes: StageSizes) -> int:
+    return film_pixels(sizes) if sizes.is_filtered else 0
+
+
+def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
+    """(height, width, 4) radiance and alpha of a film, which is changed, as it is shown."""
+    radiance[..., :3] *= exposure
+    radiance[..., 3] = np.clip(radiance[..., 3], 0.0, 1.0)
+    return radiance
+
+
 class Film(BufferSet):
     """Means over the iterations: 16 bytes of radiance and alpha a pixel, 4 for each channel of a pass, and 8 of their
-    counts where there are passes."""
+    counts where there are passes; 16 more where viewports filter the picture."""
 
     remedy = "lower the resolution"
     _radiance = StorageBuffer("film", "vec4", film_pixels)
     _values = StorageBuffer("pass values", "float", _pass_values)
+    _photon_light = StorageBuffer("photons' part of the film", "vec4", _filtered_pixels)
     _counts = StorageBuffer("pass counts", "uvec2", _pass_counts)
     _paths = StorageBuffer("pass paths", "vec4", _pass_paths)
     _cryptomatte = Part(Cryptomatte)
@@ -103,6 +119,7 @@ class Film(BufferSet):
         self._aovs = tuple(entry for entry in sizes.passes if entry.is_aov)
         self._looks = bool(self.passes or self._aovs or self._motion_vectors.wanted)
         """Whether it is told of each path when it has found its first surface."""
+        self._is_filtered = sizes.is_filtered
 
     def add_passes(
         self,
@@ -202,12 +219,18 @@ class Film(BufferSet):
         with context.timers.stage("film"):
             self._accumulate.run(
                 band.pixel_count,
-                {"Radiances": radiances.buffer, "SplatSums": sums.buffer, "Film": self._radiance.buffer},
+                {
+                    "Radiances": radiances.buffer,
+                    "SplatSums": sums.buffer,
+                    "Film": self._radiance.buffer,
+                    "PhotonLight": self._photon_light.buffer,
+                },
                 {
                     "count": band.pixel_count,
                     "quantum": sums.quantum,
                     "first_pixel": band.first_pixel,
                     "iteration": iteration.number_in_film,
+                    "is_filtered": self._is_filtered,
                 },
             )
 
@@ -229,6 +252,21 @@ class Film(BufferSet):
     def radiance(self) -> moderngl.Buffer:
         """(pixels, 4) float32 of what read_radiance gives."""
         return self._radiance.buffer
+
+    @property
+    def pass_values(self) -> moderngl.Buffer:
+        """float32 of read_passes, pass by pass."""
+        return self._values.buffer
+
+    @property
+    def photon_light(self) -> moderngl.Buffer:
+        """(pixels, 4) float32 means of what photons bring, and of the squared luminance of all else, where kept."""
+        return self._photon_light.buffer
+
+    def first_value(self, name: str) -> int:
+        """Where in ``values`` those of a pass begin. Raises ValueError for one that the film does not keep."""
+        names = [entry.name for entry in self.passes]
+        return self.width * self.height * sum(len(entry.channels) for entry in self.passes[: names.index(name)])
 
     def read_radiance(self) -> np.ndarray:
         """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""

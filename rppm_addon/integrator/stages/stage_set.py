@@ -10,6 +10,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.scene import Scene
 from ..common.stage_sizes import StageSizes
+from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
 from ..density_estimation.caustic_radii import CausticRadii
 from ..density_estimation.density_estimator import DensityEstimator
 from ..device_scene.stage_context import StageContext
@@ -49,17 +50,19 @@ class StageSet(BufferSet):
     caustic_radii = Part(CausticRadii)
     noise_estimate = Part(NoiseEstimate)
 
-    def __init__(self, context: Context, library: ProgramLibrary, scene: Scene) -> None:
+    def __init__(
+        self, context: Context, library: ProgramLibrary, scene: Scene, demands: ViewportDemands = NO_DEMANDS
+    ) -> None:
         """Raises DeviceError when the device has no room for them."""
-        self._sizes = StageSizes.of(scene)
+        self._sizes = StageSizes.of(scene, demands)
         super().__init__(context, library, self._sizes)
         self.bands = self._sizes.bands
         by_raster = self._sizes.rasterizes_camera
         self.camera_hits: CameraHits = self.own((GBuffer if by_raster else PrimaryRays)(context, library, self._sizes))
 
-    def fits(self, scene: Scene) -> bool:
+    def fits(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> bool:
         """Whether a scene can be rendered with these."""
-        return self._sizes == StageSizes.of(scene)
+        return self._sizes == StageSizes.of(scene, demands)
 
     def clear(self, context: StageContext) -> None:
         """Forget the band before."""

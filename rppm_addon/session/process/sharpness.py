@@ -17,22 +17,27 @@ _STEP = 2.0
 class Sharpness:
     """Chooses resolutions by what pixels have cost so far."""
 
-    def __init__(self) -> None:
-        self._seconds_per_pixel = math.inf
+    def __init__(self, seconds_per_pixel: float = math.inf) -> None:
+        """seconds_per_pixel: a guess, until it is measured."""
+        self._seconds_per_pixel = seconds_per_pixel
         self._first = COARSEST
 
     def measure(self, pixels: int, seconds: float) -> None:
         """Take note of how long a first picture has taken."""
         self._seconds_per_pixel = seconds / max(pixels, 1)
 
-    def levels(self, pixels: int, seconds: float) -> list[float]:
-        """Ascending shares of the full side length, the last 1: a first picture in about ``seconds``, then sharper
-        ones, each four times as many pixels."""
+    def first(self, pixels: int, seconds: float) -> float:
+        """The share of the full side length at which a picture comes in about ``seconds``, if not the coarsest."""
         affordable = seconds / (self._seconds_per_pixel * max(pixels, 1))
         wanted = min(1.0, max(COARSEST, math.sqrt(affordable)))
         if abs(wanted - self._first) > _STEADY * self._first or wanted in {1.0, COARSEST}:
             self._first = wanted
-        levels = [self._first]
+        return self._first
+
+    def levels(self, pixels: int, seconds: float) -> list[float]:
+        """Ascending shares of the full side length, the last 1: a first picture in about ``seconds``, then sharper
+        ones, each four times as many pixels."""
+        levels = [self.first(pixels, seconds)]
         while levels[-1] < 1.0:
             sharper = levels[-1] * _STEP
             levels.append(sharper if sharper < 1.0 / math.sqrt(_STEP) else 1.0)
@@ -42,12 +47,15 @@ class Sharpness:
 def at_level(scene: Scene, level: float) -> Scene:
     """The scene as it is rendered at a share of its side length: fewer pixels, and fewer photons in keeping.
 
-    The radius of Eq. 3 goes with the frame and not with its pixels, so photons thin out less than pixels do.
+    The radius of Eq. 3 goes with the frame and not with its pixels, so photons thin out less than pixels do. Pixels are
+    looked at in their middle, where the picture that they are enlarged to has the surfaces that guide it.
     """
     if level >= 1.0:
         return scene
     photons = max(1, round(scene.photon_count * level))
-    return replace(scene, camera=scaled(scene.camera, level), settings=replace(scene.settings, photons=photons))
+    return replace(
+        scene, camera=scaled(scene.camera, level), settings=replace(scene.settings, photons=photons, filter_width=0.0)
+    )
 
 
 def scaled(camera: Camera, level: float) -> Camera:

@@ -15,6 +15,7 @@ from ...gl.sources import ShaderError
 from ...integrator.first_look import FirstLook
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
+from ...integrator.viewport.pictures import ViewportPictures, demands_of
 from ...scene.errors import DenoiserError, RppmError
 from ...scene.scene import Scene
 from ..noise_threshold import NoiseThreshold
@@ -38,6 +39,13 @@ BRIGHTEST = 65000.0
 
 FRAME_SECONDS = 1.0 / 60.0
 """Pictures that follow each other faster are not given out: nobody would see them, and reading them costs time."""
+
+MOST_PICTURE_TIME = 0.1
+"""Of all time, that making pictures of a film may take from the iterations."""
+MOVED_SECONDS = 1.0 / 12.0
+"""Between two pictures that are moved into views that follow each other."""
+MOVE_SECONDS = 1.0 / 30.0
+"""For moving one, with fewer pixels where it takes more."""
 
 COMPILING_SECONDS = 0.1
 """Between two words about how far compiling is."""
@@ -86,7 +94,12 @@ class Viewing:
         self._shown_at = 0.0
         self._first_picture_pending = False
         self._first_look: FirstLook | None = None
-        """Until there is a first frame to be seen."""
+        """What is seen until there is a first frame; then, by it, what a moving view shows."""
+        self._viewport_pictures: ViewportPictures | None = None
+        self._moved_at = 0.0
+        self._move_seconds = 0.0
+        """When the last picture was moved into another view, and how long that took."""
+        self._moved_sharpness = Sharpness(seconds_per_pixel=1e-9)
         self._coming: tuple[Scene, int] | None = None
         """The newest scene that the reading thread has, which is shown once the renderer takes messages again."""
         self._newest_sent = 0
@@ -94,7 +107,7 @@ class Viewing:
         self._rendered = False
         """Whether there has been a frame of the renderer's own."""
         self._told_at = 0.0
-        self._given_out_at = 0.0
+        self._next_picture_at = 0.0
         self._sharpness = Sharpness()
         self._stand_ins = StandIns(library)
         self._paused = False
@@ -127,6 +140,8 @@ class Viewing:
             self._slices = self._render(*self._shown)
             self._shown = None
         try:
+            if self._shown is not None:
+                self._follow_view(*self._shown[:2])
             if self._mapper is not None and not self._rendered:  # the programs of the first look are there
                 self._library.on_start = self._while_compiling
             if next(self._slices, self) is self:  # ended
@@ -141,6 +156,7 @@ class Viewing:
     def _render(self, scene: Scene, generation: int, navigating: bool) -> Iterator[None]:
         """Pictures of a scene, first a coarse one and then sharper ones."""
         self._first_picture_pending = True
+        self._follow_view(scene, generation)
         width, height = scene.camera.resolution
         levels = self._sharpness.levels(width * height, NAVIGATION_SECONDS if navigating else FIRST_SECONDS)
         for level in levels:
@@ -167,7 +183,8 @@ class Viewing:
         """Iterations of a scene, until something else is due. Returns whether there are no more."""
         started = time.perf_counter()
         mapper, settings = self._mapper, scene.settings
-        mapper.update(at_level(scene, level), center_tolerance=math.inf if level < 1.0 else 0.0)
+        center_tolerance = math.inf if level < 1.0 else 0.0
+        mapper.update(at_level(scene, level), center_tolerance, demands_of(scene, level))
         built = time.perf_counter()
         self._pictures += 1
         yield
@@ -179,14 +196,14 @@ class Viewing:
                 threshold.add(mapper.iteration, mapper.measure_noise())
             now = time.perf_counter()
             last = mapper.iteration >= settings.iterations or threshold.is_reached
-            at_once = last or self._first_picture_pending or now - self._given_out_at >= FRAME_SECONDS
+            at_once = last or self._first_picture_pending or now >= self._next_picture_at
             if last or (at_once and mapper.iteration % settings.iterations_per_frame == 0):
-                self._given_out_at = now
                 self._show_picture(scene, generation, last)
+                took = time.perf_counter() - now
+                self._next_picture_at = now + max(FRAME_SECONDS, took / MOST_PICTURE_TIME)
                 if not self._rendered:
                     self._rendered = True
                     self._programs.add(mapper.device_scene.materials)
-                    self._release_first_look()
                 if self._first_picture_pending:
                     self._sharpness.measure(mapper.film.width * mapper.film.height, now - started)
                     self._first_picture_pending = False
@@ -201,7 +218,7 @@ class Viewing:
                     photons=mapper.photons_emitted(mapper.iteration),
                     elapsed_seconds=now - started,
                     radius_meters=mapper.splat_radii[0],
-                    memory_bytes=sum(mapper.memory_bytes.values()),
+                    memory_bytes=sum(mapper.memory_bytes.values()) + self._picture_bytes,
                     density_estimation=mapper.density_estimation.name,
                     first_photon_hits=mapper.first_photon_hits.name,
                     iterations_per_second=mapper.iteration / (now - built),
@@ -234,12 +251,40 @@ class Viewing:
         so that none is waited for; from then on, only denoised ones."""
         denoise = self._is_denoised(scene) and self._denoising.is_due
         show = self._denoised != self._pictures
-        if denoise or show:
-            combined = shown_picture(self._mapper.film, scene)
-            if denoise:
-                self._start_denoising(combined, scene)
-            if show:
-                self._give_out(combined.copy() if denoise else combined, scene, generation, last)
+        if denoise:
+            self._start_denoising(shown_picture(self._mapper.film, scene), scene)
+        if show:
+            self._give_out(self._picture(scene, last), scene, generation, last)
+
+    @property
+    def _picture_bytes(self) -> int:
+        """On the device, of what is shown."""
+        return sum(self._viewport_pictures.memory_bytes.values())
+
+    def _picture(self, scene: Scene, last: bool) -> np.ndarray:
+        """The picture so far as a viewport shows it."""
+        mapper = self._mapper
+        if self._first_look is None:
+            self._first_look = FirstLook(self._context, self._library, mapper.device_scene.geometry)
+        if self._viewport_pictures is None:
+            self._viewport_pictures = ViewportPictures(self._context, self._library, self._first_look)
+        combined = self._viewport_pictures.show(scene, mapper.film, mapper.iteration, last)
+        return shown_picture(mapper.film, scene) if combined is None else combined
+
+    def _follow_view(self, scene: Scene, generation: int) -> None:
+        """Until a view that has changed is rendered, move the last picture into it, as often as the device has time for
+        that beside rendering."""
+        now = time.perf_counter()
+        due = now - self._moved_at >= max(MOVED_SECONDS, 2.0 * self._move_seconds)
+        if self._viewport_pictures is None or generation <= self._newest_sent or not due:
+            return
+        level = self._moved_sharpness.first(math.prod(scene.camera.resolution), MOVE_SECONDS)
+        combined = self._viewport_pictures.move(at_level(scene, level))
+        self._moved_at = time.perf_counter()
+        self._move_seconds = self._moved_at - now
+        if combined is not None:
+            self._moved_sharpness.measure(combined.shape[0] * combined.shape[1], self._move_seconds)
+            self._send_frame(combined, generation, 0.0)
 
     def _start_denoising(self, combined: np.ndarray, scene: Scene) -> None:
         key = self._pictures, self._mapper.iteration
@@ -303,6 +348,7 @@ class Viewing:
 
     def _give_out(self, combined: np.ndarray, scene: Scene, generation: int, last: bool = False) -> None:
         """Send a picture, which is changed, unless a newer view was looked at meanwhile."""
+        self._viewport_pictures.given_out(scene, combined)
         if generation >= self._newest_sent:
             self._send_frame(combined, generation, 1.0 if last else self._mapper.iteration / scene.settings.iterations)
 
@@ -331,14 +377,12 @@ class Viewing:
         self._release_mapper()
         self._tell(replace(self._status, error=text, settled=True))
 
-    def _release_first_look(self) -> None:
-        if self._first_look is not None:
-            self._first_look.release()
-            self._first_look = None
-
     def _release_mapper(self) -> None:
         self._slices = None
-        self._release_first_look()
+        for pictures in (self._viewport_pictures, self._first_look):
+            if pictures is not None:
+                pictures.release()
+        self._viewport_pictures = self._first_look = None
         if self._mapper is not None:
             self._mapper.release()
             self._mapper = None

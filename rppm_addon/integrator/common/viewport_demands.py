@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a viewport asks of iterations that a final render does not."""
+
+from dataclasses import dataclass
+
+from ...scene.passes import (
+    DENOISING_ALBEDO,
+    DENOISING_DEPTH,
+    DENOISING_NORMAL,
+    FILM_PASSES,
+    RenderPass,
+)
+
+GUIDES = (DENOISING_ALBEDO, DENOISING_NORMAL, DENOISING_DEPTH)
+"""Passes by which a picture of few samples is filtered, by name."""
+SEEN_LIGHT = ("Emission", "Environment")
+"""Passes of light that has no noise to be filtered."""
+FILTERED_PASSES = (*GUIDES, *SEEN_LIGHT)
+"""That a film keeps for the noise filter."""
+
+
+@dataclass(frozen=True)
+class ViewportDemands:
+    """For pictures of few pixels and samples; a final render has none."""
+
+    shadow_rays: int = 1
+    """Of each vertex of a camera path. Their lights are stratified, so that several find every kind of light."""
+    is_filtered: bool = False
+    """Whether the film keeps what the noise filter takes."""
+
+
+NO_DEMANDS = ViewportDemands()
+
+
+def with_filtered(passes: tuple[RenderPass, ...]) -> tuple[RenderPass, ...]:
+    """Passes with those that a film keeps for the noise filter, in the table's order; others after them."""
+    kept = (entry for entry in FILM_PASSES if entry in passes or entry.name in FILTERED_PASSES)
+    return (*kept, *(entry for entry in passes if entry not in FILM_PASSES))

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures of few samples without most of their noise, for viewports.
+
+Only light by rays is filtered: that of photons, all caustics among it, is left as it is. Edges of surfaces stop the
+filter by depth and normal, textures by albedo, and shadows by how much brighter they are than noise can make them. As
+samples come, noise tells less and less, and from MOST_SAMPLES on nothing is filtered.
+"""
+
+import moderngl
+import numpy as np
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record, stride
+from ...gl.storage_blocks import StorageBlock
+from ..common.stage_sizes import StageSizes, film_pixels
+from ..common.viewport_demands import FILTERED_PASSES
+from ..stages.film import Film
+
+Record(
+    "NoiseFilterParameters",
+    width="uint",
+    pixels="uint",
+    albedo="uint",
+    normal="uint",
+    depth="uint",
+    emission="uint",
+    environment="uint",
+    iteration="uint",
+    step="uint",
+    strength="float",
+    luminance_step="float",
+)
+StorageBlock("Signals", "vec4 signals[];")
+"""Light over albedo, W/(m^2 sr), and the variance of its luminance; in the end the picture with alpha."""
+StorageBlock("Guides", "vec4 guides[];")
+"""Unit normal, in the camera's axes, and depth, meters; 0 where there is no surface."""
+
+STEPS = (1, 2, 4, 8, 16)
+"""Pixels between the taps of a round."""
+MOST_SAMPLES = 256
+"""Whose picture is filtered."""
+_WHOLE_SAMPLES = 64
+"""Up to which the filtered picture is shown alone."""
+_IMAGES = "images of the noise filter"
+
+
+def strength(samples: int, of: int) -> float:
+    """The part that the filtered picture has in what is shown after ``samples`` of ``of``: 0 at the end."""
+    end = min(of, MOST_SAMPLES)
+    return min(1.0, max(0.0, (end - samples) / max(end - min(_WHOLE_SAMPLES, end // 2), 1)))
+
+
+def _luminance_step(samples: int) -> float:
+    """By how many standard deviations of the noise a pixel may be brighter than another of the same light: 4 of the
+    first samples (Schied et al. 2017), 1 from the eighth on, as variances are known better by then."""
+    return min(4.0, max(1.0, 8.0 / samples))
+
+
+class NoiseFilter(BufferSet):
+    """Filters films of one size."""
+
+    remedy = "make the viewport smaller"
+    _guides = StorageBuffer("guides of the noise filter", "vec4", film_pixels)
+    picture = StorageBuffer("filtered picture", "vec4", film_pixels)
+    """Radiance W/(m^2 sr) and alpha, once it was filtered."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._prepare = library.compute("noise_filter/prepare.comp")
+        self._smooth = library.compute("noise_filter/smooth.comp")
+        self._despeckle = library.compute("noise_filter/despeckle.comp")
+        size, gl = (sizes.width, sizes.height), context.moderngl
+        self.size = size
+        self._images = [self.own(gl.texture(size, 4, dtype="f4"), _IMAGES) for _ in range(2)]
+        for image in self._images:
+            image.filter = (moderngl.NEAREST, moderngl.NEAREST)
+
+    @classmethod
+    def expected_bytes(cls, sizes: object) -> dict[str, int]:
+        """BufferSet.expected_bytes, with its textures."""
+        assert isinstance(sizes, StageSizes)
+        return super().expected_bytes(sizes) | {_IMAGES: 2 * stride("vec4") * film_pixels(sizes)}
+
+    def filter(self, film: Film, samples: int, strength: float) -> None:
+        """Filter a film of so many samples that keeps what the filter takes; ``strength`` is above 0."""
+        pixels = film.width * film.height
+        albedo, normal, depth, emission, environment = map(film.first_value, FILTERED_PASSES)
+        parameters = {
+            "width": film.width,
+            "pixels": pixels,
+            "albedo": albedo,
+            "normal": normal,
+            "depth": depth,
+            "emission": emission,
+            "environment": environment,
+            "iteration": samples,
+            "step": 0,
+            "strength": strength,
+            "luminance_step": _luminance_step(samples),
+        }
+        buffers = {
+            "Film": film.radiance,
+            "PhotonLight": film.photon_light,
+            "PassValues": film.pass_values,
+        }
+        signals = {"Signals": self.picture.buffer}
+        self._prepare.run(pixels, buffers | signals | {"Guides": self._guides.buffer}, parameters)
+        signal, guide = self._images
+        guide.write(self._guides.buffer)
+        for step in STEPS:
+            signal.write(self.picture.buffer)
+            signal.use(0)
+            guide.use(1)
+            self._smooth.run(pixels, signals, parameters | {"step": step})
+        signal.write(self.picture.buffer)
+        signal.use(0)
+        self._despeckle.run(pixels, buffers | signals, parameters)
+
+    def read(self) -> np.ndarray:
+        """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""
+        width, height = self.size
+        return self.picture.read(np.float32, 4 * width * height).reshape(height, width, 4).copy()

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a viewport shows of a film: filtered while samples are few, enlarged while pixels are, and with the last view's
+picture beside it while that tells more."""
+
+import numpy as np
+
+from ...gl.buffer_sets import sum_by_name
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...scene.scene import Scene
+from ..common.stage_sizes import StageSizes
+from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
+from ..first_look import FirstLook
+from ..stages.film import Film, exposed
+from .noise_filter import NoiseFilter, strength
+from .reprojection import HISTORY_ENDS, MOST_HISTORY, NewPicture, Reprojection, SeenPicture, can_move
+
+MOST_SHADOW_RAYS = 4
+"""Of each vertex in coarse pictures: as many as pixels are missing, but for more than these."""
+
+
+_SEEN_PICTURES = (SeenPicture,) * 3
+"""That a Reprojection has."""
+
+
+def demands_of(scene: Scene, level: float) -> ViewportDemands:
+    """What a picture of a scene at a share of the side length asks of iterations."""
+    if len(scene.settings.passes) == 1:  # a pass is shown as it is
+        return NO_DEMANDS
+    return ViewportDemands(min(MOST_SHADOW_RAYS, round(1.0 / level**2)), is_filtered=True)
+
+
+def expected_bytes(sizes: StageSizes) -> dict[str, int]:
+    """What the pictures of a viewport take on the device, by buffer."""
+    return sum_by_name(kind.expected_bytes(sizes) for kind in (NoiseFilter, *_SEEN_PICTURES))
+
+
+class ViewportPictures:
+    """The pictures of one viewport."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, first_look: FirstLook) -> None:
+        self._context = context
+        self._library = library
+        self._reprojection = Reprojection(context, library, first_look)
+        self._filter: NoiseFilter | None = None
+        self._composed: np.ndarray | None = None
+        self._to_keep: tuple[Scene, np.ndarray] | None = None
+        """A picture that was not composed here, and is to be moved when the view moves."""
+
+    def show(self, scene: Scene, film: Film, samples: int, last: bool = False) -> np.ndarray | None:
+        """(height, width, 4) float32 scene-linear, exposed, premultiplied alpha, of a film of so many samples, which is
+        of the scene's view and may be coarser; None where the film's own picture is the one to show, as after the
+        ``last`` sample.
+
+        Raises SceneError for a camera that sees nothing, and DeviceError.
+        """
+        settings, width, height = scene.settings, film.width, film.height
+        self._reprojection.forget_others(scene)
+        if len(settings.passes) == 1:
+            return None
+        self._keep_before(scene)
+        coarse = (width, height) != scene.camera.resolution
+        of = samples if last else settings.iterations
+        filtered = strength(samples, of)
+        fade = 1.0 if coarse else max(0.0, 1.0 - samples / min(of, HISTORY_ENDS))
+        moves = can_move(scene) and (coarse or (fade > 0.0 and self._reprojection.has_history(scene)))
+        picture = film.radiance
+        if filtered > 0.0:
+            noise_filter = self._filter_of(width, height)
+            noise_filter.filter(film, samples, filtered)
+            picture = noise_filter.picture.buffer
+            if not moves:
+                return exposed(noise_filter.read(), scene.exposure)
+        if not moves:
+            return None
+        share = width / scene.camera.resolution[0]
+        new = NewPicture(picture, width, height, share * samples)
+        self._composed = self._reprojection.compose(scene, new, fade)
+        return self._composed
+
+    def move(self, scene: Scene) -> np.ndarray | None:
+        """The last picture as it is seen in a scene's view, like show; None where there is none. Raises as show."""
+        self._keep_before(scene)
+        return self._reprojection.move(scene)
+
+    def given_out(self, scene: Scene, combined: np.ndarray) -> None:
+        """This is what is to be seen of a scene now."""
+        self._to_keep = None if combined is self._composed else (scene, combined)
+
+    def _keep_before(self, scene: Scene) -> None:
+        """Bring what was shown of another view to the device."""
+        if self._to_keep is None or self._to_keep[0].camera is scene.camera:
+            return
+        shown, combined = self._to_keep
+        self._to_keep = None
+        if can_move(shown) and combined.shape[1::-1] == shown.camera.resolution and len(shown.settings.passes) != 1:
+            self._reprojection.keep(shown, combined, MOST_HISTORY)
+
+    def _filter_of(self, width: int, height: int) -> NoiseFilter:
+        if self._filter is None or self._filter.size != (width, height):
+            if self._filter is not None:
+                self._filter.release()
+            self._filter = None
+            self._filter = NoiseFilter(self._context, self._library, StageSizes(width, height))
+        return self._filter
+
+    @property
+    def memory_bytes(self) -> dict[str, int]:
+        """Bytes on the device by buffer."""
+        owners = (self._reprojection, self._filter)
+        return sum_by_name(owner.memory_bytes for owner in owners if owner is not None)
+
+    def release(self) -> None:
+        """Give all of it back."""
+        self._reprojection.release()
+        if self._filter is not None:
+            self._filter.release()
+            self._filter = None
