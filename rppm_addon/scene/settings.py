@@ -193,7 +193,7 @@ class RenderSettings:
     use_adaptive_radius: bool = setting(
         True,
         "Adaptive Radius",
-        "Begin with up to six times the radius for caustics, by how far apart photons are, and come back to the "
+        "Begin with up to four times the radius for caustics, by how far apart photons are, and come back to the "
         "initial one where they are many: less noise where they are few. Without effect where Minimum or Maximum "
         "is set",
     )

@@ -17,7 +17,7 @@ from rppm_addon.integrator.density_estimation.radii import EXPECTED_CAUSTIC_PHOT
 from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
 from rppm_addon.scene import DensityEstimation, Scene
 
-MOST = 6.0
+MOST = 4.0
 
 
 def many_photons(**settings: object) -> Scene:

@@ -17,7 +17,7 @@ _MOST_CAUSTIC_RADII = 3.0
 EXPECTED_CAUSTIC_PHOTONS = 30
 """Caustic photons that a disk of the first iteration holds, if it is wider than Eq. 3's: a pixel's, or that of a photon
 by its footprint."""
-_MOST_FACTOR = 6.0
+_MOST_FACTOR = 4.0
 CORNER_RADII = 2.0
 """A gathering ray of at most so many wide radii ends in a corner."""
 
