@@ -19,7 +19,7 @@ render: setup ## Render the sample scene inside Blender with RPPM to out/ (PNG a
 	$(RPPM) render docs/samples/first_light.blend -o out/first_light.exr -o out/first_light.png --json out/first_light.json
 
 sample: setup ## Build docs/samples/*.blend anew
-	for name in first_light pool spotlight; do \
+	for name in first_light pool spotlight caustics_over_cycles; do \
 		$(BLENDER_PYTHON) docs/samples/$$name.py docs/samples/$$name.blend || exit 1; done
 
 extension: setup ## Build the zip that Blender installs, to build/extension/ (EXTENSION=--split-platforms: one a platform)

@@ -17,8 +17,9 @@ from ..scene.fingerprint import settings_of_plain
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
 from ..session.continuation import Pause
 from ..session.denoised_pictures import finished_frame
+from ..session.frame_passes import frame_passes
 from ..session.merged_passes import MergedPasses
-from ..session.renderer import exposed, exposed_passes
+from ..session.renderer import exposed
 from ..session.results import Frame
 from ..session.still_keeper import refuse_differences
 from .picture_files import write_png
@@ -98,7 +99,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     render = summaries[0].render
     combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
     warnings = list[str]()
-    merged = Frame(combined, {**exposed_passes(passes.result(), render.exposure), **inspections})
+    merged = Frame(combined, {**frame_passes(passes.result(), render.exposure), **inspections})
     frame = finished_frame(merged, settings, Denoiser(library_places()), warnings)
     return MergedStill(
         frame,

@@ -11,7 +11,7 @@ and from that follow their allocation, what they take (``memory_bytes``), what t
 their release. ``self.rays`` is a GrowingBuffer.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Generic, Protocol, TypeVar, overload
 
 import moderngl
@@ -95,6 +95,34 @@ class StorageBuffer(Declared[GrowingBuffer]):
         return self._count(sizes) if callable(self._count) else self._count or 0
 
 
+class BufferList(list[GrowingBuffer]):
+    """Buffers of one name, which are given back together."""
+
+    def release(self) -> None:
+        """Free them."""
+        for buffer in self:
+            buffer.release()
+
+
+class StorageBuffers(Declared[BufferList]):
+    """Buffers of ``item`` that together are larger than a device may allow one to be: ``counts`` gives the items of
+    each."""
+
+    def __init__(self, name: str, item: Record | str, counts: Callable[[Any], Sequence[int]]) -> None:
+        self._name, self._item, self._counts = name, item, counts
+
+    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> BufferList:
+        """Declared.make."""
+        return BufferList(part.make(context, library, sizes, remedy) for part in self._parts(sizes))
+
+    def expected_bytes(self, sizes: object) -> dict[str, int]:
+        """Declared.expected_bytes."""
+        return sum_by_name(part.expected_bytes(sizes) for part in self._parts(sizes))
+
+    def _parts(self, sizes: object) -> list[StorageBuffer]:
+        return [StorageBuffer(self._name, self._item, count) for count in self._counts(sizes)]
+
+
 class Part(Declared[Set]):
     """A set within a set, made for the same sizes."""
 
@@ -164,9 +192,11 @@ def _declarations(kind: type[BufferSet]) -> dict[str, Declared]:
     return {name: member for name, member in members if isinstance(member, Declared)}
 
 
-def _bytes_of(resource: Resource, name: str) -> dict[str, int]:
+def _bytes_of(resource: Resource, name: str = "") -> dict[str, int]:
     if isinstance(resource, BufferSet):
         return resource.memory_bytes
+    if isinstance(resource, BufferList):
+        return sum_by_name(map(_bytes_of, resource))
     if isinstance(resource, GrowingBuffer):
         return {resource.name: resource.size} if resource.size else {}
     if isinstance(resource, moderngl.Texture):

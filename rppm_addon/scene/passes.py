@@ -10,6 +10,7 @@ To add a pass, declare it here and write its value with one line of ``shaders/fi
 import enum
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from .errors import SettingsError
 
@@ -59,6 +60,8 @@ class RenderPass:
     """Its value where nothing is seen."""
     is_radiance: bool = False
     """Whether it is light, W/(m^2 sr), that the film's exposure scales."""
+    divided_by: str = ""
+    """The pass over which it is handed out: what surfaces reflect, over their color. The film keeps the product."""
     group: str = ""
     """The label of the switch that the add-on adds, where several passes share one."""
     description: str = ""
@@ -116,6 +119,21 @@ def _cryptomatte(layer: str, switch: str) -> tuple[RenderPass, ...]:
     )
 
 
+def _of_lobes(name: str) -> tuple[RenderPass, ...]:
+    """Light that the first surface scatters by lobes of a kind: from lights, from other surfaces, and its color."""
+    color = f"{name} Color"
+
+    def entry(part: str, **options: Any) -> RenderPass:
+        switch = f"use_pass_{name}_{part}".lower()
+        return RenderPass(f"{name} {part}", "RGB", PassKind.COLOR, Accumulation.SUM, switch, **options)
+
+    return (
+        entry("Direct", is_radiance=True, divided_by=color),
+        entry("Indirect", is_radiance=True, divided_by=color),
+        entry("Color"),
+    )
+
+
 PASSES = (
     RenderPass("Depth", "Z", PassKind.VALUE, Accumulation.FIRST, "use_pass_z", NOTHING_HIT),
     RenderPass("Mist", "Z", PassKind.VALUE, Accumulation.MEAN, "use_pass_mist", 1.0),
@@ -125,6 +143,7 @@ PASSES = (
     RenderPass("UV", "UVA", PassKind.VECTOR, Accumulation.MEAN, "use_pass_uv"),
     RenderPass("Object Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_object_index"),
     RenderPass("Material Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_material_index"),
+    *(entry for name in ("Diffuse", "Glossy", "Transmission") for entry in _of_lobes(name)),
     RenderPass("Emission", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_emit", is_radiance=True),
     RenderPass("Environment", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_environment", is_radiance=True),
     RenderPass(
@@ -141,6 +160,17 @@ PASSES = (
         PassKind.VALUE,
         Accumulation.SUM,
         description="A pass that shows the share of all samples that each pixel has got",
+    ),
+    RenderPass(
+        "Caustics",
+        "RGB",
+        PassKind.COLOR,
+        Accumulation.SUM,
+        is_radiance=True,
+        description=(
+            "A pass of the light that Cycles leaves out where its Caustics are off: what glossy and transmissive "
+            "surfaces send to diffuse ones, and where it goes from there. It is a part of the indirect passes, too"
+        ),
     ),
     _for_denoisers("Denoising Albedo", "RGB", PassKind.COLOR),
     _for_denoisers("Denoising Normal", "XYZ", PassKind.VECTOR),
@@ -162,6 +192,7 @@ PASSES = (
 _APART = {Accumulation.INSPECTION, Accumulation.COVERAGE, Accumulation.FOUND_MEAN}
 FILM_PASSES = tuple(entry for entry in PASSES if entry.accumulation not in _APART)
 """Those whose values shaders/film/passes.comp writes, and viewports show."""
+CAUSTICS = next(entry for entry in PASSES if entry.name == "Caustics")
 DEEP_CUBEMAP = next(entry for entry in PASSES if entry.name == "Deep Cubemap")
 COMBINED = "Combined"
 NOISY_IMAGE = RenderPass("Noisy Image", "RGBA", PassKind.COLOR, Accumulation.MEAN)
@@ -171,6 +202,8 @@ ALWAYS_TAKEN = frozenset({COMBINED, NOISY_IMAGE.name, *(entry.name for entry in 
 VECTOR, SHADOW_CATCHER = "Vector", "Shadow Catcher"
 DENOISING_ALBEDO, DENOISING_NORMAL, DENOISING_DEPTH = "Denoising Albedo", "Denoising Normal", "Denoising Depth"
 """Passes that guide denoising."""
+SCATTERED_LIGHT = tuple(entry for entry in PASSES if entry.divided_by)
+"""Light that first surfaces scatter. Times their colors, it adds up with Emission and Environment to Combined."""
 
 
 def passes_named(names: Sequence[str]) -> tuple[RenderPass, ...]:
@@ -199,3 +232,9 @@ def aov_passes(aovs: Sequence[str]) -> tuple[RenderPass, ...]:
             raise SettingsError(f"the AOV {name} has the name of another pass; give it a name of its own")
         found[name] = RenderPass(name, channels, _AOV_KINDS[channels], Accumulation.SUM, is_aov=True)
     return tuple(found.values())
+
+
+def with_divisors(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of passes, and of those over which they are handed out. Raises SettingsError."""
+    divisors = (entry.divided_by for entry in passes_named(names) if entry.divided_by)
+    return tuple(dict.fromkeys((*names, *divisors)))

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .errors import SettingsError
-from .passes import DENOISING_ALBEDO, DENOISING_NORMAL, RenderPass, aov_passes, passes_named
+from .passes import DENOISING_ALBEDO, DENOISING_NORMAL, RenderPass, aov_passes, passes_named, with_divisors
 from .setting_info import setting, settings_of
 
 CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
@@ -433,8 +433,8 @@ class RenderSettings:
 
     @property
     def film_passes(self) -> tuple[str, ...]:
-        """Names of the passes that are found: those asked for, and those that denoising needs."""
-        return tuple(dict.fromkeys((*self.passes, *self.denoising_features)))
+        """Names of the passes that are found: those asked for, what they are divided by, and what denoising needs."""
+        return tuple(dict.fromkeys((*with_divisors(self.passes), *self.denoising_features)))
 
     @property
     def picture_passes(self) -> tuple[RenderPass, ...]:

@@ -14,11 +14,11 @@ from ..gl.programs import ProgramLibrary
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..integrator.stages.film import Film, exposed
-from ..scene.cryptomatte import ranked
-from ..scene.passes import DEEP_CUBEMAP, PASSES, SHADOW_CATCHER
+from ..scene.passes import DEEP_CUBEMAP
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
 from .denoised_pictures import finished_frame, finished_result, wanted_frame
+from .frame_passes import frame_passes
 from .noise_threshold import NoiseThreshold
 from .remaining_time import RemainingTime
 from .results import Frame, Progress, RenderResult, RenderStatistics, empty_result
@@ -36,28 +36,9 @@ def read_combined(film: Film, exposure: float) -> np.ndarray:
     return exposed(film.read_radiance(), exposure)
 
 
-def exposed_passes(passes: Mapping[str, np.ndarray], exposure: float) -> dict[str, np.ndarray]:
-    """The passes of a film as those of a Frame."""
-    radiances = {entry.name for entry in PASSES if entry.is_radiance}
-    found = {name: values * np.float32(exposure) if name in radiances else values for name, values in passes.items()}
-    if SHADOW_CATCHER in found:
-        found[SHADOW_CATCHER] = arriving_light(found[SHADOW_CATCHER])
-    return ranked(found)
-
-
-def arriving_light(caught: np.ndarray) -> np.ndarray:
-    """(height, width, 3) of the pass Shadow Catcher: a share of light, and 1 where there are no catchers.
-
-    caught: (height, width, 3) of the film (shaders/film/caught_shadows.comp).
-    """
-    lit, seen = caught[..., 0], caught[..., 1]
-    share = np.divide(lit, seen, out=np.ones_like(lit), where=seen > 0.0)
-    return np.repeat(share[..., None], 3, axis=-1)
-
-
 def read_frame(film: Film, exposure: float, inspections: Mapping[str, np.ndarray] | None = None) -> Frame:
     """The film's current picture and passes; ``inspections`` are those that it does not keep."""
-    return Frame(read_combined(film, exposure), {**exposed_passes(film.read_passes(), exposure), **(inspections or {})})
+    return Frame(read_combined(film, exposure), {**frame_passes(film.read_passes(), exposure), **(inspections or {})})
 
 
 class SlicedRender:

@@ -15,8 +15,8 @@ float shading_correction(float cosine, float geometric_cosine) {
 }
 
 // BSDF times path throughput of an importon for a photon from wi, in front or behind; geometric_cosine: by which
-// the photon arrived.
-vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_cosine) {
+// the photon arrived; diffuse: what of it is diffuse.
+vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_cosine, out vec3 diffuse) {
     vec3 normal = unpack_unit_vector(importon.diffuse_normal);
     float cosine = dot(normal, wi);
     vec3 value = vec3(0.0);
@@ -26,6 +26,7 @@ vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_c
         value *= bump_shadowing(unpack_unit_vector(importon.shading_normal), normal, wi)
                  * shading_correction(cosine, geometric_cosine);
     }
+    diffuse = value;
     uint kind = unpack_kind(importon.lobe_kind);
     if (kind != LOBE_NONE) {
         normal = unpack_unit_vector(importon.lobe_normal);
@@ -67,12 +68,15 @@ bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
     return dot(offset, offset) < radius * radius;
 }
 
+// Light that a photon adds to an importon, what of it is diffuse, and whether it came from the viewer's side.
+struct Estimate { vec3 radiance; vec3 diffuse; bool front; };
+
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
 // integral over the unit disk is 1. False when it adds nothing. stands_for: how many photons the importon's disk holds
 // for each that counts within so much less of it.
-bool density_estimate(Importon importon, Photon photon, uint photon_number, float wide_radius, out vec3 radiance,
+bool density_estimate(Importon importon, Photon photon, uint photon_number, float wide_radius, out Estimate estimate,
                       out uint stands_for) {
-    radiance = vec3(0.0);
+    estimate = Estimate(vec3(0.0), vec3(0.0), true);
     stands_for = 0u;
     vec3 offset = photon.position - importon.position;
     float radius = photon_radius(photon.flags, importon.least_radius, importon.radius, wide_radius);
@@ -90,9 +94,16 @@ bool density_estimate(Importon importon, Photon photon, uint photon_number, floa
         return false;
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     float geometric_cosine = abs(dot(photon_normal, photon.direction));
-    radiance = evaluate_importon(importon, photon.direction, alignment > 0.0, geometric_cosine) * photon.flux * kernel;
-    float disk = disk_radius(importon.least_radius, importon.radius);
-    if ((photon.flags & PHOTON_DIRECT) != 0u) radiance *= direct_share(photon_number, disk);
-    else if ((importon.gathers & GATHERS_BY_RAY) != 0u) radiance *= caustic_share(photon_number, disk);
+    estimate.front = alignment > 0.0;
+    vec3 diffuse;
+    vec3 radiance = evaluate_importon(importon, photon.direction, estimate.front, geometric_cosine, diffuse)
+                    * photon.flux * kernel;
+    estimate.diffuse = diffuse * photon.flux * kernel;
+    float share = 1.0, disk = disk_radius(importon.least_radius, importon.radius);
+    if ((photon.flags & PHOTON_DIRECT) != 0u) share = direct_share(photon_number, disk);
+    else if ((importon.gathers & GATHERS_BY_RAY) != 0u) share = caustic_share(photon_number, disk);
+    radiance *= share;
+    estimate.diffuse *= share;
+    estimate.radiance = radiance;
     return largest(radiance) > 0.0;
 }

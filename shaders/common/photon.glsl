@@ -2,6 +2,7 @@
 #include <Photon>
 
 #include <PhotonFlags>
+#include <PhotonHistory>
 
 #include "common/disk_radius.glsl"
 #include <PhotonFootprints>

@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
+#include "common/path_history.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -21,6 +22,10 @@ layout(std430, binding = 8) writeonly buffer Contributions;
 layout(std430, binding = 11) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
+layout(std430, binding = 12) writeonly buffer LightSplits;
+
+// What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
+struct Parts { vec3 glossy; vec3 transmission; };
 
 // The alpha above which lobes are evaluated toward lights.
 float smoothest_lit(bool gathered) {
@@ -41,7 +46,9 @@ bool can_be_lit(Closure closure, bool gathered) {
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
 // choice of the light included. by_rays: what photons leave to rays, of the parts that store them.
 vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers, vec3 wo,
-                      vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays) {
+                      vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays,
+                      out Parts parts) {
+    parts = Parts(vec3(0.0), vec3(0.0));
     vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front)
                                                  : vec3(0.0);
     if (gathers && environment) {
@@ -62,7 +69,11 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool 
         if (light_pdf > 0.0 && parameters.last_segment == 0u && (specular || (gathers && environment)))
             weight *= power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.stored,
                                                                   shares.total, k) * scattered.pdf);
-        value += weight * (abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * scattered.bsdf);
+        vec3 part = weight * (abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * scattered.bsdf);
+        value += part;
+        uint scatter = lobe_scatter(lobe.kind, !front);
+        if (scatter == SCATTER_GLOSSY) parts.glossy += part;
+        else if (scatter == SCATTER_TRANSMISSION) parts.transmission += part;
     }
     return value;
 }
@@ -74,10 +85,15 @@ bool lit_from_behind(Closure closure) {
     return transmits;
 }
 
-// Light that arrives along a direction if nothing is in the way.
-struct Arriving { vec3 radiance; vec3 direction; float distance; uint triangle; };
+// Light that arrives along a direction if nothing is in the way; parts: shares of it.
+struct Arriving { vec3 radiance; vec3 direction; float distance; uint triangle; Parts parts; };
 
-const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, NO_TRIANGLE);
+const Parts ALL_GLOSSY = Parts(vec3(1.0), vec3(0.0));
+const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, NO_TRIANGLE, Parts(vec3(0.0), vec3(0.0)));
+
+vec3 share_of(vec3 part, vec3 whole) {
+    return mix(part / max(whole, vec3(1e-35)), vec3(0.0), lessThanEqual(whole, vec3(0.0)));
+}
 
 // Light that may arrive, of which one is to be chosen by weight: the one so far over its weight, and the sum of all.
 struct Candidates { Arriving chosen; float weights; float u; };
@@ -115,14 +131,14 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
         vec3 radiance = reflected * passed.chosen * passed.weights;
         add_candidate(candidates, largest(radiance),
-                      Arriving(radiance, sampled.direction, passed.distance, NO_TRIANGLE));
+                      Arriving(radiance, sampled.direction, passed.distance, NO_TRIANGLE, ALL_GLOSSY));
         uint emissive;
         Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         reflected *= exp(-path_absorption(flags) * hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
-                      Arriving(radiance, sampled.direction, hit.distance, hit.triangle));
+                      Arriving(radiance, sampled.direction, hit.distance, hit.triangle, ALL_GLOSSY));
     }
     candidates.chosen.radiance *= candidates.weights;
     return candidates.chosen;
@@ -159,10 +175,12 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
     bool environment = light.kind == LIGHT_WORLD;
     float by_rays = environment ? left_to_rays(index, path, closure, wo, sampled.direction, gathered) : 1.0;
+    Parts parts;
     vec3 scattered = evaluate_closure(closure, throughput, shares, gathered, gathers, wo, sampled.direction,
-                                      side > 0.0, light.flags, environment, light_pdf, by_rays);
+                                      side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
-                    sampled.triangle);
+                    sampled.triangle,
+                    Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered)));
 }
 
 void main() {
@@ -200,6 +218,8 @@ void main() {
     }
     contributions[index] = vec4(parameters.sample_weight * arriving.radiance, gathered ? 1.0 : 0.0);
     light_triangles[index] = arriving.triangle;
+    if (parameters.splits_light != 0u)
+        light_splits[index] = LightSplit(arriving.parts.glossy, 0.0, arriving.parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec3 origin = offset_from_surface(closure.position,
                                       dot(geometric, arriving.direction) > 0.0 ? geometric : -geometric);

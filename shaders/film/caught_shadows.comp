@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of the light arrives at the catchers that a pixel shows: what is lit as X, of what there is of them as Y
-// (session/renderer.py divides one by the other).
+// (session/frame_passes.py divides one by the other).
 
 layout(local_size_x = 64) in;
 
@@ -23,6 +23,5 @@ void main() {
     if (!catches || (camera_paths[index].flags & PATH_STRAIGHT) == 0u) return;
     vec3 throughput = camera_paths[index].throughput;
     float seen = (throughput.r + throughput.g + throughput.b) / 3.0;
-    add_to_pass(PASS_SHADOW_CATCHER, parameters.first_pixel + index,
-                vec3(seen * float(lit_catchers[index]), seen, 0.0));
+    add_to_pass(PASS_SHADOW_CATCHER, index, vec3(seen * float(lit_catchers[index]), seen, 0.0));
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the camera sees first, for the passes of scene/passes.py. As in Cycles, surfaces that let more than half of the
 // light straight through are passed, and depth lies along the view axis, or in a panorama along the ray. What denoisers
-// take is that of the first surface that is not specular.
+// take is that of the first surface that is not specular. The colors of all surfaces count by what of them is seen.
 
 layout(local_size_x = 64) in;
 
@@ -11,7 +11,9 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "film/first_surface.glsl"
+#include "film/light_colors.glsl"
 #include "gbuffer/projections.glsl"
+#include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
 layout(std430, binding = 0) readonly buffer Camera;
@@ -22,22 +24,21 @@ layout(std430, binding = 3) buffer CameraPaths;
 layout(std430, binding = 5) buffer PassCounts;
 layout(std430, binding = 6) readonly buffer Hits;
 layout(std430, binding = 7) readonly buffer Attributes;
-layout(std430, binding = 9) readonly buffer Radiances;
-layout(std430, binding = 10) readonly buffer ShadingInstances;
-layout(std430, binding = 11) readonly buffer Materials;
+layout(std430, binding = 11) readonly buffer ShadingInstances;
+layout(std430, binding = 12) readonly buffer Radiances;
 
 // Lobes up to this alpha, and what is specular by more than this share, denoisers see through. As in Cycles.
 const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;
 const uint DENOISING_DATA = 1u << PASS_DENOISING_ALBEDO | 1u << PASS_DENOISING_NORMAL | 1u << PASS_DENOISING_DEPTH;
+const uint COLORS = 1u << PASS_DIFFUSE_COLOR | 1u << PASS_GLOSSY_COLOR | 1u << PASS_TRANSMISSION_COLOR;
 
-uint pixel;
+uint index;        // in the band
 uvec2 counts;      // with this iteration
 bool hit;          // else the path passed all by
-uint index;
 
 void write_pass(uint which, vec4 value) {
     if (!is_on(which) || (PASS_ACCUMULATION[which] == ACCUMULATION_FIRST && !(hit && counts.y == 1u))) return;
-    uint place = place_of(which, pixel);
+    uint place = place_of(which, index);
     if (!hit) value = vec4(PASS_NOTHING[which]);
     for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++) {
         float before = pass_values[place + channel];
@@ -54,17 +55,17 @@ void write_pass(uint which, vec3 value) { write_pass(which, vec4(value, 0.0)); }
 // Make room for an iteration's path.
 void begin_iteration() {
     bool first = parameters.iteration == 1u;
-    if (first) pass_counts[pixel] = uvec2(0u);
+    if (first) pass_counts[parameters.first_pixel + index] = uvec2(0u);
     float kept = float(parameters.iteration - 1u) / float(parameters.iteration);
     for (uint which = 0u; which < PASS_COUNT; which++) {
         bool is_sum = PASS_ACCUMULATION[which] == ACCUMULATION_SUM;
         if (!is_on(which) || !(first || is_sum)) continue;
         for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++) {
-            uint place = place_of(which, pixel) + channel;
+            uint place = place_of(which, index) + channel;
             pass_values[place] = is_sum ? (first ? 0.0 : kept * pass_values[place]) : PASS_NOTHING[which];
         }
     }
-    add_to_pass(PASS_DEBUG_SAMPLE_COUNT, pixel, vec3(1.0));
+    add_to_pass(PASS_DEBUG_SAMPLE_COUNT, index, vec3(1.0));
 }
 
 float view_depth(vec3 position) {
@@ -88,6 +89,7 @@ vec3 uv_at(Hit at) {
 }
 
 void write_first_surface(Closure closure) {
+    uint pixel = parameters.first_pixel + index;
     counts = pass_counts[pixel] + uvec2(1u, hit ? 1u : 0u);
     pass_counts[pixel] = counts;
     uint triangle = hit ? closure.triangle : 0u;
@@ -118,20 +120,27 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
     }
     if (total <= 0.0 && largest(closure.transparent) > MOSTLY_TRANSPARENT) return false;
     float throughput = (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
-    add_to_pass(PASS_DENOISING_DEPTH, pixel, vec3(throughput * closure.distance));
+    add_to_pass(PASS_DENOISING_DEPTH, index, vec3(throughput * closure.distance));
     if (total > 0.0 && rough <= (1.0 - MOSTLY_SPECULAR) * total) return false;
-    add_to_pass(PASS_DENOISING_ALBEDO, pixel, path.throughput * albedo);
+    add_to_pass(PASS_DENOISING_ALBEDO, index, path.throughput * albedo);
     if (total <= 0.0) return true;
     normal /= total;
-    add_to_pass(PASS_DENOISING_NORMAL, pixel,
+    add_to_pass(PASS_DENOISING_NORMAL, index,
                 vec3(dot(normal, camera.right), dot(normal, camera.up), dot(normal, camera.forward)));
     return true;
+}
+
+void add_colors(CameraPath path, Closure closure, vec3 viewer) {
+    LightColors colors = light_colors(closure, viewer);
+    vec3 throughput = path.throughput * segment_transmittance(path.flags, closure);
+    add_to_pass(PASS_DIFFUSE_COLOR, index, throughput * colors.diffuse);
+    add_to_pass(PASS_GLOSSY_COLOR, index, throughput * colors.glossy);
+    add_to_pass(PASS_TRANSMISSION_COLOR, index, throughput * colors.transmission);
 }
 
 void main() {
     index = living_path();
     if (index == NO_PATH) return;
-    pixel = parameters.first_pixel + index;
     if (parameters.segment == 0u) begin_iteration();
     bool keeps_paths = parameters.keeps_paths != 0u;
     if (!(rays[index].maximum_distance > 0.0)) {
@@ -142,7 +151,8 @@ void main() {
     bool straight = (path.flags & PATH_STRAIGHT) != 0u, looks = looks_for_surface(path.flags);
     bool denoised = (parameters.passes & DENOISING_DATA) == 0u
                  || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
-    if (!keeps_paths && !looks && denoised) return;
+    bool colored = straight && (parameters.passes & COLORS) != 0u;
+    if (!keeps_paths && !looks && denoised && !colored) return;
     Closure closure = closures[index];
     hit = closure_hit(closure);
     uint kind = (hit ? PASS_PATH_HIT : 0u) | (straight ? PASS_PATH_STRAIGHT : 0u)
@@ -150,6 +160,7 @@ void main() {
     if (keeps_paths) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
     if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
         path.flags |= PATH_DENOISING_DATA_FOUND;
+    if (hit && colored) add_colors(path, closure, -rays[index].direction);
     if (looks && !is_passed_by(closure)) {
         path.flags |= PATH_SURFACE_FOUND;
         write_first_surface(closure);

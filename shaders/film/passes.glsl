@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the values of the passes lie (scene/passes.py). Needs the members passes, pixels and iteration of the
-// parameters.
+// Where the values of a band's passes lie (scene/passes.py). Needs the members passes, pixels and iteration of the
+// parameters; pixels are those of the band.
 
 #include <Passes>
 layout(std430, binding = 4) buffer PassValues;

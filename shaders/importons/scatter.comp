@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/gathering.glsl"
+#include "common/path_history.glsl"
 #include "common/world_light.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
@@ -18,7 +19,7 @@ layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters para
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer CameraPaths;
-layout(std430, binding = 3) writeonly buffer Importons;
+layout(std430, binding = 3) buffer Importons;
 layout(std430, binding = 12) readonly buffer LitCatchers;
 layout(std430, binding = 11) buffer GatheringVertices;
 layout(std430, binding = 8) buffer Radiances;
@@ -27,12 +28,12 @@ layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 
 Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius, float radius,
-                       float u, uint gathers) {
+                       float u, uint gathers, uint history) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.diffuse_normal,
                                  throughput * closure.translucent / PI, closure.diffuse_roughness,
                                  vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers,
-                                 closure.shading_normal, least_radius, 0u);
+                                 closure.shading_normal, least_radius, history_word(history, history));
     // One rough lobe stands for all of them, chosen by its albedo.
     float total = 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k) {
@@ -110,6 +111,7 @@ struct Event {
     bool transmitted;
     float pdf;      // in 1/sr, where shadow rays sample the same light; else 0
     uint flags;         // of the path from here on
+    uint scatter;
 };
 
 Event diffuse_event(CameraPath path, Closure closure, float u, vec2 disk, vec4 shares, float total, float survival) {
@@ -123,6 +125,7 @@ Event diffuse_event(CameraPath path, Closure closure, float u, vec2 disk, vec4 s
     event.weight = event.transmitted ? closure.translucent : closure.diffuse;
     event.pdf = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
     event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND)) | PATH_DIFFUSE;
+    event.scatter = SCATTER_DIFFUSE;
     return event;
 }
 
@@ -130,7 +133,8 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
     bool shadow_rays_pass = (closure.flags & CLOSURE_SHADOWLESS) != 0u;
     return Event(direction, closure.transparent, -direction, shares.x, true,
                  shadow_rays_pass ? path.scatter_pdf : 0.0,
-                 shadow_rays_pass ? path.flags : (path.flags & ~PATH_LIGHTS_FOUND) | PATH_CAUSTIC);
+                 shadow_rays_pass ? path.flags : (path.flags & ~PATH_LIGHTS_FOUND) | PATH_CAUSTIC,
+                 SCATTER_NONE);
 }
 
 // u: behind the share of what is no lobe.
@@ -149,6 +153,7 @@ Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec2 di
     event.direction = sampled.direction;
     event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     event.transmitted = sampled.transmitted;
+    event.scatter = lobe_scatter(lobe.kind, sampled.transmitted);
     bool lights_found = parameters.next_event != 0u && !sampled.transmitted
                      && looks_for_reflected_lights(lobe, shares, total, chosen, viewer,
                                                    min(SMOOTHEST_LIT, parameters.specular_alpha));
@@ -160,7 +165,7 @@ Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec2 di
 
 // The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
 void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all, bool gathers, float radius,
-           float disk, uvec4 choices, float u) {
+           float disk, uvec4 choices, float u, uint history) {
     vec3 viewer = -ray.direction;
     float gathering = gathers ? sum(all.stored) : 0.0, total = all.total;
     if (total <= 0.0) return;
@@ -184,6 +189,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     } else if (u < shares.x) event = straight_event(path, closure, ray.direction, shares);
     else event = lobe_event(path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
     if (event.probability <= 0.0) return;
+    importons[index].history = history_word(history, scattered_history(history, event.scatter));
     path.flags = event.flags;
     path.scatter_pdf = event.pdf;
     path.throughput *= event.weight * (total / (event.probability * survival));
@@ -211,9 +217,13 @@ void main() {
     if (index == NO_PATH) return;
     CameraPath path = camera_paths[index];
     Ray ray = rays[index];
+    uint history = parameters.segment == 0u ? 0u : departing_history(importons[index].history);
     importons[index].radius = 0.0;
     rays[index].maximum_distance = 0.0;
-    if (parameters.segment == 0u) gathering_vertices[index].shared_radius = -1.0;
+    if (parameters.segment == 0u) {
+        gathering_vertices[index].shared_radius = -1.0;
+        importons[index].history = 0u;
+    }
     if (!(ray.maximum_distance > 0.0)) return;
     Closure closure = closures[index];
     bool hit = closure_hit(closure), gathered = (path.flags & PATH_GATHERED) != 0u;
@@ -252,8 +262,8 @@ void main() {
     float least_radius = gathered ? caustic_radius : radius;
     importons[index] = make_importon(closure, path.throughput, -ray.direction, shares.stored, least_radius,
                                      caustic_radius, u_lobe.y,
-                                     (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u));
+                                     (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history);
     if (parameters.last_segment == 0u)
         go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, caustic_radius), choices,
-              u_lobe.x);
+              u_lobe.x, history);
 }

@@ -13,6 +13,7 @@ layout(std140, binding = 0) uniform Parameters { GatherPhotonsParameters paramet
 #include "photon_grid/grids.glsl"
 #include "splat_sums/roulette.glsl"
 #include "splat_sums/collect.glsl"
+#include "splat_sums/light.glsl"
 layout(std430, binding = 0) buffer Photons;
 layout(std430, binding = 1) readonly buffer Importons;
 layout(std430, binding = 2) readonly buffer Buckets;
@@ -96,14 +97,15 @@ void main() {
             }
         }
         if (!near) break;
-        vec3 radiance;
+        Estimate estimate;
         uint stands_for;
         if (rejected(number, visit.x)) continue;
-        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, radiance, stands_for))
+        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, estimate, stands_for))
             continue;
         any = true;
         photons[number].contributed = 1u;
-        collect_splat(collected, radiance, corner > CORNERS, stands_for);
+        collect_splat(collected, estimate.radiance, corner > CORNERS, stands_for);
+        if (parameters.light_sums != 0u) add_light(visit.x, importon, photons[number].flags, estimate);
     }
     if (any) write_collected(visit.x, (importon.gathers & GATHERED_BY_RAY) != 0u, collected);
     if (next < end || corner < corners) leave(uvec2(visit.x, looked_at));

@@ -26,6 +26,7 @@ struct Scattering {
     bool transmitted;
     uint flags;
     uint unseen;
+    bool diffuse;
     uint part;
     float ior;
 };
@@ -37,8 +38,7 @@ const float SHARPEST_ALPHA = 0.05;
 Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
     Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT,
-                                   PHOTON_NOT_DIFFUSE,
-                                   PART_DIFFUSE, 1.0);
+                                   PHOTON_NOT_DIFFUSE, true, PART_DIFFUSE, 1.0);
     float scale = 1.0 / largest(flux);
     float diffuse = largest(flux * closure.diffuse) * scale, translucent = largest(flux * closure.translucent) * scale,
           transparent = largest(flux * closure.transparent) * scale;
@@ -70,8 +70,8 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     }
     u -= translucent;
     if (u < transparent)
-        return Scattering(-arrival, closure.transparent * (norm / transparent), normal, true, 0u, 0u, PART_TRANSPARENT,
-                          1.0);
+        return Scattering(-arrival, closure.transparent * (norm / transparent), normal, true, 0u, 0u, false,
+                          PART_TRANSPARENT, 1.0);
     u -= transparent;
     int chosen = u < shares.x ? 0 : (u < shares.x + shares.y ? 1 : 2);
     float probability = shares[chosen];
@@ -82,8 +82,23 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
                       lobe_normal(lobe), sampled.transmitted,
                       (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
                           | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
-                      sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
+                      sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY, lobe.kind == LOBE_SHEEN,
                       lobe_part(lobe, sampled.transmitted), lobe.ior);
+}
+
+// Diffuse surfaces make caustics of what lobes that are not sent there.
+uint scattered_flags(uint path_flags, bool diffuse) {
+    const uint by_lobe = PHOTON_SCATTERED_BY_LOBE >> PHOTON_HISTORY_SHIFT;
+    if (!diffuse) return path_flags | by_lobe;
+    bool caustic = (path_flags & by_lobe) != 0u;
+    return (path_flags & ~by_lobe) | (caustic ? PHOTON_CAUSTIC >> PHOTON_HISTORY_SHIFT : 0u);
+}
+
+// Those of a path as a photon has them.
+uint photon_flags(uint path_flags) {
+    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
+    return (path_flags & PATH_MASK & ~(history | history >> PHOTON_HISTORY_SHIFT))
+         | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
 }
 
 // Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
@@ -143,7 +158,8 @@ void go_on(uint index, Closure closure, uint path_flags, PhotonDifferential diff
     path_flags |= scattering.flags;
     if ((path_flags & scattering.unseen) != 0u) photon_paths[index].flux = photon.scattered_flux = vec3(0.0);
     if (!straight)
-        path_flags &= ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
+        path_flags = scattered_flags(path_flags, scattering.diffuse)
+                   & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
     if (differential.known != 0u) store_differential(index, differential, closure, scattering, -photon.direction);
     if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
@@ -176,7 +192,7 @@ void main() {
     photon.direction = -ray.direction;
     photon.flux = carried;
     uint path_flags = photon_paths[index].flags;
-    photon.flags = PHOTON_ACTIVE | (path_flags & PATH_MASK);
+    photon.flags = PHOTON_ACTIVE | photon_flags(path_flags);
     if (!closure_hit(closure)) {
         photon.flags |= PHOTON_ESCAPED;
         photons[slot] = photon;

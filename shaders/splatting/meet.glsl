@@ -4,15 +4,19 @@
 
 #include "splat_sums/roulette.glsl"
 #include "splat_sums/add.glsl"
+#include "splat_sums/light.glsl"
 
 void meet(uint importon, uint photon) {
     if (rejected(photon, importon)) return;
-    vec3 offset = photons[photon].position - importons[importon].position, radiance;
+    vec3 offset = photons[photon].position - importons[importon].position;
     uint flags = photons[photon].flags;
     float radius = photon_radius(flags, importons[importon].least_radius, importons[importon].radius,
                                  parameters.wide_radius);
     if (!within_reach(importons[importon].gathers, offset, radius, flags)) return;
+    Estimate estimate;
     uint stands_for;
-    if (density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, radiance, stands_for))
-        add_splat(importon, photon, radiance, stands_for);
+    if (!density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, estimate, stands_for))
+        return;
+    add_splat(importon, photon, estimate.radiance, stands_for);
+    if (parameters.light_sums != 0u) add_light(importon, importons[importon], flags, estimate);
 }

@@ -6,7 +6,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from rppm_addon.scene.passes import FILM_PASSES
+from rppm_addon.scene.passes import CAUSTICS, FILM_PASSES, SCATTERED_LIGHT
 
 from .scenes import (
     DIFFUSE,
@@ -22,6 +22,9 @@ from .scenes import (
     plane,
 )  # fmt: skip
 
+OF_LIGHT = {CAUSTICS.name}.union(*((entry.name, entry.divided_by) for entry in SCATTERED_LIGHT))
+"""Passes that test_light_passes.py compares."""
+FIRST_SURFACE = tuple(entry for entry in FILM_PASSES if entry.name not in OF_LIGHT)
 WORLD, MIRROR = 0.3, (0.9, 0.8, 0.7)
 NOT_FILTERED = 0.01
 """Pixels of a filter that looks through their middles."""
@@ -46,7 +49,7 @@ def surfaces():
     light("POINT", 10.0, place(at=(0.0, 0.0, 3.0)))
     camera((0.3, -3.0, 1.2), (0.0, 0.0, 0.0))
     scene = bpy.context.scene
-    for entry in FILM_PASSES:
+    for entry in FIRST_SURFACE:
         if entry.switch:
             setattr(scene.view_layers[0], entry.switch, True)
     scene.view_layers[0].cycles.denoising_store_passes = True
@@ -74,12 +77,12 @@ def mirrored_world_once(expected: dict[str, np.ndarray]) -> list[np.ndarray]:
 def test_every_pass_of_blender_is_that_of_cycles(renderer, surfaces, tmp_path):
     expected = cycles_channels(surfaces, tmp_path)
     scene = exported_scene()
-    names = tuple(entry.name for entry in FILM_PASSES)
-    assert {entry.name for entry in FILM_PASSES if entry.switch} <= set(scene.settings.passes)
+    names = tuple(entry.name for entry in FIRST_SURFACE)
+    assert {entry.name for entry in FIRST_SURFACE if entry.switch} <= set(scene.settings.passes)
     scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64, passes=names)
     frame = renderer.render(scene).frame
     expected |= dict(zip(("Denoising Albedo." + c for c in "RGB"), mirrored_world_once(expected), strict=True))
-    for entry in FILM_PASSES:
+    for entry in FIRST_SURFACE:
         if entry.name in {"Shadow Catcher", "Debug Sample Count"}:
             continue  # nothing to be seen here
         mine = np.atleast_3d(frame.passes[entry.name])

@@ -217,7 +217,7 @@ FLUX_SUMS = Record("FluxSums", **dict.fromkeys((*FLUX_NAMES, "unused0", "unused1
 
 
 class PhotonFlag(enum.IntFlag):
-    """Flags of photons and of their paths."""
+    """Flags of photons and of their paths, which have the low ten bits (materials/medium.glsl)."""
 
     ACTIVE = 1
     STORED = 2
@@ -236,10 +236,44 @@ class PhotonFlag(enum.IntFlag):
     """Nothing but transparency lies between it and its light, which is not the world."""
 
 
+class PhotonHistory(enum.IntFlag):
+    """Further flags, in a photon where its path has NOT_GLOSSY and NOT_TRANSMITTED, which nobody asks photons for; in a
+    path so many bits lower, where a photon has ACTIVE and STORED."""
+
+    SCATTERED_BY_LOBE = 128
+    """What scattered it last was a lobe that is not diffuse."""
+    CAUSTIC = 256
+    """A diffuse surface has scattered what had come by such a lobe."""
+
+
 Constants("PhotonFlags", PHOTON=PhotonFlag)
+Constants("PhotonHistory", PHOTON=PhotonHistory, PHOTON_HISTORY_SHIFT=7)
 PHOTON_FLAG_BITS = 10
 """Of a photon's word; the others are a float's."""
 Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
+
+
+class Scatter(enum.IntEnum):
+    """What Cycles tells apart of how a surface scatters, in the order of the passes of it (scene/passes.py)."""
+
+    NONE = 0
+    DIFFUSE = 1
+    GLOSSY = 2
+    TRANSMISSION = 3
+
+
+class PathHistory(enum.IntFlag):
+    """What passes of light ask for of a camera path, above the Scatter of its first surface that is not transparent."""
+
+    AGAIN = 4
+    """More than one has scattered it."""
+    DIFFUSE = 8
+    """The last that did was diffuse."""
+    CAUSTIC = 16
+    """One that was not diffuse has scattered it after one that was: Cycles ends it there where Caustics are off."""
+
+
+Constants("PathHistory", SCATTER=Scatter, HISTORY=PathHistory)
 
 CAMERA_PATH = Record(
     "CameraPath",
@@ -267,6 +301,10 @@ StorageBlock("Contributions", "vec4 contributions[];")
 StorageBlock("LightTriangles", "uint light_triangles[];")
 """What shadow rays add where nothing is in their way, and the emissive triangles that they go to."""
 
+LIGHT_SPLIT = Record("LightSplit", glossy="vec3", unused0="float", transmission="vec3", unused1="float")
+"""Of what a shadow ray adds, by channel: the parts that such lobes scatter; the rest is diffuse."""
+StorageBlock("LightSplits", "LightSplit light_splits[];")
+
 IMPORTON = Record(
     "Importon",
     position="vec3",
@@ -288,12 +326,13 @@ IMPORTON = Record(
     gathers="uint",
     shading_normal="uint",
     least_radius="float",
-    unused="uint",
+    history="uint",
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. Photons that know their footprint count within
 a radius of their own between ``least_radius`` and ``radius``. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
-``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag."""
+``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag. ``history`` is the
+PathHistory of the path as it came, and in the upper half as it goes on, which stays when it ends."""
 StorageBlock("Importons", "Importon importons[];")
 
 

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-from ...scene.passes import RenderPass
+from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
 from .band import Band, bands_of
 from .camera_view import is_rasterized
@@ -50,6 +50,16 @@ class StageSizes:
         )
 
     @property
+    def has_scattered_light(self) -> bool:
+        """Whether a pass of light is wanted by what the first surface made of it."""
+        return any(entry in SCATTERED_LIGHT for entry in self.passes)
+
+    @property
+    def has_caustics(self) -> bool:
+        """Whether that of caustics is."""
+        return CAUSTICS in self.passes
+
+    @property
     def bands(self) -> list[Band]:
         """Of the film, from below; the first has the most rows."""
         return bands_of(self.width, self.height)
@@ -68,6 +78,11 @@ def band_pixels(sizes: StageSizes) -> int:
 def aov_channels(sizes: StageSizes) -> int:
     """Of all passes of AOV Output nodes together."""
     return sum(len(entry.channels) for entry in sizes.passes if entry.is_aov)
+
+
+def split_pixels(sizes: StageSizes) -> int:
+    """Of a band, the most, where passes tell apart what makes its light; else 0."""
+    return band_pixels(sizes) if sizes.has_scattered_light or sizes.has_caustics else 0
 
 
 def photon_paths(sizes: StageSizes) -> int:

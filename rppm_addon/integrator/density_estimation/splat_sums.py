@@ -2,6 +2,7 @@
 """Sums of what photons add to the importons of each pixel, in whole quanta of radiance."""
 
 import contextlib
+import enum
 import math
 from collections.abc import Iterator
 
@@ -9,20 +10,54 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.storage_blocks import StorageBlock
 from ..common.stage_sizes import StageSizes, band_pixels
 
-SUM_PARAMETERS = {"quanta": "float", "roulette": "uint", "counting": "uint"}
-"""Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl or collect.glsl."""
+SUM_PARAMETERS = {"quanta": "float", "roulette": "uint", "counting": "uint", "light_sums": "uint"}
+"""Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl, collect.glsl or light.glsl."""
 
 StorageBlock("SplatSums", "uint sum_words[];")
 StorageBlock("PhotonCounts", "uint photon_counts[];")
+StorageBlock("LightSums", "uint light_words[];")
 
 _PHOTON_QUANTA = 1 << 24
 _SUM_WORDS = 12
 """Of a pixel (shaders/splat_sums/sums.glsl)."""
+_SCATTERED_SUMS, _CAUSTICS_SUMS = 6, 2
+
+
+class LightSum(enum.IntFlag):
+    """What sums are kept of, beside all light."""
+
+    SCATTERED = 1
+    """By what the first surface made of it."""
+    CAUSTICS = 2
+
+    @classmethod
+    def of(cls, sizes: StageSizes) -> "LightSum":
+        """Those that the passes ask for."""
+        return (cls.SCATTERED if sizes.has_scattered_light else cls(0)) | (
+            cls.CAUSTICS if sizes.has_caustics else cls(0)
+        )
+
+
+Constants(
+    "LightSums",
+    LIGHT_SUMS=LightSum,
+    SCATTERED_SUMS=_SCATTERED_SUMS,
+    CAUSTICS_SUM=_SCATTERED_SUMS,
+    CAUSTICS_BY_RAY=_SCATTERED_SUMS + 1,
+    CAUSTICS_SUMS=_CAUSTICS_SUMS,
+)
+
+
+def _light_words(sizes: StageSizes) -> int:
+    wanted = LightSum.of(sizes)
+    kept = {LightSum.SCATTERED: _SCATTERED_SUMS, LightSum.CAUSTICS: _CAUSTICS_SUMS}
+    return _SUM_WORDS // 2 * sum(count for flag, count in kept.items() if flag in wanted) * band_pixels(sizes)
 
 
 def radiance_quantum(photon_flux: float, radius: float) -> float:
@@ -41,9 +76,12 @@ class SplatSums(BufferSet):
     remedy = "lower the resolution"
     _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes))
     _photon_counts = StorageBuffer("photon counts", "uvec2", band_pixels)
+    _light_sums = StorageBuffer("gathered radiance of light passes", "uint", _light_words)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
+        self.kept = LightSum.of(sizes)
+        """Of the light sums."""
         self.count_in(1.0, 0, False)
 
     def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
@@ -51,7 +89,12 @@ class SplatSums(BufferSet):
         and whether to count the photons that pixels take."""
         self.quantum = quantum
         self.counting = counting
-        self.parameters = {"quanta": (2.0 if roulette else 1.0) / quantum, "roulette": roulette, "counting": counting}
+        self.parameters = {
+            "quanta": (2.0 if roulette else 1.0) / quantum,
+            "roulette": roulette,
+            "counting": counting,
+            "light_sums": int(self.kept),
+        }
         """Values of SUM_PARAMETERS."""
 
     @contextlib.contextmanager
@@ -67,6 +110,8 @@ class SplatSums(BufferSet):
     def clear(self) -> None:
         """Forget the band before."""
         self._sums.clear()
+        if self.kept:
+            self._light_sums.clear()
         if self.counting:
             self._photon_counts.clear()
 
@@ -78,7 +123,16 @@ class SplatSums(BufferSet):
     @property
     def blocks(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of programs that add to the sums."""
-        return {"SplatSums": self._sums.buffer, "PhotonCounts": self._photon_counts.buffer}
+        return {
+            "SplatSums": self._sums.buffer,
+            "PhotonCounts": self._photon_counts.buffer,
+            "LightSums": self._light_sums.buffer,
+        }
+
+    @property
+    def light_sums(self) -> moderngl.Buffer:
+        """Words as shaders/splat_sums/light_sums.glsl says."""
+        return self._light_sums.buffer
 
     def read(self, count: int) -> np.ndarray:
         """(count, 2, 3) uint64 quanta of the band's first pixels: what their importons took, what their rays found."""

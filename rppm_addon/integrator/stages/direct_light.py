@@ -13,8 +13,8 @@ from ...scene.settings import DirectLight as DirectLightMode
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
-from ..common.records import RAY
-from ..common.stage_sizes import StageSizes, band_pixels
+from ..common.records import LIGHT_SPLIT, RAY
+from ..common.stage_sizes import StageSizes, band_pixels, split_pixels
 from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
@@ -32,6 +32,7 @@ Record(
     gathers_again_below="float",
     light_sample="uint",
     sample_weight="float",
+    splits_light="uint",
 )
 
 
@@ -40,15 +41,17 @@ class DirectLight(BufferSet):
 
     remedy = "lower the resolution"
     _rays = StorageBuffer("shadow rays", RAY, band_pixels)
-    _contributions = StorageBuffer("direct light", "vec4", band_pixels)
-    _visibility = StorageBuffer("visibility", "uint", band_pixels)
+    contributions = StorageBuffer("direct light", "vec4", band_pixels)
+    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, split_pixels)
+    visibility = StorageBuffer("visibility", "uint", band_pixels)
     _triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels)
-    _living_rays = PathList("living shadow rays", band_pixels)
+    living_rays = PathList("living shadow rays", band_pixels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._sample = library.compute("direct_light/sample.comp")
         self._add = library.compute("direct_light/add.comp")
+        self._splits_light = split_pixels(sizes) > 0
 
     def add(
         self,
@@ -72,22 +75,22 @@ class DirectLight(BufferSet):
         with context.timers.stage("direct light"):
             for ray in range(iteration.shadow_rays):
                 self._sample_lights(context, importons, blocks, band, iteration, segment, radii, ray)
-                living = self._living_rays
+                living = self.living_rays
                 living.take(importons.living, self._rays.buffer)
                 context.lights.emitters.tint_contributions(
                     context.resolve,
                     self._rays.buffer,
                     self._triangles.buffer,
-                    self._contributions.buffer,
+                    self.contributions.buffer,
                     living,
                     iteration.number,
                 )
-                context.deep_cubemap.occluded(self._rays.buffer, self._visibility.buffer, living)
+                context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living)
                 living.run(
                     self._add,
                     {
-                        "Visibility": self._visibility.buffer,
-                        "Contributions": self._contributions.buffer,
+                        "Visibility": self.visibility.buffer,
+                        "Contributions": self.contributions.buffer,
                         "FoundRadiances": blocks["FoundRadiances"],
                         "Radiances": importons.radiances.buffer,
                     },
@@ -114,7 +117,8 @@ class DirectLight(BufferSet):
                 "Rays": importons.rays.buffer,
                 "CameraPaths": importons.paths.buffer,
                 "ShadowRays": self._rays.buffer,
-                "Contributions": self._contributions.buffer,
+                "Contributions": self.contributions.buffer,
+                "LightSplits": self.splits.buffer,
                 "LightTriangles": self._triangles.buffer,
                 "Materials": context.materials.buffers["Materials"],
                 "Camera": blocks["Camera"],
@@ -131,5 +135,6 @@ class DirectLight(BufferSet):
                 "gathers_again_below": radii.corner,
                 "light_sample": (iteration.number - 1) * iteration.shadow_rays + ray,
                 "sample_weight": 1.0 / iteration.shadow_rays,
+                "splits_light": self._splits_light,
             },
         )

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
+from ...gl.buffer_sets import BufferSet, Part, StorageBuffer, StorageBuffers
 from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ...scene.passes import FILM_PASSES, SHADOW_CATCHER, VECTOR, Accumulation
+from ...scene.passes import FILM_PASSES, SCATTERED_LIGHT, SHADOW_CATCHER, VECTOR, Accumulation
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, film_pixels
@@ -54,7 +54,7 @@ Constants(
 )
 
 
-_OF_SEEN_LIGHT = ("Emission", "Environment", "Denoising Albedo")
+_OF_SEEN_LIGHT = ("Emission", "Environment", "Denoising Albedo", *(entry.name for entry in SCATTERED_LIGHT))
 """Passes to which light adds that camera paths meet."""
 
 
@@ -62,8 +62,13 @@ def _show_seen_light(sizes: StageSizes) -> bool:
     return any(entry.name in _OF_SEEN_LIGHT for entry in sizes.passes)
 
 
-def _pass_values(sizes: StageSizes) -> int:
-    return film_pixels(sizes) * sum(len(entry.channels) for entry in sizes.passes if entry in FILM_PASSES)
+def _channels(sizes: StageSizes) -> int:
+    return sum(len(entry.channels) for entry in sizes.passes if entry in FILM_PASSES)
+
+
+def _pass_values(sizes: StageSizes) -> list[int]:
+    """Of each band: in one buffer those of a large picture would be more than some drivers allow."""
+    return [band.pixel_count * _channels(sizes) for band in sizes.bands]
 
 
 def _pass_counts(sizes: StageSizes) -> int:
@@ -96,7 +101,7 @@ class Film(BufferSet):
 
     remedy = "lower the resolution"
     _radiance = StorageBuffer("film", "vec4", film_pixels)
-    _values = StorageBuffer("pass values", "float", _pass_values)
+    _values = StorageBuffers("pass values", "float", _pass_values)
     _photon_light = StorageBuffer("photons' part of the film", "vec4", _filtered_pixels)
     _counts = StorageBuffer("pass counts", "uvec2", _pass_counts)
     _paths = StorageBuffer("pass paths", "vec4", _pass_paths)
@@ -110,10 +115,11 @@ class Film(BufferSet):
         self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(sizes) else None
         catches = sizes.has_catchers and any(entry.name == SHADOW_CATCHER for entry in sizes.passes)
         self._caught_shadows = library.compute("film/caught_shadows.comp") if catches else None
+        self._context = context
         self._accumulate = library.compute("film/accumulate.comp")
         self._accumulate_aovs = library.compute("film/aovs.comp") if aov_channels(sizes) else None
         self._aov_channels = aov_channels(sizes)
-        self.width, self.height = sizes.width, sizes.height
+        self.width, self.height, self._bands = sizes.width, sizes.height, sizes.bands
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Of those wanted, the ones that passes.comp writes."""
         self._aovs = tuple(entry for entry in sizes.passes if entry.is_aov)
@@ -144,13 +150,13 @@ class Film(BufferSet):
                 "Closures": importons.closures.buffer,
                 "Rays": importons.rays.buffer,
                 "CameraPaths": importons.paths.buffer,
-                "PassValues": self._values.buffer,
                 "PassCounts": self._counts.buffer,
-                "PassPaths": self._paths.buffer,
+                **self.pass_blocks(band),
                 "Hits": importons.hits.buffer,
                 "Attributes": context.geometry.attributes.buffer,
                 "Radiances": importons.radiances.buffer,
                 "ShadingInstances": context.resolve.shading_instances,
+                "AlbedoTables": context.materials.buffers["AlbedoTables"],
                 "Materials": context.materials.buffers["Materials"],
             },
             self._parameters(context, band, iteration, segment),
@@ -176,8 +182,7 @@ class Film(BufferSet):
                 "Rays": importons.rays.buffer,
                 "CameraPaths": importons.paths.buffer,
                 "LitCatchers": catcher.lit.buffer,
-                "PassValues": self._values.buffer,
-                "PassPaths": self._paths.buffer,
+                **self.pass_blocks(band),
             },
             self._parameters(context, band, iteration, segment),
         )
@@ -191,21 +196,31 @@ class Film(BufferSet):
         importons.living.run(
             self._seen_light,
             {
-                "PassValues": self._values.buffer,
-                "PassPaths": self._paths.buffer,
+                **self.pass_blocks(band),
+                "Importons": importons.importons.buffer,
                 "Radiances": importons.radiances.buffer,
             },
             self._parameters(context, band, iteration, segment),
         )
 
+    def pass_blocks(self, band: Band) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that include shaders/film/passes.glsl."""
+        return {"PassValues": self._values[self._bands.index(band)].buffer, "PassPaths": self._paths.buffer}
+
+    def place_parameters(self, band: Band, iteration: Iteration) -> dict[str, float]:
+        """Their parameters."""
+        return {
+            "iteration": iteration.number_in_film,
+            "pixels": band.pixel_count,
+            "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
+        }
+
     def _parameters(self, context: StageContext, band: Band, iteration: Iteration, segment: int) -> dict[str, float]:
         mist = context.scene.world.mist
         return {
+            **self.place_parameters(band, iteration),
             "first_pixel": band.first_pixel,
-            "iteration": iteration.number_in_film,
             "segment": segment,
-            "pixels": self.width * self.height,
-            "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
             "keeps_paths": self._seen_light is not None,
             "mist_start": mist.start,
             "mist_inverse_depth": 1.0 / mist.depth if mist.depth > 0.0 else 0.0,
@@ -254,19 +269,24 @@ class Film(BufferSet):
         return self._radiance.buffer
 
     @property
-    def pass_values(self) -> moderngl.Buffer:
-        """float32 of read_passes, pass by pass."""
-        return self._values.buffer
-
-    @property
     def photon_light(self) -> moderngl.Buffer:
         """(pixels, 4) float32 means of what photons bring, and of the squared luminance of all else, where kept."""
         return self._photon_light.buffer
 
-    def first_value(self, name: str) -> int:
-        """Where in ``values`` those of a pass begin. Raises ValueError for one that the film does not keep."""
-        names = [entry.name for entry in self.passes]
-        return self.width * self.height * sum(len(entry.channels) for entry in self.passes[: names.index(name)])
+    def copy_pass(self, name: str, into: moderngl.Buffer, first: int) -> int:
+        """Lay what read_passes gives of a pass into a buffer of float32, from the number ``first`` on.
+
+        Returns the number behind it. Raises ValueError for a pass that the film does not keep.
+        """
+        number = [entry.name for entry in self.passes].index(name)
+        before = sum(len(entry.channels) for entry in self.passes[:number])
+        channels = len(self.passes[number].channels)
+        for band, values in zip(self._bands, self._values, strict=True):
+            count, place = channels * band.pixel_count, first + channels * band.first_pixel
+            self._context.moderngl.copy_buffer(
+                into, values.buffer, 4 * count, read_offset=4 * before * band.pixel_count, write_offset=4 * place
+            )
+        return first + channels * self.width * self.height
 
     def read_radiance(self) -> np.ndarray:
         """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""
@@ -274,13 +294,16 @@ class Film(BufferSet):
 
     def read_passes(self) -> dict[str, np.ndarray]:
         """By name, (height, width) or (height, width, channels) float32 of the passes that the film keeps."""
-        found, place, pixels = {}, 0, self.width * self.height
+        found, first = {}, 0
         for entry in self.passes:
             channels = len(entry.channels)
-            values = self._values.read(np.float32, channels * pixels, place)
+            parts = [
+                buffer.read(np.float32, channels * band.pixel_count, 4 * first * band.pixel_count)
+                for band, buffer in zip(self._bands, self._values, strict=True)
+            ]
             shape = (self.height, self.width, channels) if channels > 1 else (self.height, self.width)
-            found[entry.name] = values.reshape(shape).copy()
-            place += 4 * channels * pixels
+            found[entry.name] = np.concatenate(parts).reshape(shape)
+            first += channels
         return found | self._motion_vectors.read() | self._cryptomatte.read() | self._read_aovs()
 
     def _read_aovs(self) -> dict[str, np.ndarray]:
@@ -303,8 +326,10 @@ class Film(BufferSet):
         """Take the means that read_radiance, read_passes and read_pass_counts gave; KeyError where a pass misses."""
         self._radiance.upload(radiance)
         if self.passes:
-            values = [np.asarray(passes[entry.name], np.float32).reshape(-1) for entry in self.passes]
-            self._values.upload(np.concatenate(values))
+            values = [np.asarray(passes[entry.name], np.float32) for entry in self.passes]
+            for band, buffer in zip(self._bands, self._values, strict=True):
+                rows = slice(band.first_row, band.first_row + band.rows)
+                buffer.upload(np.concatenate([part[rows].reshape(-1) for part in values]))
         if self._looks:
             self._counts.upload(pass_counts)
         if self._motion_vectors.wanted:

@@ -7,6 +7,8 @@ so keeps the estimate consistent. After Jensen, Realistic Image Synthesis Using 
 
 import math
 
+import moderngl
+
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
@@ -70,25 +72,34 @@ class FinalGather(BufferSet):
         """
         if not context.gathers:
             return
-        found = {"FoundRadiances": self.radiances.buffer, "GatheringVertices": self.vertices.buffer}
-        radius = SHARED_RADIUS * radii.in_pixels
         with context.timers.stage("final gather"):
             self._found_program.run(
                 band.pixel_count,
-                {"SplatSums": sums.buffer, **found},
+                {
+                    "SplatSums": sums.buffer,
+                    "FoundRadiances": self.radiances.buffer,
+                    "GatheringVertices": self.vertices.buffer,
+                },
                 {"count": band.pixel_count, "quantum": sums.quantum},
             )
-            self._share_program.run(
-                band.pixel_count,
-                {**found, "Radiances": radiances.buffer},
-                {
-                    "count": band.pixel_count,
-                    "width": band.columns,
-                    "first_pixel": band.first_pixel,
-                    "taps": min(_MOST_TAPS, math.ceil(math.pi * radius**2)) if radius >= 0.5 else 0,
-                    "radius_in_pixels": radius,
-                    "shared_radius": SHARED_RADIUS,
-                    "seed": iteration.seed,
-                    "iteration": iteration.number,
-                },
-            )
+            self.share_found(self.radiances.buffer, radiances.buffer, band, iteration, radii)
+
+    def share_found(
+        self, found: moderngl.Buffer, radiances: moderngl.Buffer, band: Band, iteration: Iteration, radii: Radii
+    ) -> None:
+        """Add what gathering rays found (vec4 each), or a part of that, to the ``radiances`` (vec4) of those pixels."""
+        radius = SHARED_RADIUS * radii.in_pixels
+        self._share_program.run(
+            band.pixel_count,
+            {"FoundRadiances": found, "GatheringVertices": self.vertices.buffer, "Radiances": radiances},
+            {
+                "count": band.pixel_count,
+                "width": band.columns,
+                "first_pixel": band.first_pixel,
+                "taps": min(_MOST_TAPS, math.ceil(math.pi * radius**2)) if radius >= 0.5 else 0,
+                "radius_in_pixels": radius,
+                "shared_radius": SHARED_RADIUS,
+                "seed": iteration.seed,
+                "iteration": iteration.number,
+            },
+        )

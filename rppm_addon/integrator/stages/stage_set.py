@@ -20,6 +20,7 @@ from .film import Film
 from .final_gather import FinalGather
 from .gbuffer import GBuffer
 from .importons import Importons
+from .light_passes import LightPasses
 from .noise_estimate import NoiseEstimate
 from .photons import Photons
 from .primary_rays import PrimaryRays
@@ -32,7 +33,7 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "final gather": (FinalGather,),
     "shadow catcher": (ShadowCatcher,),
     "density estimation": (DensityEstimator,),
-    "passes": (Film, CausticRadii, NoiseEstimate),
+    "passes": (Film, LightPasses, CausticRadii, NoiseEstimate),
 }
 """How memory is reported: stages by group."""
 
@@ -47,6 +48,7 @@ class StageSet(BufferSet):
     final_gather = Part(FinalGather)
     shadow_catcher = Part(ShadowCatcher)
     film = Part(Film)
+    light_passes = Part(LightPasses)
     caustic_radii = Part(CausticRadii)
     noise_estimate = Part(NoiseEstimate)
 
@@ -69,6 +71,7 @@ class StageSet(BufferSet):
         with context.timers.stage("gbuffer"):
             self.importons.clear()
             self.density_estimator.sums.clear()
+            self.light_passes.clear()
             if context.gathers:
                 self.final_gather.clear()
 

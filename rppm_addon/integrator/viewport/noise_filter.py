@@ -14,6 +14,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record, stride
 from ...gl.storage_blocks import StorageBlock
+from ...scene.passes import FILM_PASSES
 from ..common.stage_sizes import StageSizes, film_pixels
 from ..common.viewport_demands import FILTERED_PASSES
 from ..stages.film import Film
@@ -58,11 +59,18 @@ def _luminance_step(samples: int) -> float:
     return min(4.0, max(1.0, 8.0 / samples))
 
 
+def _pass_values(sizes: StageSizes) -> int:
+    kept = (entry for entry in FILM_PASSES if entry.name in FILTERED_PASSES)
+    return film_pixels(sizes) * sum(len(entry.channels) for entry in kept)
+
+
 class NoiseFilter(BufferSet):
     """Filters films of one size."""
 
     remedy = "make the viewport smaller"
     _guides = StorageBuffer("guides of the noise filter", "vec4", film_pixels)
+    _passes = StorageBuffer("passes of the noise filter", "float", _pass_values)
+    """Of a film, one pass after the other in the order of FILTERED_PASSES."""
     picture = StorageBuffer("filtered picture", "vec4", film_pixels)
     """Radiance W/(m^2 sr) and alpha, once it was filtered."""
 
@@ -86,7 +94,11 @@ class NoiseFilter(BufferSet):
     def filter(self, film: Film, samples: int, strength: float) -> None:
         """Filter a film of so many samples that keeps what the filter takes; ``strength`` is above 0."""
         pixels = film.width * film.height
-        albedo, normal, depth, emission, environment = map(film.first_value, FILTERED_PASSES)
+        places, end = [], 0
+        for name in FILTERED_PASSES:
+            places.append(end)
+            end = film.copy_pass(name, self._passes.buffer, end)
+        albedo, normal, depth, emission, environment = places
         parameters = {
             "width": film.width,
             "pixels": pixels,
@@ -103,7 +115,7 @@ class NoiseFilter(BufferSet):
         buffers = {
             "Film": film.radiance,
             "PhotonLight": film.photon_light,
-            "PassValues": film.pass_values,
+            "PassValues": self._passes.buffer,
         }
         signals = {"Signals": self.picture.buffer}
         self._prepare.run(pixels, buffers | signals | {"Guides": self._guides.buffer}, parameters)

@@ -18,8 +18,9 @@ from ...integrator.stages.film import Film
 from ...integrator.viewport.pictures import ViewportPictures, demands_of
 from ...scene.errors import DenoiserError, RppmError
 from ...scene.scene import Scene
+from ..frame_passes import frame_passes
 from ..noise_threshold import NoiseThreshold
-from ..renderer import exposed_passes, log, read_combined
+from ..renderer import log, read_combined
 from .background_denoising import POLL_SECONDS, BackgroundDenoising
 from .frames import FrameWriter
 from .known_programs import KnownPrograms
@@ -59,7 +60,7 @@ def shown_picture(film: Film, scene: Scene) -> np.ndarray:
     value as gray."""
     if len(scene.settings.passes) != 1:
         return read_combined(film, scene.exposure)
-    values = exposed_passes(film.read_passes(), scene.exposure)[scene.settings.passes[0]]
+    values = frame_passes(film.read_passes(), scene.exposure)[scene.settings.passes[0]]
     planes = np.atleast_3d(values)
     shown = np.zeros((*planes.shape[:2], 4), np.float32)
     shown[..., : planes.shape[2]] = planes

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Passes that tell apart what makes a picture's light: by what first surfaces make of it, and caustics.
+
+Whatever adds to Combined adds a part of the same to these, so that they add up to it. Light that camera paths meet is
+the film's (shaders/film/seen_light.comp).
+"""
+
+import enum
+
+import moderngl
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from ...scene.settings import DirectLight as DirectLightMode
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.stage_sizes import StageSizes, band_pixels, split_pixels
+from ..density_estimation.radii import Radii
+from ..density_estimation.splat_sums import LightSum, SplatSums
+from ..device_scene.stage_context import StageContext
+from .direct_light import DirectLight
+from .film import Film
+from .final_gather import FinalGather
+from .importons import Importons
+
+Record(
+    "LightPassParameters",
+    iteration="uint",
+    segment="uint",
+    pixels="uint",
+    passes="uint",
+    count="uint",
+    scattered="uint",
+    caustics="uint",
+    light_sums="uint",
+    part="uint",
+    quantum="float",
+)
+StorageBlock("FoundCaustics", "vec4 found_caustics[];")
+
+
+class _Gathered(enum.IntEnum):
+    """Parts of what gathering rays found."""
+
+    ALL = 0
+    DIRECT = 1
+    CAUSTICS = 2
+
+
+Constants("GatheredParts", GATHERED=_Gathered)
+
+
+def _scattered_pixels(sizes: StageSizes) -> int:
+    return band_pixels(sizes) if sizes.has_scattered_light else 0
+
+
+def _caustic_pixels(sizes: StageSizes) -> int:
+    return band_pixels(sizes) if sizes.has_caustics else 0
+
+
+class LightPasses(BufferSet):
+    """Adds to the film's passes what shadow rays, gathering rays and photons add to a band's radiance. Where none of
+    these passes is wanted, there are neither programs nor buffers."""
+
+    remedy = "lower the resolution"
+    _found_direct = StorageBuffer("found direct light", "vec4", _scattered_pixels)
+    _found_caustics = StorageBuffer("found caustics", "vec4", _caustic_pixels)
+    _taken = StorageBuffer("gathered light of passes", "vec4", split_pixels)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._kept = LightSum.of(sizes)
+        self._programs: dict[str, ComputeProgram] = {}
+        if self._kept:
+            names = ("direct", "found", "gathered", "photons")
+            self._programs = {name: library.compute(f"light_passes/{name}.comp") for name in names}
+
+    def clear(self) -> None:
+        """Forget what the band before found."""
+        if LightSum.CAUSTICS in self._kept:
+            self._found_caustics.clear()
+
+    def add_direct_light(
+        self,
+        context: StageContext,
+        importons: Importons,
+        direct_light: DirectLight,
+        film: Film,
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
+        """What DirectLight.add has added, before the paths scatter on."""
+        if not (self._kept and iteration.enters_film) or context.settings.direct_light is not DirectLightMode.RAYS:
+            return
+        with context.timers.stage("light passes"):
+            direct_light.living_rays.run(
+                self._programs["direct"],
+                {
+                    "Visibility": direct_light.visibility.buffer,
+                    "Contributions": direct_light.contributions.buffer,
+                    "LightSplits": direct_light.splits.buffer,
+                    "Importons": importons.importons.buffer,
+                    "FoundCaustics": self._found_caustics.buffer,
+                    **film.pass_blocks(band),
+                },
+                self._parameters(film, band, iteration, segment),
+            )
+
+    def add_indirect_light(
+        self,
+        context: StageContext,
+        importons: Importons,
+        final_gather: FinalGather,
+        sums: SplatSums,
+        film: Film,
+        band: Band,
+        iteration: Iteration,
+        radii: Radii,
+    ) -> None:
+        """What FinalGather.share has added, and what photons have."""
+        if not self._kept:
+            return
+        with context.timers.stage("light passes"):
+            parameters = self._parameters(film, band, iteration) | {"quantum": sums.quantum}
+            self._programs["photons"].run(
+                band.pixel_count, {"LightSums": sums.light_sums, **film.pass_blocks(band)}, parameters
+            )
+            if not context.gathers:
+                return
+            vertices = {
+                "GatheringVertices": final_gather.vertices.buffer,
+                "Importons": importons.importons.buffer,
+            }
+            self._programs["found"].run(
+                band.pixel_count,
+                {
+                    "LightSums": sums.light_sums,
+                    "FoundDirect": self._found_direct.buffer,
+                    "FoundCaustics": self._found_caustics.buffer,
+                    **vertices,
+                },
+                parameters,
+            )
+            for part, found in self._parts(final_gather).items():
+                self._taken.clear()
+                final_gather.share_found(found, self._taken.buffer, band, iteration, radii)
+                self._programs["gathered"].run(
+                    band.pixel_count,
+                    {"Radiances": self._taken.buffer, **vertices, **film.pass_blocks(band)},
+                    parameters | {"part": int(part)},
+                )
+
+    def _parts(self, final_gather: FinalGather) -> dict[_Gathered, moderngl.Buffer]:
+        """What is shared of what gathering rays found."""
+        parts: dict[_Gathered, moderngl.Buffer] = {}
+        if LightSum.SCATTERED in self._kept:
+            parts |= {_Gathered.ALL: final_gather.radiances.buffer, _Gathered.DIRECT: self._found_direct.buffer}
+        if LightSum.CAUSTICS in self._kept:
+            parts[_Gathered.CAUSTICS] = self._found_caustics.buffer
+        return parts
+
+    def _parameters(self, film: Film, band: Band, iteration: Iteration, segment: int = 0) -> dict[str, float]:
+        return {
+            **film.place_parameters(band, iteration),
+            "segment": segment,
+            "count": band.pixel_count,
+            "scattered": LightSum.SCATTERED in self._kept,
+            "caustics": LightSum.CAUSTICS in self._kept,
+            "light_sums": int(self._kept),
+            "part": int(_Gathered.ALL),
+            "quantum": 0.0,
+        }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How camera paths came to where they are, for passes of light: a Scatter and the flags of PathHistory.
+#include <PathHistory>
+
+const uint HISTORY_FIRST = 3u;  // of the Scatter
+
+// Of an importon: as the path came, and as it goes on.
+uint history_word(uint arrived, uint departing) { return arrived | departing << 16u; }
+uint arrived_history(uint word) { return word & 0xffffu; }
+uint departing_history(uint word) { return word >> 16u; }
+
+uint first_scatter(uint history) { return history & HISTORY_FIRST; }
+
+// How a lobe scatters, as Cycles' passes tell it; kind: of the lobe.
+uint lobe_scatter(uint kind, bool transmitted) {
+    if (kind == LOBE_SHEEN) return SCATTER_DIFFUSE;
+    return transmitted ? SCATTER_TRANSMISSION : SCATTER_GLOSSY;
+}
+
+uint scattered_history(uint history, uint scatter) {
+    if (scatter == SCATTER_NONE) return history;
+    uint first = first_scatter(history);
+    bool diffuse = scatter == SCATTER_DIFFUSE, caustic = (history & HISTORY_DIFFUSE) != 0u && !diffuse;
+    return (first == SCATTER_NONE ? scatter : first | HISTORY_AGAIN) | (history & (HISTORY_AGAIN | HISTORY_CAUSTIC))
+         | (diffuse ? HISTORY_DIFFUSE : 0u) | (caustic ? HISTORY_CAUSTIC : 0u);
+}

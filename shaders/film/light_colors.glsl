@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Albedos of a surface by what its lobes do, over which the light that they scatter is handed out: those of Cycles.
+
+#include "materials/albedo_tables.glsl"
+
+// Where a lobe scatters any light, its color must be none to divide by 0.
+const float LEAST_REFLECTANCE = 1e-6;
+
+struct LightColors { vec3 diffuse; vec3 glossy; vec3 transmission; };
+
+vec3 not_nothing(vec3 reflectance) { return max(reflectance, vec3(LEAST_REFLECTANCE)); }
+
+// Energy that single scattering loses is in the weights of those that restore it.
+void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) {
+    float cosine = lobe_cosine(lobe, viewer), roughness = sqrt(lobe.alpha);
+    uint kind = lobe.kind;
+    vec3 reflectance = facet_shares(lobe, cosine).reflectance;
+    if (kind == LOBE_SHEEN) colors.diffuse += lobe.weight * reflectance;
+    else if (kind == LOBE_VELVET) colors.glossy += lobe.weight * reflectance;
+    else if (kind == LOBE_REFRACTION) colors.transmission += lobe.weight;
+    else if (kind == LOBE_SHEET) colors.transmission += lobe.weight * white_albedo(roughness, cosine);
+    else if (kind == LOBE_MIRROR || kind == LOBE_METAL)
+        colors.glossy += lobe.weight * not_nothing(reflectance) * white_albedo(roughness, cosine);
+    else {
+        float white = white_albedo(roughness, cosine);
+        float rise = lobe.ior > 1.0 ? dielectric_grazing_albedo(lobe.ior, roughness, cosine) / white
+                                    : dielectric_interpolation(cosine, lobe.ior);
+        vec3 f0 = kind == LOBE_DIELECTRIC ? lobe.f0
+                : kind == LOBE_GLASS ? lobe.tint * normal_reflectance(lobe.ior) : lobe.tint;
+        float energy = kind == LOBE_GLASS ? max(glass_albedo(lobe.ior, roughness, cosine), 0.05)
+                     : kind == LOBE_DIELECTRIC ? white : 1.0;
+        colors.glossy += lobe.weight * energy * not_nothing(mix(f0, vec3(1.0), rise));
+        if (lobe_transmits(kind)) colors.transmission += lobe.f0 * energy * not_nothing(1.0 - reflectance);
+    }
+}
+
+LightColors light_colors(Closure closure, vec3 viewer) {
+    LightColors colors = LightColors(closure.diffuse + closure.translucent, vec3(0.0), vec3(0.0));
+    for (int k = 0; k < closure_lobes(closure); ++k) {
+        MicrofacetLobe lobe = closure_lobe(closure, k);
+        if (lobe.kind != LOBE_NONE) add_lobe_color(colors, lobe, viewer);
+    }
+    return colors;
+}

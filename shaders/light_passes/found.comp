@@ -1,0 +1,31 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of what gathering rays found: of the world, that nothing but transparency lay in the way of; and caustics.
+
+layout(local_size_x = 64) in;
+
+#include <LightPassParameters>
+#include "common/invocation.glsl"
+#include "common/bsdf/microfacet.glsl"
+#include "common/gathering.glsl"
+#include "common/path_history.glsl"
+layout(std140, binding = 0) uniform Parameters { LightPassParameters parameters; };
+layout(std430, binding = 0) readonly buffer GatheringVertices;
+layout(std430, binding = 1) readonly buffer Importons;
+layout(std430, binding = 2) readonly buffer LightSums;
+#include "light_passes/read_light_sum.glsl"
+layout(std430, binding = 3) writeonly buffer FoundDirect { vec4 found_direct[]; };
+layout(std430, binding = 5) buffer FoundCaustics;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
+    vec3 world = gathering_vertices[index].found;
+    uint history = departing_history(importons[index].history);
+    if (parameters.scattered != 0u)
+        found_direct[index] = vec4((history & HISTORY_AGAIN) == 0u ? world : vec3(0.0), 0.0);
+    if (parameters.caustics == 0u) return;
+    vec3 caustic = read_light_sum(index, CAUSTICS_BY_RAY, parameters.light_sums) * parameters.quantum;
+    if ((history & HISTORY_CAUSTIC) != 0u) caustic += world;
+    found_caustics[index].rgb += caustic;
+}

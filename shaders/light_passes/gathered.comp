@@ -1,0 +1,27 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What pixels took of a part of what their gathering rays and those of their neighbors found, for the passes of light.
+
+layout(local_size_x = 64) in;
+
+#include <LightPassParameters>
+#include <GatheredParts>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { LightPassParameters parameters; };
+#include "light_passes/light_passes.glsl"
+layout(std430, binding = 0) readonly buffer GatheringVertices;
+layout(std430, binding = 1) readonly buffer Importons;
+layout(std430, binding = 2) readonly buffer Radiances;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
+    uint first = first_scatter(departing_history(importons[index].history));
+    vec3 light = radiances[index].rgb;
+    if (parameters.part == GATHERED_CAUSTICS) add_to_pass(PASS_CAUSTICS, index, light);
+    else if (parameters.part == GATHERED_ALL) add_scattered_light(first, true, index, light);
+    else {
+        add_scattered_light(first, false, index, light);
+        add_scattered_light(first, true, index, -light);
+    }
+}

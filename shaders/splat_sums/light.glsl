@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sums of photons again, apart by what passes of light tell apart. Included behind add.glsl or collect.glsl.
+
+#include "common/path_history.glsl"
+#include "splat_sums/light_sums.glsl"
+layout(std430, binding = 9) buffer LightSums;
+
+void add_light_word(uint place, float quanta) {
+    uvec2 added = whole_quanta(quanta);
+    if (added.x > 0u && atomicAdd(light_words[place], added.x) > 0xffffffffu - added.x) added.y += 1u;
+    if (added.y > 0u) atomicAdd(light_words[place + 1u], added.y);
+}
+
+void add_to_light_sum(uint pixel, uint sum, vec3 radiance) {
+    if (!(largest(radiance) > 0.0)) return;
+    uint place = first_light_word(pixel, sum, parameters.light_sums);
+    add_light_word(place, radiance.r * parameters.quanta);
+    add_light_word(place + 2u, radiance.g * parameters.quanta);
+    add_light_word(place + 4u, radiance.b * parameters.quanta);
+}
+
+// What scatters the light of a photon toward the camera path: a diffuse part, and a lobe.
+void add_light(uint pixel, Importon importon, uint photon_flags, Estimate estimate) {
+    uint history = arrived_history(importon.history), first = first_scatter(history);
+    uint scatter = lobe_scatter(unpack_kind(importon.lobe_kind), !estimate.front);
+    bool diffuse_lobe = scatter == SCATTER_DIFFUSE, by_ray = (importon.gathers & GATHERED_BY_RAY) != 0u;
+    vec3 diffuse = diffuse_lobe ? estimate.radiance : estimate.diffuse;
+    vec3 lobe = max(estimate.radiance - diffuse, vec3(0.0));
+    if ((parameters.light_sums & LIGHT_SUMS_SCATTERED) != 0u && !by_ray) {
+        bool indirect = (photon_flags & (PHOTON_SCATTERED_BY_LOBE | PHOTON_INDIRECT)) != 0u;
+        if (first != SCATTER_NONE) add_to_light_sum(pixel, scattered_sum(first, true), estimate.radiance);
+        else {
+            add_to_light_sum(pixel, scattered_sum(SCATTER_DIFFUSE, indirect), diffuse);
+            if (!diffuse_lobe) add_to_light_sum(pixel, scattered_sum(scatter, indirect), lobe);
+        }
+    }
+    if ((parameters.light_sums & LIGHT_SUMS_CAUSTICS) == 0u) return;
+    bool is_caustic = ((history & HISTORY_CAUSTIC) != 0u) || (photon_flags & PHOTON_CAUSTIC) != 0u;
+    vec3 caustic = vec3(0.0);
+    if (is_caustic || (photon_flags & PHOTON_SCATTERED_BY_LOBE) != 0u) caustic += diffuse;
+    if (is_caustic || (history & HISTORY_DIFFUSE) != 0u) caustic += lobe;
+    add_to_light_sum(pixel, by_ray ? CAUSTICS_BY_RAY : CAUSTICS_SUM, caustic);
+}

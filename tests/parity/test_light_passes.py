@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Passes of light beside Cycles' of the same name."""
+
+import bpy
+import numpy as np
+import OpenEXR
+import pytest
+
+from rppm_addon.scene.passes import PASSES, SCATTERED_LIGHT
+
+from .comparison import Tolerance, compare
+from .scenes import (
+    DIFFUSE,
+    FIRST_SEED,
+    GLASS,
+    GLOSSY,
+    PRINCIPLED,
+    ball,
+    camera,
+    exported_scene,
+    light,
+    material,
+    new_scene,
+    place,
+    plane,
+)  # fmt: skip
+
+COLORS = tuple(entry for entry in PASSES if entry.name in {scattered.divided_by for scattered in SCATTERED_LIGHT})
+NOT_FILTERED = 0.01
+"""Pixels of a filter that looks through their middles."""
+INDEX, PANE = 1.3, 12
+"""Of the pane, by whose square Cycles does not divide radiance, and columns of pixels that it is within."""
+CLOSE = Tolerance(mean=0.03, block=0.06, mode=0.03)
+
+
+def surfaces(resolution: int) -> bpy.types.Scene:
+    """Of all kinds: a diffuse floor, glossy and varnished balls, one of glass, a translucent sheet, a rough pane."""
+    scene = new_scene(resolution, world=0.4)
+    plane(1.5, material(DIFFUSE, Color=(0.7, 0.5, 0.3)), place(at=(0.0, 0.0, -0.5)))
+    ball(0.35, material(PRINCIPLED, Base_Color=(0.2, 0.5, 0.8), Roughness=0.4), place(at=(-0.7, 0.0, -0.1)))
+    ball(0.35, material(GLOSSY, Color=(0.9, 0.7, 0.4), Roughness=0.3), place(at=(0.7, 0.0, -0.1)))
+    ball(0.35, material(GLASS, Color=(0.9, 1.0, 0.9), Roughness=0.0, IOR=1.4), place(at=(0.0, 0.1, 0.3)))
+    sheet = material("ShaderNodeBsdfTranslucent", Color=(0.8, 0.6, 0.7))
+    plane(0.4, sheet, place(at=(0.0, 0.9, 0.4), turn=(70.0, 0.0, 0.0)))
+    pane = material("ShaderNodeBsdfRefraction", Color=(0.6, 0.9, 0.7), Roughness=0.5, IOR=INDEX)
+    plane(0.3, pane, place(at=(-0.7, 0.9, 0.6), turn=(70.0, 0.0, 0.0)))
+    light("AREA", 20.0, place(at=(0.3, 0.8, 2.0)), shape="SQUARE", size=1.0)
+    camera((0.0, -3.0, 1.0), (0.0, 0.0, 0.0), 45.0)
+    for entry in (*SCATTERED_LIGHT, *COLORS):
+        setattr(scene.view_layers[0], entry.switch, True)
+    return scene
+
+
+def cycles_passes(scene: bpy.types.Scene, path, samples: int, seed: int = FIRST_SEED) -> dict[str, np.ndarray]:
+    """(H, W, 3) by name, row 0 at the bottom."""
+    scene.render.engine, scene.cycles.samples, scene.cycles.seed = "CYCLES", samples, seed
+    scene.render.filepath = str(path / "cycles.exr")
+    bpy.ops.render.render(write_still=True)
+    parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
+    planes = {name.split(".", 1)[1]: channel.pixels for part in parts for name, channel in part.channels.items()}
+    wanted = (*SCATTERED_LIGHT, *COLORS)
+    return {entry.name: np.stack([planes[layer] for layer in entry.layers], axis=-1)[::-1] for entry in wanted}
+
+
+def test_colors_are_those_of_cycles(renderer, tmp_path):
+    blender_scene = surfaces(48)
+    blender_scene.cycles.pixel_filter_type, blender_scene.cycles.filter_width = "GAUSSIAN", NOT_FILTERED
+    expected = cycles_passes(blender_scene, tmp_path, samples=1)
+    scene = exported_scene()
+    names = tuple(entry.name for entry in COLORS)
+    scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64, passes=names)
+    frame = renderer.render(scene).frame
+    for name in names:
+        same = np.isclose(frame.passes[name], expected[name], rtol=0.01, atol=2e-3).all(axis=-1)
+        assert same.mean() > 0.98, f"{name}: more than edges differ"
+        assert expected[name].std() > 0.0, f"{name}: nothing is shown"
+
+
+@pytest.mark.long
+def test_light_is_that_of_cycles(renderer, tmp_path):
+    blender_scene = surfaces(32)
+    reference = [cycles_passes(blender_scene, tmp_path, 1024, FIRST_SEED + seed) for seed in range(3)]
+    scene = exported_scene()
+    names, mine = tuple(entry.name for entry in (*SCATTERED_LIGHT, *COLORS)), []
+    for seed in range(3):
+        scene.settings = scene.settings.with_values(seed=seed, iterations=64, photons=16384, passes=names)
+        mine.append(renderer.render(scene).frame.passes)
+    for entry in SCATTERED_LIGHT:
+        # Of quotients over the colors of edges, next to nothing is known.
+        both = [
+            np.array([passes[entry.name] * passes[entry.divided_by] for passes in engine], np.float64)
+            for engine in (mine, reference)
+        ]
+        if entry.name == "Transmission Direct":  # which nothing but the pane has
+            both[1] /= INDEX**2
+        elif entry.name == "Transmission Indirect":
+            for pictures in both:
+                pictures[:, :, :PANE] = 0.0
+        compare(entry.name.lower().replace(" ", "_"), *both, CLOSE)
