@@ -53,9 +53,12 @@ void main() {
         CALL
         bool front = dot(wi, up) > 0.0;
         sum += diffuse_scattered(builder.closure, wo, wi, front);
-        for (int k = 0; k < CLOSURE_LOBES; ++k) {
+        for (int k = 0; k < builder.lobes; ++k) {
             MicrofacetLobe lobe = closure_lobe(builder.closure, k);
-            if (lobe.kind != LOBE_NONE) sum += lobe_scattered(builder.closure, lobe, wo, wi, front);
+            float cosine = dot(lobe_normal(lobe), wi);
+            if (lobe.kind == LOBE_NONE || (cosine > 0.0) != front) continue;
+            sum += abs(cosine) * lobe_shadowing(lobe, builder.closure.shading_normal, wi)
+                 * evaluate_lobe(lobe, lobe_normal(lobe), wo, wi);
         }
     }
     vec3 apart = parameters.lamp - point;
