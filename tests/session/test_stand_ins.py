@@ -64,6 +64,16 @@ def test_each_is_replaced_until_its_own_program_is_ready(scene, monkeypatch):
     assert found.replace(scene) is scene and found.count == 0 and not found.due
 
 
+def test_a_scene_seen_from_elsewhere_has_the_same_stand_ins(scene):
+    """Else a picture of them could not be moved with the view."""
+    found, elsewhere = StandIns(Compiling()), dataclasses.replace(scene, camera=dataclasses.replace(scene.camera))
+    assert found.as_shown(scene) is scene
+    shown, moved = found.replace(scene), found.as_shown(elsewhere)
+    assert all(a is b for a, b in zip(shown.materials, moved.materials, strict=True))
+    other = dataclasses.replace(scene, materials=[plain("emission")])
+    assert found.as_shown(other) is other
+
+
 def test_few_programs_are_waited_for_unless_the_stand_ins_are_there(scene):
     library = Compiling()
     found = StandIns(library)

@@ -49,6 +49,12 @@ class StandIns:
         if not self._waited_for:
             return scene
         self._used = True
+        return self.as_shown(scene)
+
+    def as_shown(self, scene: Scene) -> Scene:
+        """The scene with the stand-ins of the last one that ``replace`` was given, where its materials are the same."""
+        if not self._waited_for or any(id(material) not in self._texts for material in scene.materials):
+            return scene
         return dataclasses.replace(scene, materials=[self._shown(material, scene) for material in scene.materials])
 
     def _text(self, material: Material) -> str:

@@ -280,7 +280,7 @@ class Viewing:
         if self._viewport_pictures is None or generation <= self._newest_sent or not due:
             return
         level = self._moved_sharpness.first(math.prod(scene.camera.resolution), MOVE_SECONDS)
-        combined = self._viewport_pictures.move(at_level(scene, level))
+        combined = self._viewport_pictures.move(at_level(self._stand_ins.as_shown(scene), level))
         self._moved_at = time.perf_counter()
         self._move_seconds = self._moved_at - now
         if combined is not None:
