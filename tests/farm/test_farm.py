@@ -102,7 +102,7 @@ def test_a_failing_frame_of_a_chunk_is_told_and_the_others_are_made(tmp_path, rp
     assert status == 1
     assert "Traceback" not in errors
     assert re.search(r"rppm: frame 5 failed on \S+: frame 5: .*radius_maximum", errors)
-    assert f"rppm render {blend_files[0]} --samples 2 --frames 5 -o '{tmp_path}/####.exr'" in errors
+    assert f"rppm render {blend_files[0]} --set rppm.samples=2 --frames 5 -o '{tmp_path}/####.exr'" in errors
     assert "1 of 3 frames failed: frame 5" in errors
     assert [path.name for path in pictures(tmp_path)] == ["0004.exr", "0006.exr"]
     assert all(map(is_whole, pictures(tmp_path)))

@@ -39,11 +39,16 @@ def renderer():
 
 
 def floor(denoising=True, iterations=4, **settings):
-    """64 x 48 pixels, noisy by few photons without direct light by rays."""
+    """64 x 48 pixels, noisy by few photons in narrow disks, without direct light by rays."""
     scene = floor_scene()
     scene.camera = dataclasses.replace(scene.camera, width=64, height=48)
     scene.settings = scene.settings.with_values(
-        iterations=iterations, photons=4096, direct_light="PHOTONS", use_denoising=denoising, **settings
+        iterations=iterations,
+        photons=4096,
+        direct_light="PHOTONS",
+        use_adaptive_radius=False,
+        use_denoising=denoising,
+        **settings,
     )
     return scene
 

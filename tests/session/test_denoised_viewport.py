@@ -2,6 +2,7 @@
 """A viewport that is denoised: from which sample on, while iterations go on, and to its end."""
 
 import dataclasses
+import math
 import threading
 import time
 
@@ -87,6 +88,7 @@ def denoiser():
 def viewport(device, denoiser, monkeypatch):
     """Gives out each iteration's picture in full resolution, and denoises as often as it can."""
     monkeypatch.setattr(viewing_module, "FRAME_SECONDS", 0.0)
+    monkeypatch.setattr(viewing_module, "MOST_PICTURE_TIME", math.inf)
     monkeypatch.setattr(Sharpness, "levels", lambda *_: [1.0])
     monkeypatch.setattr("rppm_addon.session.process.background_denoising.MOST_TIME", 1.0)
     shown = Shown()
@@ -170,6 +172,7 @@ def test_a_failure_is_told_and_noisy_pictures_go_on(viewport, denoiser):
 
 def test_without_a_library(device, monkeypatch):
     monkeypatch.setattr(viewing_module, "FRAME_SECONDS", 0.0)
+    monkeypatch.setattr(viewing_module, "MOST_PICTURE_TIME", math.inf)
     monkeypatch.setattr(Sharpness, "levels", lambda *_: [1.0])
     shown = Shown()
     with device[0].moderngl:
