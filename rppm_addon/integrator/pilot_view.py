@@ -90,7 +90,7 @@ def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> P
 
 
 def _ends_of_gathering_rays(context: StageContext, stages: StageSet, pixels: int, stride: int) -> np.ndarray:
-    """(n,) uint32 triangles that every so manieth of the gathering rays hits that have just set out."""
+    """(n,) uint32 triangles that gathering rays which have just set out hit, one in ``stride`` of them."""
     importons = stages.importons
     rays = importons.rays.read(RAY.dtype, pixels).copy()
     gathers = stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, pixels)["shared_radius"] >= 0.0

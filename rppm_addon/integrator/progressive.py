@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rasterization-based progressive photon mapping: a scene, its film, and the iterations in between."""
 
+import dataclasses
 import time
 from collections.abc import Iterator
 
@@ -98,11 +99,12 @@ class ProgressivePhotonMapper:
         if self.iteration > 1 and learns_after(self.iteration - 1):
             self.learning.learn(self.device_scene.context, self.iteration - 1)
         seed, shadow_rays = self.scene.settings.seed, self._demands.shadow_rays
-        direct_world_flux = self.learning.direct_world_flux(self.device_scene.lights)
-        iteration = Iteration(self.iteration, seed, photons, self._skipped, direct_world_flux, shadow_rays)
+        iteration = Iteration(self.iteration, seed, photons, self._skipped, 0.0, shadow_rays)
         if self.device_scene.moves:
             self.device_scene.move_to(iteration)
             yield
+        direct_world_flux = self.learning.direct_world_flux(self.device_scene.lights)  # as the scene stands now
+        iteration = dataclasses.replace(iteration, direct_world_flux=direct_world_flux)
         yield from iterate(self.device_scene.context, self.stages, self.learning, iteration)
 
     def skip(self, iterations: int) -> Iterator[None]:

@@ -11,6 +11,7 @@ from path_comparison import SEEDS, SHARPNESS, block_errors, blocks, judge
 from support.lobes import image_world, material
 from support.render_states import assert_same_state
 from test_paths_world import picture_by_seed
+from test_shutter import open_for, way
 
 from rppm_addon.integrator import learning
 from rppm_addon.scene import DensityEstimation, Image, Instance, RenderSettings, Scene, World
@@ -133,8 +134,14 @@ def test_flux_of_use_follows_the_guide(mapper):
     assert lights.world_photon_flux == pytest.approx(plain / 3.25, rel=1e-3)
 
 
-def test_it_goes_on_bit_for_bit(mapper, other_mapper):
+@pytest.mark.parametrize("moving", [False, True])
+def test_it_goes_on_bit_for_bit(mapper, other_mapper, moving):
+    """Also where something moves by which the scene grows, and with it the world's photons."""
     scene = room(GRAY, photons=1 << 12)
+    if moving:
+        scene.meshes.append(scenes.rectangle("bird", (3, 3, 3), (4, 3, 3), (4, 4, 3), (3, 4, 3)))
+        scene.instances.append(Instance(len(scene.meshes) - 1, np.eye(4), [1]))
+        scene = open_for(scene, instances=[way(len(scene.instances) - 1, np.eye(4), 4.0, 0.0, 0.0)])
     mapper.build(scene)
     states = []
     for _ in range(5):

@@ -93,7 +93,8 @@ class Cryptomatte(BufferSet):
             return
         for layer, entries in self._layers.items():
             pairs, names = self._buffers[layer]
-            self._upload_names(context, layer)
+            if segment == 0:
+                self._upload_names(context, layer)
             importons.living.run(
                 self._program,
                 {
