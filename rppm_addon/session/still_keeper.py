@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stills that are kept while they are rendered, gone on with later, and rendered in parts."""
 
+import itertools
 import logging
 import time
 from collections.abc import Mapping, Sequence
@@ -146,7 +147,7 @@ def continued_still(path: Path, scene: Scene) -> tuple[StillKeeper, "Continuatio
         keeper = StillKeeper(request)
         return keeper, keeper.begin(scene, scene.settings.iterations)
     except CheckpointError as error:
-        aside = path.with_name(f"{path.stem}_before{path.suffix}")
+        aside = _free_name(path)
         try:
             path.replace(aside)
         except OSError as failure:
@@ -154,6 +155,12 @@ def continued_still(path: Path, scene: Scene) -> tuple[StillKeeper, "Continuatio
         scene.warn(f"the render begins anew, and the checkpoint of before is now {aside.name}: {error}")
         keeper = StillKeeper(request)
         return keeper, keeper.begin(scene, scene.settings.iterations)
+
+
+def _free_name(path: Path) -> Path:
+    """A name beside a file that no other has: NAME_before, NAME_before2, ..."""
+    names = (path.with_name(f"{path.stem}_before{number}{path.suffix}") for number in itertools.chain([""], itertools.count(2)))
+    return next(name for name in names if not name.exists())
 
 
 def still_render(scene: Scene, source: Mapping[str, object]) -> "StillRender":
