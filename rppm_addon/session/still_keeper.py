@@ -159,7 +159,8 @@ def continued_still(path: Path, scene: Scene) -> tuple[StillKeeper, "Continuatio
 
 def _free_name(path: Path) -> Path:
     """A name beside a file that no other has: NAME_before, NAME_before2, ..."""
-    names = (path.with_name(f"{path.stem}_before{number}{path.suffix}") for number in itertools.chain([""], itertools.count(2)))
+    numbers = itertools.chain([""], map(str, itertools.count(2)))
+    names = (path.with_name(f"{path.stem}_before{number}{path.suffix}") for number in numbers)
     return next(name for name in names if not name.exists())
 
 
