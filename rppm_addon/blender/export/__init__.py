@@ -17,6 +17,7 @@ from .lights.world import export_world
 from .motion import MotionExporter, is_blurred, wants_neighbors
 from .objects.assets import export_asset_names
 from .objects.objects import ObjectExporter
+from .omissions import OmissionList, objects_of
 from .report import ExportStopped, Report
 from .settings import export_cubemap_center, export_exposure, export_settings, preview_settings
 from .stamps import export_stamps
@@ -72,6 +73,9 @@ def export_scene(
     blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
     placed = objects.export(depsgraph, identify=blurred or neighbors)
     scene.world, suns = export_world(world_of(depsgraph), context)
+    omissions = OmissionList()
+    omissions.look_at(objects_of(depsgraph))
+    omissions.tell(depsgraph, report)
     if blurred or neighbors:
         placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
     if neighbors and scene.camera.panorama is not None:

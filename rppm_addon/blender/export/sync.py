@@ -18,6 +18,7 @@ from .lights.world import export_world
 from .objects.assets import export_asset_names
 from .objects.object_pass import Placed
 from .objects.objects import ObjectExporter
+from .omissions import OmissionList, objects_of
 from .report import Report
 from .settings import export_cubemap_center, export_exposure, export_settings
 
@@ -110,6 +111,7 @@ class SceneSync:
         self._context = ExportContext(self._report)
         self._images = self._context.images
         self._objects = ObjectExporter(self._context)
+        self._omissions = OmissionList()
         self._placed: Placed | None = None
         self._prepared = 0
         """Instances whose meshes and materials are exported for the next update."""
@@ -138,6 +140,11 @@ class SceneSync:
         if self._placed is None or edits.others or asked or not self._patch(depsgraph, edits):
             unchanged, moved = ({}, {}) if asked else self._known(edits)
             self._placed = self._objects.export(depsgraph, shown, unchanged, moved)
+            self._omissions = OmissionList()
+            self._omissions.look_at(objects_of(depsgraph))
+        else:
+            self._omissions.look_at(edits.objects.values())
+        self._omissions.tell(depsgraph, self._report)
         world, suns = self._world
         settings = export_settings(source, depsgraph.view_layer, self._viewport)
         settings.validate()

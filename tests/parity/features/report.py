@@ -13,6 +13,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 import rppm_addon
+from rppm_addon.blender.export import omissions
 from rppm_addon.session.renderer import Renderer
 
 from ..comparison import OUTPUT
@@ -38,6 +39,24 @@ The target is a mean within 1 % and blocks within 3 %. Rows beyond it say why.
 
 ![Rows of light: RPPM on the left, Cycles on the right](images/compatibility.jpg)
 """
+
+NOT_RENDERED = """
+## Not rendered
+
+What a file may use beside its nodes and RPPM renders in another way, or not at all. Log, panel and statistics name it,
+with the objects that use it. Objects without a surface (hair curves, point clouds, volumes) are named likewise, and so
+are nodes; of these the remarks further down say what stands in.
+
+| used by a file | in RPPM's picture |
+|---|---|
+"""
+
+
+def not_rendered() -> str:
+    """The section of the page that comes of the tables by which exports are searched."""
+    rows = [f"| {entry.title} | {entry.consequence} |\n" for entry in (*omissions.OF_OBJECTS, *omissions.OF_SCENES)]
+    passes = ", ".join(omissions.PASSES.values())
+    return f"{NOT_RENDERED}{''.join(rows)}| Passes: {passes} | not offered; links from them stay black |\n"
 
 
 def run(pattern: str) -> list[tuple[Row, Measurement | None, list[str]]]:
@@ -89,7 +108,7 @@ def sheet(results: list, parts: int, columns: int) -> Image.Image:
 
 def write_page(results: list) -> None:
     """docs/compatibility.md and its picture."""
-    text = [INTRODUCTION]
+    text = [INTRODUCTION, not_rendered()]
     for group in dict.fromkeys(row.group for row, _, _ in results):
         text.append(f"\n## {group}\n\n| feature | | mean | block | FLIP | remark |\n|---|---|--:|--:|--:|---|\n")
         for row, found, wrong in (result for result in results if result[0].group == group):

@@ -19,6 +19,8 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
     report = context.report
     data = light_object.data
     name = light_object.name
+    if data.type == "AREA" and getattr(getattr(data, "cycles", None), "is_portal", False):
+        return None  # it says where the world's light comes in
     power = _power(data, name, report)
     if not power.any():
         return None

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a file may use and no picture of RPPM shows, so that no export leaves it out in silence.
+
+Nodes say so where they are exported (nodes/), as do objects of kinds that have no surface (objects/object_pass.py).
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+import bpy
+
+from .report import Report
+
+_CYCLES_BOUNCES = 1024
+"""Of lights and of the world, Cycles' default: no limit."""
+_NAMES_SHOWN = 3
+
+
+@dataclass(frozen=True)
+class Omission:
+    """Something that Cycles renders and RPPM does not, or does in another way."""
+
+    title: str
+    """As Blender's panels have it."""
+    consequence: str
+    """What the picture shows instead, and the remedy where there is one."""
+    reads: tuple[str, ...]
+    """Paths of the properties that say whether it is used, from the block on."""
+    is_used: Callable[[bpy.types.ID], bool]
+    """By an evaluated object, or by a scene."""
+
+
+def _cycles(block: bpy.types.bpy_struct, name: str, default: object) -> object:
+    """A property of Cycles', which may be switched off, or have none of that name in this version."""
+    return getattr(getattr(block, "cycles", None), name, default)
+
+
+def _has_hair(source: bpy.types.Object) -> bool:
+    return any(
+        system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in source.particle_systems
+    )
+
+
+def _links(source: bpy.types.Object, name: str) -> bool:
+    return getattr(getattr(source, "light_linking", None), name, None) is not None
+
+
+def _is_light(source: bpy.types.Object) -> bool:
+    return source.type == "LIGHT"
+
+
+def _subdivides_adaptively(source: bpy.types.Object) -> bool:
+    modifiers = (modifier for modifier in source.modifiers if modifier.type == "SUBSURF")
+    return bool(_cycles(source, "use_adaptive_subdivision", False)) or any(
+        getattr(modifier, "use_adaptive_subdivision", False) for modifier in modifiers
+    )
+
+
+OF_OBJECTS = (
+    Omission(
+        "Hair of particle systems",
+        "strands are not rendered, only objects and collections that stand for them",
+        ("particle_systems",),
+        _has_hair,
+    ),
+    Omission(
+        "Light Linking",
+        "the light shines on everything",
+        ("light_linking.receiver_collection",),
+        lambda source: _links(source, "receiver_collection"),
+    ),
+    Omission(
+        "Shadow Linking",
+        "everything casts shadows in the light",
+        ("light_linking.blocker_collection",),
+        lambda source: _links(source, "blocker_collection"),
+    ),
+    Omission(
+        "Lights without Cast Shadow",
+        "they cast shadows",
+        ("data.use_shadow", "data.cycles.cast_shadow"),
+        lambda source: (
+            _is_light(source)
+            and not (getattr(source.data, "use_shadow", True) and _cycles(source.data, "cast_shadow", True))
+        ),
+    ),
+    Omission(
+        "Max Bounces of lights",
+        "their light is scattered as often as the scene's Max Bounces say",
+        ("data.cycles.max_bounces",),
+        lambda source: _is_light(source) and _cycles(source.data, "max_bounces", _CYCLES_BOUNCES) < _CYCLES_BOUNCES,
+    ),
+    Omission(
+        "Adaptive Subdivision",
+        "the surface is subdivided as often as its modifier says for renders; raise that",
+        ("cycles.use_adaptive_subdivision", "modifiers"),
+        _subdivides_adaptively,
+    ),
+    Omission(
+        "Shading Offset of the shadow terminator",
+        "shadows may show the faces of a smooth surface; subdivide it",
+        ("shadow_terminator_shading_offset", "cycles.shadow_terminator_offset"),
+        lambda source: (
+            max(
+                getattr(source, "shadow_terminator_shading_offset", 0.0),
+                _cycles(source, "shadow_terminator_offset", 0.0),
+            )
+            > 0.0
+        ),
+    ),
+)
+"""By what an evaluated object uses."""
+
+
+def _world_is_hidden(scene: bpy.types.Scene) -> bool:
+    visibility = getattr(scene.world, "cycles_visibility", None)
+    names = ("camera", "diffuse", "glossy", "transmission")
+    return visibility is not None and not all(getattr(visibility, name, True) for name in names)
+
+
+def _culls(scene: bpy.types.Scene) -> bool:
+    return scene.render.use_simplify and bool(
+        _cycles(scene, "use_camera_cull", False) or _cycles(scene, "use_distance_cull", False)
+    )
+
+
+OF_SCENES = (
+    Omission(
+        "Ray Visibility of the world",
+        "all rays see the world",
+        ("world.cycles_visibility",),
+        _world_is_hidden,
+    ),
+    Omission(
+        "Max Bounces of the world",
+        "its light is scattered as often as the scene's Max Bounces say",
+        ("world.cycles.max_bounces",),
+        lambda scene: (
+            scene.world is not None and _cycles(scene.world, "max_bounces", _CYCLES_BOUNCES) < _CYCLES_BOUNCES
+        ),
+    ),
+    Omission(
+        "Culling (Simplify)",
+        "objects far away or outside the camera's view are rendered",
+        ("render.use_simplify", "cycles.use_camera_cull", "cycles.use_distance_cull"),
+        _culls,
+    ),
+    Omission(
+        "Texture Limit (Simplify)",
+        "images have their full size",
+        ("render.use_simplify", "cycles.texture_limit_render"),
+        lambda scene: scene.render.use_simplify and _cycles(scene, "texture_limit_render", "OFF") != "OFF",
+    ),
+    Omission(
+        "Rolling Shutter",
+        "all of the picture is exposed at once",
+        ("render.use_motion_blur", "cycles.rolling_shutter_type"),
+        lambda scene: scene.render.use_motion_blur and _cycles(scene, "rolling_shutter_type", "NONE") != "NONE",
+    ),
+    Omission(
+        "Transparent Glass",
+        "glass is opaque in a transparent film",
+        ("render.film_transparent", "cycles.film_transparent_glass"),
+        lambda scene: scene.render.film_transparent and bool(_cycles(scene, "film_transparent_glass", False)),
+    ),
+)
+"""By what a scene uses."""
+
+
+PASSES = {
+    "use_pass_shadow": "Shadow",
+    "use_pass_ambient_occlusion": "Ambient Occlusion",
+    "use_pass_subsurface_direct": "Subsurface Direct",
+    "use_pass_subsurface_indirect": "Subsurface Indirect",
+    "use_pass_subsurface_color": "Subsurface Color",
+    "use_pass_grease_pencil": "Grease Pencil",
+    "cycles.use_pass_volume_direct": "Volume Direct",
+    "cycles.use_pass_volume_indirect": "Volume Indirect",
+    "cycles.use_pass_volume_scatter": "Volume Scatter",
+    "cycles.use_pass_volume_transmit": "Volume Transmit",
+    "cycles.use_pass_volume_majorant": "Volume Majorant",
+    "cycles.pass_render_time": "Render Time",
+}
+"""That RPPM has not, by the switch of a view layer."""
+
+
+def _passes_without(layer: bpy.types.ViewLayer) -> list[str]:
+    return [
+        label
+        for path, label in PASSES.items()
+        if (
+            _cycles(layer, path.removeprefix("cycles."), False)
+            if path.startswith("cycles.")
+            else getattr(layer, path, False)
+        )
+    ]
+
+
+class OmissionList:
+    """What of the tables the objects of a depsgraph and its scene use."""
+
+    def __init__(self) -> None:
+        self._users: dict[Omission, dict[int, str]] = {}
+        """By what they use, the names of objects by session_uid."""
+
+    def look_at(self, sources: Iterable[bpy.types.Object]) -> None:
+        """Take note of evaluated objects, anew of those that it knows."""
+        for source in sources:
+            uid = source.original.session_uid
+            for omission in OF_OBJECTS:
+                if omission.is_used(source):
+                    self._users.setdefault(omission, {})[uid] = source.name
+                elif omission in self._users:
+                    self._users[omission].pop(uid, None)
+
+    def tell(self, depsgraph: bpy.types.Depsgraph, report: Report) -> None:
+        """Have the report name what the objects so far, the scene and its view layer use, each once."""
+        scene, without = depsgraph.scene_eval, _passes_without(depsgraph.view_layer_eval)
+        with report.about("omissions"):
+            for omission, users in self._users.items():
+                if users:
+                    report.warn(f"{omission.title} ({_listed(users.values())}): {omission.consequence}")
+            for omission in OF_SCENES:
+                if omission.is_used(scene):
+                    report.warn(f"{omission.title}: {omission.consequence}")
+            if without:
+                report.warn(f"Passes that RPPM does not have: {', '.join(without)}; links from them stay black")
+
+
+def objects_of(depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Object]:
+    """The evaluated objects that a depsgraph holds, what is multiplied included."""
+    return (block for block in depsgraph.ids if isinstance(block, bpy.types.Object))
+
+
+def _listed(names: Iterable[str]) -> str:
+    ordered = sorted(names)
+    shown = ", ".join(f'"{name}"' for name in ordered[:_NAMES_SHOWN])
+    more = len(ordered) - _NAMES_SHOWN
+    return f"{shown} and {more} more" if more > 0 else shown

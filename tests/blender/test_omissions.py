@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nothing that a file uses is left out in silence."""
+
+import re
+from pathlib import Path
+
+import bpy
+import pytest
+from blender_scenes import add_light, add_mesh, export
+from rna_without_bearing import WITHOUT_BEARING
+
+import rppm_addon.blender
+from rppm_addon.blender.export import omissions
+from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.scene.passes import PASSES
+
+
+def warnings_about(scene, title):
+    return [text for text in export(scene).warnings if text.startswith(title)]
+
+
+@pytest.fixture
+def lit(scene):
+    """A scene with a mesh and a light."""
+    add_mesh(scene)
+    add_light(scene, "AREA", energy=10.0)
+    return scene
+
+
+def the(scene, kind):
+    return next(found for found in scene.objects if found.type == kind)
+
+
+def add_hair(scene):
+    the(scene, "MESH").modifiers.new("hair", "PARTICLE_SYSTEM")
+    the(scene, "MESH").particle_systems[0].settings.type = "HAIR"
+
+
+def link_light(member):
+    def use(scene):
+        setattr(the(scene, "LIGHT").light_linking, member, bpy.data.collections.new("few"))
+
+    return use
+
+
+def hide_world(scene):
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.cycles_visibility.glossy = False
+
+
+def limit_world(scene):
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.cycles.max_bounces = 2
+
+
+def limit_light(scene):
+    set_of_cycles(the(scene, "LIGHT").data, "max_bounces", 3)
+
+
+def set_of_cycles(block, name, value):
+    """As the window does: Python's own changes of what add-ons add are not told to depsgraphs."""
+    setattr(block.cycles, name, value)
+    block.update_tag()
+
+
+def simplify(name, value):
+    def use(scene):
+        scene.render.use_simplify = True
+        setattr(scene.cycles, name, value)
+
+    return use
+
+
+def subdivide(scene):
+    modifier = the(scene, "MESH").modifiers.new("smooth", "SUBSURF")
+    owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else the(scene, "MESH").cycles
+    owner.use_adaptive_subdivision = True
+
+
+def roll(scene):
+    scene.render.use_motion_blur = True
+    scene.cycles.rolling_shutter_type = "TOP"
+
+
+def see_through(scene):
+    scene.render.film_transparent = scene.cycles.film_transparent_glass = True
+
+
+USES = {
+    "Hair of particle systems": add_hair,
+    "Light Linking": link_light("receiver_collection"),
+    "Shadow Linking": link_light("blocker_collection"),
+    "Lights without Cast Shadow": lambda scene: setattr(the(scene, "LIGHT").data, "use_shadow", False),
+    "Max Bounces of lights": limit_light,
+    "Adaptive Subdivision": subdivide,
+    "Shading Offset of the shadow terminator": lambda scene: setattr(
+        the(scene, "MESH"), "shadow_terminator_shading_offset", 0.2
+    ),
+    "Ray Visibility of the world": hide_world,
+    "Max Bounces of the world": limit_world,
+    "Culling (Simplify)": simplify("use_camera_cull", True),
+    "Texture Limit (Simplify)": simplify("texture_limit_render", "512"),
+    "Rolling Shutter": roll,
+    "Transparent Glass": see_through,
+}
+ALL = (*omissions.OF_OBJECTS, *omissions.OF_SCENES)
+
+
+@pytest.mark.parametrize("omission", ALL, ids=lambda omission: omission.title)
+def test_what_is_used_is_named_once(lit, omission):
+    assert not warnings_about(lit, omission.title)
+    USES[omission.title](lit)
+    (text,) = warnings_about(lit, omission.title)
+    assert omission.consequence in text
+
+
+def test_many_objects_make_one_line(scene):
+    for _ in range(5):
+        add_light(scene, "POINT").data.use_shadow = False
+    (text,) = warnings_about(scene, "Lights without Cast Shadow")
+    assert '"Light", "Light.001", "Light.002" and 2 more' in text
+
+
+def test_passes_that_are_missing(lit):
+    lit.view_layers[0].use_pass_shadow = lit.view_layers[0].cycles.pass_render_time = True
+    (text,) = warnings_about(lit, "Passes that RPPM does not have")
+    assert "Shadow, Render Time" in text
+
+
+def test_portals_give_no_light(lit):
+    assert len(export(lit).lights) == 1
+    set_of_cycles(the(lit, "LIGHT").data, "is_portal", True)
+    assert not export(lit).lights
+
+
+def test_a_viewport_follows_edits(lit):
+    sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
+    camera = export(lit).camera
+    title = "Lights without Cast Shadow"
+
+    def told():
+        depsgraph.update()
+        return any(text.startswith(title) for text in sync.update(depsgraph, camera).warnings)
+
+    assert not told()
+    the(lit, "LIGHT").data.use_shadow = False
+    assert told()
+    the(lit, "LIGHT").data.use_shadow = True
+    assert not told()
+
+
+def described_types():
+    """By the names of WITHOUT_BEARING, the RNA of what users set."""
+    scene = bpy.context.scene
+    found = {name: getattr(bpy.types, name).bl_rna for name in WITHOUT_BEARING if "." not in name}
+    world, light = bpy.data.worlds.new("World"), bpy.data.lights.new("Light", "AREA")
+    source, material = bpy.data.objects.new("Object", None), bpy.data.materials.new("Material")
+    layer = scene.view_layers[0]
+    owners = {"scene": scene, "world": world, "light": light, "object": source, "material": material}
+    owners["view_layer"] = layer
+    for name in WITHOUT_BEARING:
+        if "." in name:
+            owner, member = name.split(".")
+            found[name] = getattr(owners[owner], member).bl_rna
+    return found
+
+
+def test_each_property_is_read_or_named_or_without_bearing(scene):
+    """A property that comes with a new Blender fails here until someone decides what it is."""
+    folder = Path(rppm_addon.blender.__file__).parent
+    code = "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder.rglob("*.py")))
+    read = set(re.findall(r"\w+", code)) | {entry.switch for entry in PASSES}
+    of_all = {prop.identifier for prop in bpy.types.ID.bl_rna.properties}
+    unknown = []
+    for name, rna in described_types().items():
+        properties = {prop.identifier for prop in rna.properties} - of_all - {"rna_type", "name", "rppm"}
+        unknown += [f"{name}.{prop}" for prop in sorted(properties - read - set(WITHOUT_BEARING[name].split()))]
+    assert not unknown
+
+
+def test_tables_read_what_there_is(scene):
+    """Paths of the tables that no longer lead anywhere are found out."""
+    names = {prop.identifier for rna in described_types().values() for prop in rna.properties}
+    for omission in ALL:
+        assert any(path.rsplit(".", 1)[-1] in names for path in omission.reads), omission.title
+
+
+def test_the_page_lists_them():
+    page = (Path(__file__).parents[2] / "docs" / "compatibility.md").read_text(encoding="utf-8")
+    for omission in ALL:
+        assert f"| {omission.title} | {omission.consequence} |" in page
+    assert all(label in page for label in omissions.PASSES.values())
