@@ -5,6 +5,7 @@ import bpy
 
 from ..scene.passes import COMBINED, NOISY_IMAGE, aov_passes
 from . import viewport
+from .baking import bake
 from .export.passes import aovs_of_layer, passes_of_layer
 from .final import render_final
 
@@ -35,6 +36,18 @@ class RppmRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:
         """Render a view layer to its end: F12, and previews of materials."""
         render_final(self, depsgraph)
+
+    def bake(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        obj: bpy.types.Object,
+        pass_type: str,
+        pass_filter: int,
+        width: int,
+        height: int,
+    ) -> None:
+        """Bake what of a texture is on an object."""
+        bake(self, depsgraph, obj, pass_type, pass_filter, width, height)
 
     def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Something in the scene has changed."""

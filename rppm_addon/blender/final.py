@@ -65,7 +65,7 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
 def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> None:
     scene = _export(engine, depsgraph, observer)
     told = list(scene.warnings)
-    _report_warnings(engine, told)
+    report_warnings(engine, told)
     if not observer.on_scene(scene):
         return
     engine.update_stats("", "Preparing the graphics device")
@@ -73,7 +73,7 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     checkpoint = checkpoint_of(engine, depsgraph) if type(observer) is RenderObserver else None
     job = _FinalJob(engine, scene, depsgraph, observer, checkpoint)
     try:
-        result = _render_scene(engine, scene, job)
+        result = render_scene(engine, scene, job)
         job.finish_keeping()
         job.show(result.frame)
     except BaseException:
@@ -84,7 +84,7 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
         _stamp(engine, scene, depsgraph.view_layer_eval.name, result.statistics)
     # The statistics repeat the scene's warnings, which have been reported.
     found = dict.fromkeys((*result.statistics.warnings, *scene.warnings))
-    _report_warnings(engine, [text for text in found if text not in told])
+    report_warnings(engine, [text for text in found if text not in told])
     if result.statistics.iterations and not engine.is_preview:
         record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
@@ -175,7 +175,8 @@ def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
     )
 
 
-def _render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) -> "RenderResult":
+def render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) -> "RenderResult":
+    """Have the scene rendered where this Blender renders. Raises the errors of scene/errors.py."""
     if renderer_process.is_used():
         kind = SessionKind.PREVIEW if engine.is_preview else SessionKind.FINAL
         return renderer_process.render(scene, job, kind)
@@ -194,7 +195,8 @@ def _fail(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observ
     observer.on_error(text)
 
 
-def _report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> None:
+def report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> None:
+    """Show the user the first of them."""
     for warning in warnings[:WARNINGS_SHOWN]:
         engine.report({"WARNING"}, warning)
     more = len(warnings) - WARNINGS_SHOWN

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is to be rendered, as plain NumPy dataclasses; no GL, no Blender."""
 
-from .camera import Aperture, Camera, Panorama, PanoramaKind
+from .camera import Aperture, Camera, Panorama, PanoramaKind, Texels
 from .images import Image
 from .lights import Light, LightKind, Mist, World
 from .materials import Material
@@ -44,6 +44,7 @@ __all__ = [
     "Scene",
     "ShaderNode",
     "Shutter",
+    "Texels",
     "World",
     "load_scene",
     "save_scene",

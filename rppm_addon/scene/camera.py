@@ -65,6 +65,28 @@ class Aperture:
 
 
 @dataclass
+class Texels:
+    """Places on a mesh of which a picture is taken, in place of what lies before a camera: a texture that is baked.
+
+    Arrays have a row for each of the camera's region, row 0 at the bottom.
+    """
+
+    instance: int
+    """Index into Scene.instances."""
+    triangles: np.ndarray
+    """(height, width) int32, the triangle of the instance's mesh; -1 is none."""
+    barycentrics: np.ndarray
+    """(height, width, 2) float32, weights of the triangle's second and third corner."""
+    differentials: np.ndarray
+    """(height, width, 4) float32, what these change by over half a texel: the second's to the right and upward, then
+    the third's. All 0: not a texel but a vertex."""
+    viewer: tuple[float, float, float, float] | None = None
+    """From where surfaces are seen, meters and 1; or the direction there, and 0. None is straight from above."""
+    see_environment: bool = False
+    """Whether what lies behind everything is pictured, as seen from the origin in the directions of the places."""
+
+
+@dataclass
 class Camera:
     """A camera that looks along its local -Z axis, Y up.
 
@@ -89,6 +111,8 @@ class Camera:
     """None is a perspective or orthographic camera."""
     aperture: Aperture | None = None
     """None is a pinhole: everything is in focus."""
+    texels: Texels | None = None
+    """What is pictured in place of what lies before the camera; the window is then in texels, and orthographic."""
 
     @property
     def pixel_size(self) -> float:

@@ -53,7 +53,7 @@ def test_a_final_render_has_both_pictures(lit, tmp_path):
 
 def test_without_a_library_it_renders_and_warns(lit, tmp_path, without_libraries, monkeypatch):
     said = []
-    monkeypatch.setattr("rppm_addon.blender.final._report_warnings", lambda engine, texts: said.extend(texts))
+    monkeypatch.setattr("rppm_addon.blender.final.report_warnings", lambda engine, texts: said.extend(texts))
     layers = render_exr(noisy_scene(lit), tmp_path)
     np.testing.assert_array_equal(layers["ViewLayer.Combined"], layers["ViewLayer.Noisy Image"])
     assert any("the picture is not denoised" in text and "pyoidn" in text for text in said)

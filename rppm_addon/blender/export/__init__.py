@@ -8,6 +8,8 @@ import bpy
 from ...scene import Scene
 from ...scene.errors import SceneError
 from ...scene.garbage import collector_paused
+from ...session.bake_passes import BakePass
+from .baking import BakePixels, bake_settings, camera_beside, look_at_texels, seen_from
 from .camera.camera import export_camera
 from .camera.view import export_view
 from .context import ExportContext
@@ -16,6 +18,7 @@ from .layers import world_of
 from .lights.world import export_world
 from .motion import MotionExporter, is_blurred, wants_neighbors
 from .objects.assets import export_asset_names
+from .objects.object_pass import Placed
 from .objects.objects import ObjectExporter
 from .omissions import OmissionList, objects_of
 from .report import ExportStopped, Report
@@ -24,11 +27,13 @@ from .stamps import export_stamps
 from .sync import ExportProgress, SceneSync
 
 __all__ = [
+    "BakePixels",
     "ExportProgress",
     "ExportStopped",
     "FrameExporter",
     "SceneError",
     "SceneSync",
+    "export_baked_scene",
     "export_exposure",
     "export_scene",
     "export_settings",
@@ -49,7 +54,59 @@ def export_scene(
     engine: shows the progress and is asked for test_break; should_stop: asked as well.
     Raises SceneError when there is nothing to render from, ExportStopped when told to stop.
     """
+    context = _context_of(depsgraph, engine, should_stop)
+    report, source = context.report, depsgraph.scene_eval
+    scene = Scene(camera=export_camera(source, depsgraph, report))
+    scene.settings = export_settings(source, depsgraph.view_layer)
+    if engine is not None and engine.is_preview:
+        scene.settings = preview_settings(scene.settings)
+    scene.settings.validate()
+    objects = ObjectExporter(context)
+    blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
+    placed = objects.export(depsgraph, identify=blurred or neighbors)
+    scene.world, suns = export_world(world_of(depsgraph), context)
+    _tell_omissions(depsgraph, context.report)
+    if blurred or neighbors:
+        placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
+    if neighbors and scene.camera.panorama is not None:
+        report.warn("the pass Vector is left out: it is not rendered for panoramas")
+    scene.lights = placed.lights + suns
+    _fill(scene, depsgraph, context, objects, placed)
+    return scene
 
+
+@collector_paused()
+def export_baked_scene(
+    depsgraph: bpy.types.Depsgraph,
+    engine: bpy.types.RenderEngine,
+    baked: bpy.types.Object,
+    bake_pass: BakePass,
+    pixels: BakePixels,
+) -> Scene:
+    """Everything that a texture to be baked of a mesh object needs, copied out of Blender; nothing is blurred.
+
+    Raises SceneError where the object is not rendered, ExportStopped when the user wants no more.
+    """
+    context = _context_of(depsgraph, engine)
+    source = depsgraph.scene_eval
+    scene = Scene(camera=camera_beside(baked, depsgraph, context.report))
+    scene.settings = bake_settings(export_settings(source, depsgraph.view_layer), bake_pass)
+    scene.settings.validate()
+    objects = ObjectExporter(context)
+    placed = objects.export(depsgraph, identify=True)
+    scene.world, suns = export_world(world_of(depsgraph), context)
+    _tell_omissions(depsgraph, context.report)
+    scene.lights = placed.lights + suns
+    _fill(scene, depsgraph, context, objects, placed)
+    look_at_texels(scene, baked, placed, pixels, seen_from(source, scene.camera), bake_pass)
+    return scene
+
+
+def _context_of(
+    depsgraph: bpy.types.Depsgraph,
+    engine: bpy.types.RenderEngine | None,
+    should_stop: Callable[[], bool] | None = None,
+) -> ExportContext:
     def stop() -> bool:
         return (engine is not None and engine.test_break()) or (should_stop is not None and should_stop())
 
@@ -59,35 +116,30 @@ def export_scene(
 
     report = Report(stop, show)
     report.progress("Exporting the scene")
-    source = depsgraph.scene_eval
     context = ExportContext(report)
     context.read_from(depsgraph)
-    scene = Scene(camera=export_camera(source, depsgraph, report))
-    scene.settings = export_settings(source, depsgraph.view_layer)
-    if engine is not None and engine.is_preview:
-        scene.settings = preview_settings(scene.settings)
-    scene.settings.validate()
-    scene.cubemap_center = export_cubemap_center(depsgraph)
-    scene.exposure = export_exposure(source)
-    objects = ObjectExporter(context)
-    blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
-    placed = objects.export(depsgraph, identify=blurred or neighbors)
-    scene.world, suns = export_world(world_of(depsgraph), context)
+    return context
+
+
+def _tell_omissions(depsgraph: bpy.types.Depsgraph, report: Report) -> None:
     omissions = OmissionList()
     omissions.look_at(objects_of(depsgraph))
     omissions.tell(depsgraph, report)
-    if blurred or neighbors:
-        placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
-    if neighbors and scene.camera.panorama is not None:
-        report.warn("the pass Vector is left out: it is not rendered for panoramas")
+
+
+def _fill(
+    scene: Scene, depsgraph: bpy.types.Depsgraph, context: ExportContext, objects: ObjectExporter, placed: Placed
+) -> None:
+    """Give a scene what was exported for it, but for its lights."""
+    source = depsgraph.scene_eval
+    scene.cubemap_center = export_cubemap_center(depsgraph)
+    scene.exposure = export_exposure(source)
     scene.meshes, scene.instances, scene.materials = (
         objects.meshes.meshes,
         placed.instances,
         objects.materials.materials,
     )
-    scene.lights = placed.lights + suns
     scene.images = context.images.images
     scene.asset_names = export_asset_names(depsgraph, scene.settings)
     scene.stamps = export_stamps(source)
-    scene.warnings = report.warnings
-    return scene
+    scene.warnings = context.report.warnings

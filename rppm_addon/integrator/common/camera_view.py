@@ -12,7 +12,7 @@ from .records import CAMERA_VIEW, PROJECTIONS
 
 def is_rasterized(camera: Camera) -> bool:
     """Whether a projection onto a plane from one point, or of parallel rays, shows what the camera sees."""
-    return camera.panorama is None and camera.aperture is None
+    return camera.panorama is None and camera.aperture is None and camera.texels is None
 
 
 def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, float]) -> np.ndarray:

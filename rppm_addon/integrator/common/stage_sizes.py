@@ -25,6 +25,8 @@ class StageSizes:
     """Whether objects catch shadows."""
     rasterizes_camera: bool = True
     """Whether the camera's first hits are rasterized."""
+    has_texels: bool = False
+    """Whether they are given, as places on a mesh."""
     measures_noise: bool = False
     """Whether the picture ends with its noise."""
     is_filtered: bool = False
@@ -45,6 +47,7 @@ class StageSizes:
             passes,
             any(instance.shadow_catcher for instance in scene.instances),
             is_rasterized(scene.camera),
+            scene.camera.texels is not None,
             scene.settings.use_adaptive_sampling,
             demands.is_filtered,
         )

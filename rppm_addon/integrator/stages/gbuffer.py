@@ -51,8 +51,13 @@ def filter_offsets(
 
 
 def jittered_view(camera: Camera, settings: RenderSettings, band: Band, iteration: Iteration) -> np.ndarray:
-    """CAMERA_VIEW record of a band of the camera's region, with the iteration's subpixel offset."""
-    offset = filter_offsets(iteration.number, settings.filter_width, iteration.seed, settings.pixel_filter_type)
+    """CAMERA_VIEW record of a band of the camera's region, with the iteration's subpixel offset.
+
+    Texels have offsets of their own.
+    """
+    offset = 0.0, 0.0
+    if camera.texels is None:
+        offset = filter_offsets(iteration.number, settings.filter_width, iteration.seed, settings.pixel_filter_type)
     return camera_view(camera, band.first_row, band.rows, offset)
 
 

@@ -25,6 +25,7 @@ from .noise_estimate import NoiseEstimate
 from .photons import Photons
 from .primary_rays import PrimaryRays
 from .shadow_catcher import ShadowCatcher
+from .texel_hits import TexelHits
 
 GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "photon paths": (Photons,),
@@ -36,6 +37,12 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "passes": (Film, LightPasses, CausticRadii, NoiseEstimate),
 }
 """How memory is reported: stages by group."""
+
+
+def _camera_hits(sizes: StageSizes) -> type[CameraHits]:
+    if sizes.has_texels:
+        return TexelHits
+    return GBuffer if sizes.rasterizes_camera else PrimaryRays
 
 
 class StageSet(BufferSet):
@@ -59,8 +66,7 @@ class StageSet(BufferSet):
         self._sizes = StageSizes.of(scene, demands)
         super().__init__(context, library, self._sizes)
         self.bands = self._sizes.bands
-        by_raster = self._sizes.rasterizes_camera
-        self.camera_hits: CameraHits = self.own((GBuffer if by_raster else PrimaryRays)(context, library, self._sizes))
+        self.camera_hits: CameraHits = self.own(_camera_hits(self._sizes)(context, library, self._sizes))
 
     def fits(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> bool:
         """Whether a scene can be rendered with these."""

@@ -1,0 +1,86 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texels that are baked become rays, hits and fresh camera paths. As in Cycles, a surface is seen from straight above,
+// or from the camera, but never from behind.
+
+layout(local_size_x = 64) in;
+
+#include <TexelParameters>
+#include <Texel>
+#include "common/invocation.glsl"
+#include "common/geometry.glsl"
+#include "common/low_discrepancy.glsl"
+#include "common/camera_path.glsl"
+layout(std140, binding = 0) uniform Parameters { TexelParameters parameters; };
+layout(std430, binding = 0) readonly buffer Texels { Texel texels[]; };
+layout(std430, binding = 1) readonly buffer Triangles;
+layout(std430, binding = 2) readonly buffer Attributes;
+layout(std430, binding = 3) writeonly buffer Rays;
+layout(std430, binding = 4) writeonly buffer Hits;
+layout(std430, binding = 5) writeonly buffer CameraPaths;
+
+// The least cosine to the shading normal by which surfaces are seen from a camera: those that turn away from it would
+// be black. Cycles' own.
+const float LEAST_FACING = 0.2, ABOVE = 1e-5;
+
+// Back from beyond either end.
+float mirrored(float x, float end) {
+    float turned = mod(abs(x), 2.0 * max(end, 1e-12));
+    return turned > end ? 2.0 * end - turned : turned;
+}
+
+// The texel's point of this iteration; the first is its middle.
+vec2 barycentrics(Texel texel, uint index) {
+    vec2 b = vec2(texel.b1, texel.b2);
+    if (parameters.iteration <= 1u) return b;
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, 0u, parameters.seed, STAGE_CAMERA << 24u));
+    vec2 at = scrambled_sobol(parameters.iteration - 1u, choices) - 0.5;
+    b += vec2(dot(texel.differentials.xy, at), dot(texel.differentials.zw, at));
+    b.x = mirrored(b.x, 1.0);
+    b.y = mirrored(b.y, 1.0 - b.x);
+    return b;
+}
+
+vec3 seen_from(vec3 position, vec3 shading, vec3 geometric) {
+    if (parameters.straight_down != 0u) return shading;
+    vec3 direction = normalize(parameters.viewer.xyz - parameters.viewer.w * position);
+    float facing = dot(direction, shading);
+    if (facing <= LEAST_FACING) direction = normalize(direction - shading * (facing - LEAST_FACING));
+    if (facing <= 0.0) direction = normalize(mix(direction, shading, -facing));
+    float above = dot(direction, geometric);
+    return above <= ABOVE ? normalize(direction - geometric * (above - ABOVE)) : direction;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    Texel texel = texels[index];
+    bool known = texel.triangle != NO_TRIANGLE;
+    uint triangle = known ? texel.triangle : 0u;
+    vec2 b = barycentrics(texel, index);
+    vec3 v0 = triangle_vertices[3u * triangle].xyz;
+    vec3 e1 = triangle_vertices[3u * triangle + 1u].xyz - v0, e2 = triangle_vertices[3u * triangle + 2u].xyz - v0;
+    vec3 position = v0 + b.x * e1 + b.y * e2, face = cross(e1, e2);
+    if (parameters.see_environment != 0u) {
+        rays[index] = Ray(vec3(0.0), NO_TRIANGLE, normalize(position), known ? INFINITY_DISTANCE : 0.0);
+        hits[index] = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
+        camera_paths[index] = CameraPath(vec3(1.0), 0.0, 0.0, 0.0, 0.0, PATH_STRAIGHT);
+        return;
+    }
+    vec3 geometric = face / max(length(face), 1e-30);
+    TriangleAttributes corners = attributes[triangle];
+    vec3 shading = (1.0 - b.x - b.y) * unpack_unit_vector(corners.normal0) + b.x * unpack_unit_vector(corners.normal1)
+                 + b.y * unpack_unit_vector(corners.normal2);
+    shading = length(shading) > 1e-6 ? normalize(shading) : geometric;
+    vec3 above = seen_from(position, shading, geometric);
+    // The differentials are those of half a texel. A vertex stands for its share of the triangle.
+    vec3 across = texel.differentials.x * e1 + texel.differentials.z * e2;
+    vec3 upward = texel.differentials.y * e1 + texel.differentials.w * e2;
+    bool is_vertex = texel.differentials == vec4(0.0);
+    float area = is_vertex ? length(face) / 6.0 : 4.0 * length(cross(across, upward));
+    // On the surface itself: no light lies before it.
+    rays[index] = Ray(position, NO_TRIANGLE, -above, known ? INFINITY_DISTANCE : 0.0);
+    hits[index] = Hit(texel.triangle, b.x, b.y, 0.0);
+    float facing = max(abs(dot(geometric, above)), 1e-4);
+    camera_paths[index] = CameraPath(vec3(1.0), 0.0, 0.0, 0.0, sqrt(area * facing / PI), PATH_STRAIGHT);
+}
