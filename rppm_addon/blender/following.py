@@ -42,6 +42,12 @@ def _on_end(scene: bpy.types.Scene, *_: object) -> None:
 
 
 @persistent
+def _on_baked(*_: object) -> None:
+    """A bake is complete or cancelled. Blender tells of the object."""
+    _on_end(bpy.context.scene)
+
+
+@persistent
 def _on_load(*_: object) -> None:
     forget()
 
@@ -49,6 +55,8 @@ def _on_load(*_: object) -> None:
 _HANDLERS = (
     (bpy.app.handlers.render_complete, _on_end),
     (bpy.app.handlers.render_cancel, _on_end),
+    (bpy.app.handlers.object_bake_complete, _on_baked),
+    (bpy.app.handlers.object_bake_cancel, _on_baked),
     (bpy.app.handlers.load_post, _on_load),
 )
 

@@ -15,6 +15,7 @@ from ..scene import RenderSettings
 from ..scene.passes import COMBINED, FILM_PASSES, PASSES
 from ..scene.setting_info import SettingInfo, settings_of
 from ..scene.settings import MOST_PHOTONS, DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
+from ..session.bake_passes import BAKE_TYPES
 
 
 def _edited(owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -143,6 +144,12 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
             name="Pause Preview",
             description="Hold the picture of all rendered viewports and leave the graphics device alone",
             default=False,
+        ),
+        "bake_type": EnumProperty(
+            name="Bake Type",
+            description="What to bake",
+            items=[(kind, label, "") for kind, label in BAKE_TYPES.items()],
+            default="COMBINED",
         ),
         "use_animated_seed": BoolProperty(
             name="Use Animated Seed",

@@ -38,8 +38,14 @@ _SINGLE = {
 }
 """By type, the pass that is handed out as it is."""
 _COMBINED = "COMBINED"
-BAKE_TYPES = (_COMBINED, *_SINGLE, *(name.upper() for name in _LOBES))
-"""Those that can be baked, by Blender's names."""
+BAKE_TYPES = {
+    _COMBINED: "Combined",
+    **{kind: kind.title() for kind in _SINGLE},
+    "UV": "UV",
+    "EMIT": "Emission",
+    **{name.upper(): name for name in _LOBES},
+}
+"""Those that can be baked, by Blender's names, and how Cycles labels them."""
 ENVIRONMENT = "ENVIRONMENT"
 
 
@@ -56,8 +62,8 @@ class BakePass:
     def of_blender(cls, pass_type: str, pass_filter: int) -> "BakePass":
         """What RenderEngine.bake is called with. Raises SettingsError for what is not offered."""
         if pass_type not in BAKE_TYPES:
-            offered = ", ".join(name.title() for name in BAKE_TYPES)
-            raise SettingsError(f"{pass_type.title()} cannot be baked by RPPM; choose one of {offered}, or use Cycles")
+            offered = ", ".join(BAKE_TYPES.values())
+            raise SettingsError(f"RPPM does not bake the type {pass_type}; choose one of {offered}, or bake with Cycles")
         return cls(pass_type, BakeFilter(pass_filter & (_WHOLE | BakeFilter.COLOR)))
 
     @property

@@ -36,6 +36,11 @@ COUNTERPARTS = {
     "CYCLES_PT_performance_presets": "RPPM_PT_presets",
     "CYCLES_PT_sampling_presets": "RPPM_PT_presets",
     "CYCLES_PT_viewport_sampling_presets": "RPPM_PT_presets",
+    "CYCLES_RENDER_PT_bake": "RPPM_PT_bake",
+    "CYCLES_RENDER_PT_bake_influence": "RPPM_PT_bake_influence",
+    "CYCLES_RENDER_PT_bake_output": "RPPM_PT_bake_output",
+    "CYCLES_RENDER_PT_bake_output_margin": "RPPM_PT_bake_output_margin",
+    "CYCLES_RENDER_PT_bake_selected_to_active": "RPPM_PT_bake_selected_to_active",
     "CYCLES_RENDER_PT_film": "RPPM_PT_film",
     "CYCLES_RENDER_PT_film_pixel_filter": "RPPM_PT_film",
     "CYCLES_RENDER_PT_film_transparency": "RPPM_PT_film",
@@ -107,7 +112,6 @@ OLDER = {
 }
 """Panels that Cycles had before Blender 5, and why RPPM has nothing for them."""
 EXCLUDED_BEGINNINGS = {
-    "CYCLES_RENDER_PT_bake": "textures are not baked",
     "CYCLES_RENDER_PT_performance_compositor": "is the compositor's, which needs no engine",
     "CYCLES_RENDER_PT_sampling_path_guiding": OF_CYCLES,
     "CYCLES_RENDER_PT_sampling_render_denoise": f"denoising: {NOT_RENDERED}",

@@ -347,3 +347,28 @@ def test_switches_of_settings_that_may_be_automatic(scene):
     scene.rppm_switches.photons = True
     assert scene.rppm.photons == 777
     export_settings(scene).validate()
+
+
+@pytest.mark.parametrize("kind", ["COMBINED", "NORMAL", "DIFFUSE", "UV"])
+def test_panels_of_baking_follow_the_type(scene, kind):
+    scene.rppm.bake_type = kind
+    records = drawn_panels(PANELS, context_of(scene))
+    (button,) = (button for button in records["RPPM_PT_bake"].operators if button._identifier == "object.bake")
+    assert button.type == kind
+    influence = records["RPPM_PT_bake_influence"].properties if kind != "UV" else []
+    assert ("use_pass_emit" in influence, "use_pass_color" in influence, "normal_space" in influence) == (
+        kind == "COMBINED",
+        kind == "DIFFUSE",
+        kind == "NORMAL",
+    )
+    assert ("view_from" in records["RPPM_PT_bake"].properties) == (kind in {"COMBINED", "DIFFUSE"})
+    assert ("margin_type" in records["RPPM_PT_bake_output_margin"].properties) == (kind in {"COMBINED", "DIFFUSE"})
+
+
+def test_panels_of_baking_show_blenders_own_for_multiresolution(scene):
+    scene.render.bake.use_multires, scene.render.bake.type = True, "VECTOR_DISPLACEMENT"
+    records = drawn_panels(PANELS, context_of(scene))
+    assert [button._identifier for button in records["RPPM_PT_bake"].operators] == ["object.bake_image"]
+    assert not records.keys() & {"RPPM_PT_bake_influence", "RPPM_PT_bake_selected_to_active"}
+    assert records["RPPM_PT_bake_output"].properties == ["use_clear", "use_lores_mesh", "displacement_space"]
+    assert records["RPPM_PT_bake_output_margin"].properties == ["margin"]

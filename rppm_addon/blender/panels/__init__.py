@@ -4,6 +4,7 @@
 import bpy
 
 from . import (
+    baking,
     borrowed,
     cycles_settings,
     data,
@@ -30,6 +31,7 @@ CLASSES = (
     *performance.STATUS,
     *render.CLASSES,
     *motion.CLASSES,
+    *baking.CLASSES,
     *lights.CLASSES,
     *simplify.CLASSES,
     *performance.CLASSES,
