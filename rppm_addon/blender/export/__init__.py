@@ -90,7 +90,7 @@ def export_baked_scene(
     context = _context_of(depsgraph, engine)
     source = depsgraph.scene_eval
     scene = Scene(camera=camera_beside(baked, depsgraph, context.report))
-    scene.settings = bake_settings(export_settings(source, depsgraph.view_layer), bake_pass)
+    scene.settings = bake_settings(export_settings(source, depsgraph.view_layer), bake_pass, pixels)
     scene.settings.validate()
     objects = ObjectExporter(context)
     placed = objects.export(depsgraph, identify=True)

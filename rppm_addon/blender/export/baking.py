@@ -16,6 +16,9 @@ from .report import Report
 
 _PRIMITIVE, _DIFFERENTIAL = "BakePrimitive", "BakeDifferential"
 """Passes by which Blender hands over what to bake, as it does to Cycles."""
+_DENOISED_MARGIN = 8
+"""Texels around those on the object that are rendered like their neighbors, so that no denoiser draws in the black
+between islands."""
 
 
 @dataclass(frozen=True)
@@ -54,14 +57,19 @@ class BakePixels:
             return None
         return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
 
+    @property
+    def is_picture(self) -> bool:
+        """Whether texels are beside each other because the places are; those of vertices lie anyhow."""
+        return bool(self.differentials[self.triangles >= 0].any())
 
-def bake_settings(settings: RenderSettings, bake_pass: BakePass) -> RenderSettings:
+
+def bake_settings(settings: RenderSettings, bake_pass: BakePass, pixels: BakePixels) -> RenderSettings:
     """Those of a final render, for a picture to be baked."""
     return dataclasses.replace(
         settings,
         passes=bake_pass.passes,
         aovs=(),
-        use_denoising=settings.use_denoising and bake_pass.is_denoised,
+        use_denoising=settings.use_denoising and bake_pass.is_denoised and pixels.is_picture,
         film_transparent=settings.film_transparent and bake_pass.has_alpha,
     )
 
@@ -86,6 +94,16 @@ def seen_from(scene: bpy.types.Scene, camera: Camera) -> tuple[float, float, flo
         return x, y, z, 0.0
     x, y, z = camera.matrix[:3, 3].tolist()
     return x, y, z, 1.0
+
+
+def nearest_texels(known: np.ndarray, reach: int) -> np.ndarray:
+    """(height, width) int32, for each texel the number, row by row, of a known one that is as near as may be, up to so
+    many steps to the side and upward; -1 where there is none. known: (height, width) bool."""
+    found = np.where(known, np.arange(known.size, dtype=np.int32).reshape(known.shape), np.int32(-1))
+    for _ in range(reach):
+        for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
+            found = np.where(found >= 0, found, np.roll(found, step, axis))
+    return found
 
 
 def look_at_texels(
@@ -118,12 +136,17 @@ def look_at_texels(
     height, width = pixels.triangles.shape
     x_min, y_min, x_max, y_max = bounds
     region = np.s_[y_min:y_max, x_min:x_max]
-    none = pixels.triangles[region][..., None] < 0  # where Blender says nothing of the rest
-    first, second = np.moveaxis(np.where(none, np.float32(0.0), pixels.barycentrics[region]), -1, 0)
-    changes = np.where(none, np.float32(0.0), pixels.differentials[region])
+    nearest = nearest_texels(pixels.triangles[region] >= 0, _DENOISED_MARGIN if scene.settings.use_denoising else 0)
+
+    def taken(values: np.ndarray, nothing: float) -> np.ndarray:
+        flat = values[region].reshape(nearest.size, -1)
+        return np.where(nearest.reshape(-1, 1) >= 0, flat[nearest.reshape(-1)], values.dtype.type(nothing))
+
+    first, second = taken(pixels.barycentrics, 0.0).reshape(*nearest.shape, 2).transpose(2, 0, 1)
+    changes = taken(pixels.differentials, 0.0).reshape(*nearest.shape, 4)
     texels = Texels(
         index,
-        pixels.triangles[region].copy(),
+        taken(pixels.triangles, -1).reshape(nearest.shape),
         np.stack([second, 1.0 - first - second], axis=-1),
         np.concatenate([changes[..., 2:], -changes[..., :2] - changes[..., 2:]], axis=-1),
         viewer,
