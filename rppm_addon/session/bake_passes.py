@@ -63,7 +63,7 @@ class BakePass:
         """What RenderEngine.bake is called with. Raises SettingsError for what is not offered."""
         if pass_type not in BAKE_TYPES:
             offered = ", ".join(BAKE_TYPES.values())
-            raise SettingsError(f"RPPM does not bake the type {pass_type}; choose one of {offered}, or bake with Cycles")
+            raise SettingsError(f"RPPM does not bake the type {pass_type}; choose one of {offered}, or use Cycles")
         return cls(pass_type, BakeFilter(pass_filter & (_WHOLE | BakeFilter.COLOR)))
 
     @property

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from support.baking import add_uv_map, bake
 from support.sent_members import watch_sent_members
 
 import rppm_addon
@@ -105,6 +106,20 @@ def test_an_animation_sends_only_what_changes(lit, windowed, monkeypatch, tmp_pa
     # With persistent data Blender's user wants it kept.
     assert len(windowed.sessions) == persistent
     bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert not windowed.sessions
+
+
+def test_the_process_bakes_what_the_thread_does(lit, windowed, monkeypatch):
+    add_uv_map(lit.objects["Quad"])
+    with monkeypatch.context() as patched:
+        patched.setattr(renderer_process, "is_used", lambda: False)
+        expected = bake(lit.objects["Quad"], type="COMBINED")
+    renderer_thread.release()
+    monkeypatch.setattr(renderer_thread, "render", lambda *_: pytest.fail("the process was to render"))
+    np.testing.assert_array_equal(bake(lit.objects["Quad"], type="COMBINED"), expected)
+    assert expected.any() and windowed.state is ProcessState.RUNNING
+    for handler in bpy.app.handlers.object_bake_complete:  # which Blender calls where it bakes in a job
+        handler(lit.objects["Quad"], None)
     assert not windowed.sessions
 
 
