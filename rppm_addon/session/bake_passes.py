@@ -129,5 +129,3 @@ class BakePass:
             if name in ("Environment", "Emission"):
                 colors += frame.passes[name]
         return colors
-
-

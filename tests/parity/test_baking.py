@@ -98,8 +98,9 @@ def test_normals_in_tangent_space_are_those_of_cycles():
 def test_colors_are_those_of_cycles():
     scene, _, crate = room()
     for kind in ("DIFFUSE", "GLOSSY"):
-        mine, theirs = by_rppm(scene, crate, 1, type=kind, pass_filter={"COLOR"}), by_cycles(
-            scene, crate, 1, type=kind, pass_filter={"COLOR"}
+        mine, theirs = (
+            by_rppm(scene, crate, 1, type=kind, pass_filter={"COLOR"}),
+            by_cycles(scene, crate, 1, type=kind, pass_filter={"COLOR"}),
         )
         np.testing.assert_allclose(mine[..., :3], theirs[..., :3], rtol=0.01, atol=2e-3)
 
