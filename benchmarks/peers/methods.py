@@ -31,7 +31,7 @@ METHODS = {
             "RPPM, denoised",
             "rppm",
             {"use_denoising": True},
-            "Open Image Denoise by albedo and normal, its time beside the seconds asked for",
+            "Open Image Denoise by albedo and normal, its time included",
         ),
         Method("cycles", "Cycles", "cycles", why="path tracing; clamping and adaptive sampling off"),
         Method(

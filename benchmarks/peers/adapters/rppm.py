@@ -4,6 +4,7 @@
 import dataclasses
 import sys
 import time
+from collections.abc import Callable
 
 from rppm_addon.scene import Scene as SavedScene
 from rppm_addon.scene import load_scene
@@ -13,6 +14,7 @@ from ..description import Scene
 from ..jobs import Job, Recorder, run_adapter
 
 _NO_LIMIT = 1 << 30
+_LEAST_SECONDS = 0.02
 
 
 def render(job: Job, scene: Scene, recorder: Recorder) -> None:
@@ -26,6 +28,9 @@ def render(job: Job, scene: Scene, recorder: Recorder) -> None:
         recorder.answer.version += f" on {renderer.device.name} ({renderer.device.driver})"
         renderer.render(limited(iterations=1))
         recorder.first_picture()
+        if settings.use_denoising and not job.samples:
+            _denoise_in_time(job, renderer, limited, recorder)
+            return
         renderer.forget()  # the programs stay; the scene is to be uploaded and built anew
         start = time.perf_counter()
         done = 0
@@ -48,6 +53,18 @@ def render(job: Job, scene: Scene, recorder: Recorder) -> None:
             )
             if limit not in [picture.mark for picture in recorder.answer.pictures]:
                 keep(limit, result.frame)  # it ended with the iteration nearest to the limit, shortly before
+
+
+def _denoise_in_time(job: Job, renderer: Renderer, limited: Callable[..., SavedScene], recorder: Recorder) -> None:
+    """A render for each mark, of which denoising takes its part."""
+    for mark in job.seconds:
+        denoising = renderer.render(limited(iterations=1)).statistics.stage_seconds["denoising"]
+        renderer.forget()
+        start = time.perf_counter()
+        limit = max(mark - denoising, _LEAST_SECONDS)
+        result = renderer.render(limited(iterations=_NO_LIMIT, time_limit=limit))
+        seconds = time.perf_counter() - start
+        recorder.keep(mark, seconds, result.statistics.iterations, result.frame.combined[::-1])
 
 
 if __name__ == "__main__":
