@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 #include "common/low_discrepancy.glsl"
 #include "common/camera_path.glsl"
 layout(std140, binding = 0) uniform Parameters { TexelParameters parameters; };
-layout(std430, binding = 0) readonly buffer Texels { Texel texels[]; };
+layout(std430, binding = 0) readonly buffer BakedTexels { Texel baked_texels[]; };
 layout(std430, binding = 1) readonly buffer Triangles;
 layout(std430, binding = 2) readonly buffer Attributes;
 layout(std430, binding = 3) writeonly buffer Rays;
@@ -54,7 +54,7 @@ vec3 seen_from(vec3 position, vec3 shading, vec3 geometric) {
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    Texel texel = texels[index];
+    Texel texel = baked_texels[index];
     bool known = texel.triangle != NO_TRIANGLE;
     uint triangle = known ? texel.triangle : 0u;
     vec2 b = barycentrics(texel, index);

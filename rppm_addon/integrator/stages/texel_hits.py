@@ -36,7 +36,7 @@ Record(
 class TexelHits(CameraHits):
     """Stands in for the GBuffer where the first hits of camera paths are given (scene.Texels)."""
 
-    _texels = StorageBuffer("texels", TEXEL, band_pixels)
+    _texels = StorageBuffer("baked texels", TEXEL, band_pixels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -64,7 +64,7 @@ class TexelHits(CameraHits):
             self._program.run(
                 band.pixel_count,
                 {
-                    "Texels": self._texels.buffer,
+                    "BakedTexels": self._texels.buffer,
                     "Triangles": geometry.triangles.buffer,
                     "Attributes": geometry.attributes.buffer,
                     "Rays": importons.rays.buffer,
