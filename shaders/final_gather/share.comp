@@ -21,16 +21,36 @@ const float SHARED_NORMAL_TOLERANCE = 0.9;
 const float SHARED_PLANE_TOLERANCE = 0.35;
 const float GOLDEN_ANGLE = 2.39996323;
 
+// Density with which a ray from a vertex arrives at a hit, over that of another vertex.
+struct Densities { float own; float other; };
+
+float cosines(vec3 normal, vec3 way, vec3 hit_normal) {
+    return max(dot(normal, way), 0.0) * max(-dot(hit_normal, way), 0.0);
+}
+
+// Times the same factor.
+Densities densities(vec3 own, vec3 own_normal, vec3 other, vec3 other_normal, vec3 hit, vec3 hit_normal, float scale) {
+    vec3 a = (hit - own) * scale, b = (hit - other) * scale;
+    float a2 = dot(a, a), b2 = dot(b, b);
+    return Densities(cosines(own_normal, a, hit_normal) * b2 * b2, cosines(other_normal, b, hit_normal) * a2 * a2);
+}
+
+// 1 / (other / own + part), 0 where both are none.
+float balanced(float own, float other, float part) {
+    return own > 0.0 ? own / (other + part * own) : 0.0;
+}
+
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     GatheringVertex vertex = gathering_vertices[index];
     if (vertex.shared_radius < 0.0) return;
     float radius = parameters.shared_radius * vertex.shared_radius;
-    vec3 sum = found_radiances[index].rgb, normal = unpack_unit_vector(vertex.normal);
+    vec3 own = found_radiances[index].rgb, sum = own, normal = unpack_unit_vector(vertex.normal);
     float total = 1.0;
     uint taps = radius > 0.0 ? parameters.taps : 0u;
-    vec4 turn = progressive_random(parameters.seed, parameters.iteration, STAGE_GATHERING, 0u,
+    float part = 1.0 / float(max(taps, 1u));
+    vec4 turn = progressive_random(parameters.seed, 0u, STAGE_GATHERING, 0u,
                                    parameters.first_pixel + index);
     ivec2 size = ivec2(parameters.width, parameters.count / parameters.width);
     ivec2 pixel = ivec2(index % parameters.width, index / parameters.width);
@@ -47,10 +67,17 @@ void main() {
         vec3 apart = other.position - vertex.position;
         float distance2 = dot(apart, apart) / (radius * radius);
         if (distance2 >= 1.0 || abs(dot(apart, normal)) > SHARED_PLANE_TOLERANCE * radius) continue;
-        if (dot(normal, unpack_unit_vector(other.normal)) < SHARED_NORMAL_TOLERANCE) continue;
+        vec3 other_normal = unpack_unit_vector(other.normal);
+        if (dot(normal, other_normal) < SHARED_NORMAL_TOLERANCE) continue;
         float share = 1.0 - distance2;
-        sum += share * found_radiances[other_index].rgb;
         total += share;
+        vec3 found = found_radiances[other_index].rgb;
+        Densities there = densities(vertex.position, normal, other.position, other_normal, other.hit,
+                                    unpack_unit_vector(other.hit_normal), 1.0 / radius);
+        Densities here = densities(vertex.position, normal, other.position, other_normal, vertex.hit,
+                                   unpack_unit_vector(vertex.hit_normal), 1.0 / radius);
+        sum += share * (found * balanced(there.own, there.other, part)
+                        + own * part * balanced(here.own, here.other, part));
     }
     radiances[index].rgb += vertex.weight * sum / total;
 }

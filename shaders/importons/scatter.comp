@@ -102,6 +102,9 @@ vec4 seen_surface(CameraPath path, Ray ray, Closure closure) {
     return seen;
 }
 
+// Of neighbors' gathering rays that came to no surface, none may tell the other's direction from its own.
+const float FAR_RADII = 1e4;
+
 // How a path may go on.
 struct Event {
     vec3 direction;
@@ -200,7 +203,9 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     } else if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
         gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput,
-                                                    pack_unit_vector(event.normal), vec3(0.0), disk);
+                                                    pack_unit_vector(event.normal), vec3(0.0), disk,
+                                                    closure.position + FAR_RADII * radius * event.direction,
+                                                    pack_unit_vector(-event.direction));
         path.throughput = found_weight;
     }
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
@@ -259,6 +264,10 @@ void main() {
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
     PathShares shares = path_shares(closure, path.throughput, -ray.direction, parameters.specular_alpha, gathers);
+    if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
+        gathering_vertices[index].hit = closure.position;
+        gathering_vertices[index].hit_normal = closure.geometric_normal;
+    }
     float least_radius = gathered ? caustic_radius : radius;
     importons[index] = make_importon(closure, path.throughput, -ray.direction, shares.stored, least_radius,
                                      caustic_radius, u_lobe.y,
