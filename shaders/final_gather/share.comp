@@ -1,6 +1,13 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pixel takes the mean of what the gathering rays of its neighbors found, within a radius that shrinks as all do.
+// lint:
+// lint: TEXEL_BUFFERS=1
+// A pixel takes over what the gathering rays of its neighbors found, within a radius that shrinks as all do.
+//
+// Bekaert, Sbert and Halton, Accelerating Path Tracing by Re-Using Paths (2002): a neighbor's ray counts by how much
+// likelier the pixel's own one would have come to the same place, so nothing is blurred that a hemisphere sees otherwise
+// from there; but visibility is taken over. Each neighbor and the pixel share a place by the balance heuristic, in
+// which the pixel's own ray stands for as many as there are neighbors, as in pairwise MIS (Bitterli 2022).
 
 layout(local_size_x = 64) in;
 
@@ -10,48 +17,66 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 #include "common/gathering.glsl"
 layout(std140, binding = 0) uniform Parameters { ShareParameters parameters; };
+#ifdef TEXEL_BUFFERS
+layout(binding = 1) uniform usamplerBuffer GatheringVertices;
+layout(binding = 2) uniform samplerBuffer FoundRadiances;
+vec4 place_of(uint index) { return uintBitsToFloat(texelFetch(GatheringVertices, int(4u * index))); }
+uint normal_of(uint index) { return texelFetch(GatheringVertices, int(4u * index + 1u)).w; }
+vec3 weight_of(uint index) { return uintBitsToFloat(texelFetch(GatheringVertices, int(4u * index + 1u)).xyz); }
+uvec4 hit_of(uint index) { return texelFetch(GatheringVertices, int(4u * index + 3u)); }
+vec3 found_by(uint index) { return texelFetch(FoundRadiances, int(index)).rgb; }
+#else
 layout(std430, binding = 0) readonly buffer GatheringVertices;
 layout(std430, binding = 1) readonly buffer FoundRadiances;
+vec4 place_of(uint index) { return vec4(gathering_vertices[index].position, gathering_vertices[index].shared_radius); }
+uint normal_of(uint index) { return gathering_vertices[index].normal; }
+vec3 weight_of(uint index) { return gathering_vertices[index].weight; }
+uvec4 hit_of(uint index) {
+    return uvec4(floatBitsToUint(gathering_vertices[index].hit), gathering_vertices[index].hit_normal);
+}
+vec3 found_by(uint index) { return found_radiances[index].rgb; }
+#endif
 layout(std430, binding = 2) buffer Radiances;
 
 // How far the normals of neighbors may part, as a cosine, and how far one may lie off the other's tangent plane in
-// radii. What a ray found was chosen by the cosine to its own normal and is taken over as it is, so normals must be
-// nearer to each other than those of photons and importons.
+// radii. Normals must be nearer to each other than those of photons and importons.
 const float SHARED_NORMAL_TOLERANCE = 0.9;
 const float SHARED_PLANE_TOLERANCE = 0.35;
 const float GOLDEN_ANGLE = 2.39996323;
 
-// Density with which a ray from a vertex arrives at a hit, over that of another vertex.
-struct Densities { float own; float other; };
+// Where a ray arrived, by its place and the normal there.
+struct Hit { vec3 place; vec3 normal; };
 
-float cosines(vec3 normal, vec3 way, vec3 hit_normal) {
-    return max(dot(normal, way), 0.0) * max(-dot(hit_normal, way), 0.0);
+Hit unpack_hit(uvec4 bits) { return Hit(uintBitsToFloat(bits.xyz), unpack_unit_vector(bits.w)); }
+
+// Both cosines of a ray from a vertex to a hit times its length, and the length's square.
+vec2 flight(vec3 vertex, vec3 normal, Hit hit, float scale) {
+    vec3 way = (hit.place - vertex) * scale;
+    return vec2(max(dot(normal, way), 0.0) * max(-dot(hit.normal, way), 0.0), dot(way, way));
 }
 
-// Times the same factor.
-Densities densities(vec3 own, vec3 own_normal, vec3 other, vec3 other_normal, vec3 hit, vec3 hit_normal, float scale) {
-    vec3 a = (hit - own) * scale, b = (hit - other) * scale;
-    float a2 = dot(a, a), b2 = dot(b, b);
-    return Densities(cosines(own_normal, a, hit_normal) * b2 * b2, cosines(other_normal, b, hit_normal) * a2 * a2);
-}
-
-// 1 / (other / own + part), 0 where both are none.
-float balanced(float own, float other, float part) {
-    return own > 0.0 ? own / (other + part * own) : 0.0;
+// Of what comes from a hit: the density with which rays from one vertex arrive there, over the sum of the other's and
+// a part of that.
+float balanced(vec2 flight, vec2 other, float part) {
+    float own = flight.x * other.y * other.y;
+    return own > 0.0 ? own / (other.x * flight.y * flight.y + part * own) : 0.0;
 }
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    GatheringVertex vertex = gathering_vertices[index];
-    if (vertex.shared_radius < 0.0) return;
-    float radius = parameters.shared_radius * vertex.shared_radius;
-    vec3 own = found_radiances[index].rgb, sum = own, normal = unpack_unit_vector(vertex.normal);
+    vec4 vertex = place_of(index);
+    if (vertex.w < 0.0) return;
+    float radius = parameters.shared_radius * vertex.w;
+    vec3 own = found_by(index), normal = unpack_unit_vector(normal_of(index)), sum = own;
     float total = 1.0;
     uint taps = radius > 0.0 ? parameters.taps : 0u;
-    float part = 1.0 / float(max(taps, 1u));
-    vec4 turn = progressive_random(parameters.seed, 0u, STAGE_GATHERING, 0u,
-                                   parameters.first_pixel + index);
+    float scale = 1.0 / max(radius, 1e-30), part = 1.0 / float(max(taps, 1u));
+    Hit hit = unpack_hit(hit_of(index));
+    vec2 own_flight = flight(vertex.xyz, normal, hit, scale);
+    bool found_own = own != vec3(0.0);
+    // The same neighbors in all iterations, so that what each of them finds fills its hemisphere evenly.
+    vec4 turn = progressive_random(parameters.seed, 0u, STAGE_GATHERING, 0u, parameters.first_pixel + index);
     ivec2 size = ivec2(parameters.width, parameters.count / parameters.width);
     ivec2 pixel = ivec2(index % parameters.width, index / parameters.width);
     for (uint tap = 0u; tap < taps; ++tap) {
@@ -62,22 +87,24 @@ void main() {
         if (other_pixel == pixel || any(lessThan(other_pixel, ivec2(0))) || any(greaterThanEqual(other_pixel, size)))
             continue;
         uint other_index = uint(other_pixel.y) * parameters.width + uint(other_pixel.x);
-        GatheringVertex other = gathering_vertices[other_index];
-        if (!(other.shared_radius > 0.0)) continue;
-        vec3 apart = other.position - vertex.position;
-        float distance2 = dot(apart, apart) / (radius * radius);
-        if (distance2 >= 1.0 || abs(dot(apart, normal)) > SHARED_PLANE_TOLERANCE * radius) continue;
-        vec3 other_normal = unpack_unit_vector(other.normal);
+        vec4 other = place_of(other_index);
+        if (!(other.w > 0.0)) continue;
+        vec3 apart = (other.xyz - vertex.xyz) * scale;
+        float distance2 = dot(apart, apart);
+        if (distance2 >= 1.0 || abs(dot(apart, normal)) > SHARED_PLANE_TOLERANCE) continue;
+        vec3 other_normal = unpack_unit_vector(normal_of(other_index));
         if (dot(normal, other_normal) < SHARED_NORMAL_TOLERANCE) continue;
         float share = 1.0 - distance2;
         total += share;
-        vec3 found = found_radiances[other_index].rgb;
-        Densities there = densities(vertex.position, normal, other.position, other_normal, other.hit,
-                                    unpack_unit_vector(other.hit_normal), 1.0 / radius);
-        Densities here = densities(vertex.position, normal, other.position, other_normal, vertex.hit,
-                                   unpack_unit_vector(vertex.hit_normal), 1.0 / radius);
-        sum += share * (found * balanced(there.own, there.other, part)
-                        + own * part * balanced(here.own, here.other, part));
+        vec3 found = found_by(other_index);
+        if (found != vec3(0.0)) {
+            Hit there = unpack_hit(hit_of(other_index));
+            sum += found * (share * balanced(flight(vertex.xyz, normal, there, scale),
+                                             flight(other.xyz, other_normal, there, scale), part));
+        }
+        if (found_own)
+            sum += own * (share * part
+                          * balanced(own_flight, flight(other.xyz, other_normal, hit, scale), part));
     }
-    radiances[index].rgb += vertex.weight * sum / total;
+    radiances[index].rgb += weight_of(index) * sum / total;
 }

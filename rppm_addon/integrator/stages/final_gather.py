@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Final gather: what camera paths find along one ray from the first surface that stores photons.
 
-Neighboring pixels share what their rays found: the mean over a disk of a few Eq. 3 radii, which shrinks by Eq. 2 and
-so keeps the estimate consistent. After Jensen, Realistic Image Synthesis Using Photon Mapping (2001), section 9.2.
+Neighboring pixels share what their rays found within a few Eq. 3 radii, which shrink by Eq. 2 and so keep the estimate
+consistent. After Jensen, Realistic Image Synthesis Using Photon Mapping (2001), section 9.2, and Bekaert, Sbert and
+Halton, Accelerating Path Tracing by Re-Using Paths (2002).
 """
 
 import math
@@ -14,6 +15,8 @@ from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...gl.texel_buffers import DEFINE as TEXEL_BUFFERS
+from ...gl.texel_buffers import TEXEL_SIZE, most_texels
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records import GATHERING_VERTEX
@@ -32,12 +35,11 @@ Record(
     radius_in_pixels="float",
     shared_radius="float",
     seed="uint",
-    iteration="uint",
 )
 
 _MOST_TAPS = 32
 """Neighbors that a pixel looks at."""
-SHARED_RADIUS = 6.0
+SHARED_RADIUS = 4.0
 """Times the Eq. 3 radius: indirect light varies more slowly than caustics."""
 
 
@@ -51,7 +53,8 @@ class FinalGather(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._found_program = library.compute("final_gather/found.comp")
-        self._share_program = library.compute("final_gather/share.comp")
+        as_texels = context.is_software and self.vertices.size <= TEXEL_SIZE * most_texels(context)
+        self._share_program = library.compute("final_gather/share.comp", {TEXEL_BUFFERS: 1} if as_texels else {})
 
     def clear(self) -> None:
         """Forget what the band before found."""
@@ -100,6 +103,5 @@ class FinalGather(BufferSet):
                 "radius_in_pixels": radius,
                 "shared_radius": SHARED_RADIUS,
                 "seed": iteration.seed,
-                "iteration": iteration.number,
             },
         )
