@@ -42,7 +42,8 @@ layout(std430, binding = 2) buffer Radiances;
 // radii. Normals must be nearer to each other than those of photons and importons.
 const float SHARED_NORMAL_TOLERANCE = 0.9;
 const float SHARED_PLANE_TOLERANCE = 0.35;
-const float GOLDEN_ANGLE = 2.39996323;
+// By the golden angle.
+const mat2 GOLDEN_ROTATION = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
 
 // Where a ray arrived, by its place and the normal there.
 struct Hit { vec3 place; vec3 normal; };
@@ -79,11 +80,9 @@ void main() {
     vec4 turn = progressive_random(parameters.seed, 0u, STAGE_GATHERING, 0u, parameters.first_pixel + index);
     ivec2 size = ivec2(parameters.width, parameters.count / parameters.width);
     ivec2 pixel = ivec2(index % parameters.width, index / parameters.width);
-    for (uint tap = 0u; tap < taps; ++tap) {
-        float angle = 2.0 * PI * turn.x + GOLDEN_ANGLE * float(tap);
-        vec2 offset = parameters.radius_in_pixels * sqrt((float(tap) + turn.y) / float(taps))
-                      * vec2(cos(angle), sin(angle));
-        ivec2 other_pixel = pixel + nearest_whole(offset);
+    vec2 direction = parameters.radius_in_pixels * vec2(cos(2.0 * PI * turn.x), sin(2.0 * PI * turn.x));
+    for (uint tap = 0u; tap < taps; ++tap, direction = GOLDEN_ROTATION * direction) {
+        ivec2 other_pixel = pixel + nearest_whole(sqrt((float(tap) + turn.y) * part) * direction);
         if (other_pixel == pixel || any(lessThan(other_pixel, ivec2(0))) || any(greaterThanEqual(other_pixel, size)))
             continue;
         uint other_index = uint(other_pixel.y) * parameters.width + uint(other_pixel.x);

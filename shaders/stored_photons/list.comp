@@ -25,4 +25,5 @@ void main() {
         && !(world_directions[index % parameters.photon_count].radiance > 0.0)) return;
     stored_photons[atomicAdd(stored_count, 1u)] = index;
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(diffused_count, 1u);
+    if ((flags & PHOTON_INDIRECT) != 0u) atomicAdd(indirect_count, 1u);
 }

@@ -108,6 +108,11 @@ class LivingPaths(BufferSet):
         """
         return self._context.is_software and self.read_count() == 0
 
+    @property
+    def known_count(self) -> int:
+        """Paths that are listed where that is known at no cost, else ``most``."""
+        return self.read_count() if self._context.is_software else self.most
+
     def read_count(self) -> int:
         """How many paths are listed. Waits for the device."""
         return int(self._lists[0].read(LIVING_PATHS_HEADER.dtype, 1)["count"][0])

@@ -207,7 +207,7 @@ PHOTON = Record(
 ``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it. The upper
 bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known."""
 StorageBlock("Photons", "Photon photons[];")
-StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint stored_photons[];")
+StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint indirect_count; uint stored_photons[];")
 """How many are stored, how many of these are diffused, and the numbers of the stored ones."""
 
 FLUX_GROUP = GROUP_SIZE

@@ -91,7 +91,7 @@ class DensityEstimator(BufferSet):
         """DirectSplatting or IndirectSplatting: add to the sums what the photons give."""
         with timers.stage("indirect splatting" if importons.raster is None else "direct splatting"):
             photons = known(self._photons)
-            if not photons.count:
+            if not photons.count or (importons.gathers and photons.indirect_count == photons.count):
                 return
             if self._is_undecided:
                 self._try_both(photons, importons)

@@ -153,7 +153,7 @@ class PhotonGrid(BufferSet):
 
     def _group(self, importons: TakingImportons) -> None:
         """List the importons that gather, those of a cell side by side."""
-        buckets = _buckets(importons.living.most)
+        buckets = _buckets(importons.living.known_count)
         cells = {"Buckets": self._importon_grid.buffer}
         parameters = {
             "buckets": buckets,

@@ -41,19 +41,20 @@ Constants("DirectPhotons", DIRECT=DirectPhotons)
 
 
 class PhotonList(BufferSet):
-    """The numbers of the photons that importons may take: ``count`` of them, ``diffused_count`` of these diffused."""
+    """The numbers of the photons that importons may take: ``count`` of them, ``diffused_count`` of these diffused, and
+    ``indirect_count`` last scattered by what stores photons."""
 
     remedy = "lower the photons per iteration or the photon path length"
-    _numbers = StorageBuffer("stored photons", "uint", photon_slots, header="uvec2")
+    _numbers = StorageBuffer("stored photons", "uint", photon_slots, header="uvec3")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._program = library.compute("stored_photons/list.comp")
-        self.count = self.diffused_count = 0
+        self.count = self.diffused_count = self.indirect_count = 0
 
     @property
     def buffer(self) -> moderngl.Buffer:
-        """Two uint32, ``count`` and ``diffused_count``, and the numbers."""
+        """Three uint32, ``count``, ``diffused_count`` and ``indirect_count``, and the numbers."""
         return self._numbers.buffer
 
     def collect(
@@ -68,13 +69,13 @@ class PhotonList(BufferSet):
 
         world_directions: WORLD_DIRECTION of the ``emitted_count`` photons that left the lights.
         """
-        self._numbers.write(np.zeros(2, np.uint32))
+        self._numbers.write(np.zeros(3, np.uint32))
         self._program.run(
             slots,
             {"Photons": photons, "StoredPhotons": self._numbers.buffer, "WorldDirections": world_directions},
             {"count": slots, "photon_count": emitted_count, "takes_direct": takes_direct.value},
         )
-        self.count, self.diffused_count = map(int, self._numbers.read(np.uint32, 2))
+        self.count, self.diffused_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,8 @@ class StoredPhotons:
     """No more than so many of them have come by specular surfaces or from a light only."""
     diffused_count: int
     """No more than so many of them has a diffuse surface scattered."""
+    indirect_count: int
+    """So many of all of them importons leave to gathering rays."""
     world_directions: moderngl.Buffer
     emitted_count: int
     photon_flux: float

@@ -77,6 +77,8 @@ class DirectLight(BufferSet):
                 self._sample_lights(context, importons, blocks, band, iteration, segment, radii, ray)
                 living = self.living_rays
                 living.take(importons.living, self._rays.buffer)
+                if living.known_empty:
+                    continue
                 context.lights.emitters.tint_contributions(
                     context.resolve,
                     self._rays.buffer,

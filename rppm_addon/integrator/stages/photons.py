@@ -188,6 +188,7 @@ class Photons(BufferSet):
             listed.count,
             listed.count - listed.diffused_count,
             listed.diffused_count,
+            listed.indirect_count,
             self.world_directions.buffer,
             self.photon_count,
             context.lights.photon_flux,
