@@ -72,7 +72,7 @@ void main() {
     vec3 own = found_by(index), normal = unpack_unit_vector(normal_of(index)), sum = own;
     float total = 1.0;
     uint taps = radius > 0.0 ? parameters.taps : 0u;
-    float scale = 1.0 / max(radius, 1e-30), part = 1.0 / float(max(taps, 1u));
+    float scale = 1.0 / max(radius, 1e-30), part = 4.0 / float(max(taps, 1u));
     Hit hit = unpack_hit(hit_of(index));
     vec2 own_flight = flight(vertex.xyz, normal, hit, scale);
     bool found_own = own != vec3(0.0);
@@ -82,7 +82,7 @@ void main() {
     ivec2 pixel = ivec2(index % parameters.width, index / parameters.width);
     vec2 direction = parameters.radius_in_pixels * vec2(cos(2.0 * PI * turn.x), sin(2.0 * PI * turn.x));
     for (uint tap = 0u; tap < taps; ++tap, direction = GOLDEN_ROTATION * direction) {
-        ivec2 other_pixel = pixel + nearest_whole(sqrt((float(tap) + turn.y) * part) * direction);
+        ivec2 other_pixel = pixel + nearest_whole(sqrt((float(tap) + turn.y) / float(taps)) * direction);
         if (other_pixel == pixel || any(lessThan(other_pixel, ivec2(0))) || any(greaterThanEqual(other_pixel, size)))
             continue;
         uint other_index = uint(other_pixel.y) * parameters.width + uint(other_pixel.x);

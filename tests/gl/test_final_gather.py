@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What gathering rays find is shared among pixels without a change of its mean."""
 
+import dataclasses
+
 import numpy as np
 import scenes
 from support.lobes import Lobe, LobeKind, material
@@ -8,6 +10,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.common.records import GATHERING_VERTEX
 from rppm_addon.integrator.density_estimation import radii
 from rppm_addon.integrator.stages import final_gather
+from rppm_addon.integrator.stages.photons import Photons
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 
 SIZE, SEEDS = 48, 8
@@ -90,3 +93,85 @@ def test_corners_are_not_dark(mapper, monkeypatch):
     assert darker.mean() > 0.008 * always.mean()
     assert abs(almost.mean()) < 0.5 * darker.mean()
     assert error < 0.25 * darker.mean() / always.mean()
+
+
+HEIGHT, WIDTH, ALBEDO = 0.1, 40.0, 0.5
+ROWS = 32
+
+
+def beside_a_wall(seed: int) -> Scene:
+    """A floor seen from above, out to two heights of a low and long wall, which alone a level sun lights."""
+    floor = scenes.rectangle("floor", (-WIDTH, -WIDTH, 0), (WIDTH, -WIDTH, 0), (WIDTH, 0, 0), (-WIDTH, 0, 0))
+    wall = scenes.rectangle("wall", (-WIDTH, 0, 0), (WIDTH, 0, 0), (WIDTH, 0, HEIGHT), (-WIDTH, 0, HEIGHT))
+    camera = scenes.looking((0, -HEIGHT, 1), (0, -HEIGHT, 0))
+    return Scene(
+        Camera(camera, (-HEIGHT, HEIGHT, -HEIGHT, HEIGHT), ROWS, ROWS, True),
+        meshes=[floor, wall],
+        instances=[Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [0])],
+        materials=[scenes.diffuse(ALBEDO, ALBEDO, ALBEDO)],
+        lights=[Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), (0, 1, 0)), np.full(3, np.pi))],
+        settings=RenderSettings(photons=64, photon_path_length=1, seed=seed, radius_scale=600.0, filter_width=0.0),
+    )
+
+
+def from_above(mapper) -> np.ndarray:
+    """(SEEDS, ROWS, ROWS) radiance of the floor, its camera rays one bounce from the wall."""
+    pictures = []
+    for seed in range(SEEDS):
+        mapper.build(beside_a_wall(seed))
+        for _ in range(16):
+            mapper.iterate()
+        pictures.append(mapper.film.read_radiance()[..., 0].astype(np.float64))
+    return np.array(pictures)
+
+
+def test_what_a_wall_sends_its_floor_is_not_blurred(mapper, monkeypatch):
+    """Beside a wall of radiance ALBEDO and height h a floor sees it with the form factor (1 - y / hypot(y, h)) / 2.
+    Pixels share within 0.1 m, over which that falls from a half to a seventh: means of what neighbors see of it would
+    be off by a tenth."""
+    monkeypatch.setattr(radii, "CORNER_RADII", 0.0)  # one bounce, no more
+    shared = from_above(mapper)
+    assert mapper.learning.radii(1).in_pixels * final_gather.SHARED_RADIUS > ROWS / 2
+    rows = shared.mean(axis=2)  # along the wall all is alike
+    y = HEIGHT * (2.0 - (np.arange(ROWS) + 0.5) * 2.0 / ROWS)  # row 0 lies farthest off
+    y = y if rows[:, -1].mean() > rows[:, 0].mean() else y[::-1]
+    expected = ALBEDO**2 * 0.5 * (1.0 - y / np.hypot(y, HEIGHT))
+    error = rows.std(axis=0, ddof=1) / np.sqrt(SEEDS)
+    print(np.round(rows.mean(axis=0) / expected, 3), np.round(error / expected, 3))
+    assert error.mean() < 0.03 * expected.mean()
+    # The t distribution of few seeds; pixels are a sixteenth of the height.
+    assert (abs(rows.mean(axis=0) - expected) < 8.5 * error + 0.01 * expected).all()
+    assert abs(rows.mean() - expected.mean()) < 5.5 * rows.mean(axis=1).std(ddof=1) / np.sqrt(SEEDS)
+    monkeypatch.setattr(final_gather, "SHARED_RADIUS", 0.0)
+    alone = from_above(mapper)
+    less = shared.var(axis=0, ddof=1).mean() / alone.var(axis=0, ddof=1).mean()
+    print("variance", less)
+    assert less < 0.9
+
+
+def picture(mapper) -> np.ndarray:
+    scene = scenes.room(SIZE, photons=1024)
+    scene.instances = scene.instances[:5]
+    mapper.build(scene)
+    for _ in range(2):
+        mapper.iterate()
+    return mapper.film.read_radiance()
+
+
+def test_storage_blocks_give_the_same_picture(mapper, other_mapper, monkeypatch):
+    """What software drivers read through texture units."""
+    as_it_is = picture(mapper)
+    monkeypatch.setattr(final_gather, "most_texels", lambda context: 0)
+    np.testing.assert_array_equal(picture(other_mapper), as_it_is)
+
+
+def test_first_surfaces_that_take_nothing_are_passed_over(mapper, monkeypatch):
+    """Where all photons are indirect, asking them changes no picture."""
+    passed_over = picture(mapper)
+    listed = mapper.stages.density_estimator.photon_list
+    assert listed.indirect_count == listed.count > 0
+    stored = Photons.stored
+    monkeypatch.setattr(
+        Photons, "stored", lambda *arguments: dataclasses.replace(stored(*arguments), indirect_count=0)
+    )
+    np.testing.assert_array_equal(picture(mapper), passed_over)

@@ -37,9 +37,9 @@ Record(
     seed="uint",
 )
 
-_MOST_TAPS = 32
+_MOST_TAPS = 48
 """Neighbors that a pixel looks at."""
-SHARED_RADIUS = 4.0
+SHARED_RADIUS = 5.0
 """Times the Eq. 3 radius: indirect light varies more slowly than caustics."""
 
 
