@@ -72,7 +72,9 @@ void end_gathering_ray(uint index, CameraPath path, vec3 world, float shadow_ray
         if (parameters.next_event == 0u) return;
         vec3 arrived = path.throughput * world * environment_weight(path, shadow_ray_pdf);
         arrived *= 1.0 - direct_photon_share(world, shadow_ray_pdf, gathering_vertices[index].radius);
-        if ((path.flags & PATH_GATHERED_AGAIN) != 0u) gathering_vertices[index].found = arrived;
+        // Neighbors share an even environment: its shadows are as soft as those of indirect light.
+        bool shared = (path.flags & PATH_GATHERED_AGAIN) != 0u || environment_is_even();
+        if (shared) gathering_vertices[index].found = arrived;
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
         return;
     }
