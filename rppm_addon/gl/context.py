@@ -2,6 +2,7 @@
 """The offscreen OpenGL context and what its device can do."""
 
 import ctypes
+import functools
 import logging
 import os
 import re
@@ -113,7 +114,7 @@ class Context:
         """Open another context of the same device, for the calling thread. Raises DeviceError."""
         return Context.create(self._device)
 
-    @property
+    @functools.cached_property
     def is_software(self) -> bool:
         """Whether the driver draws on the processor, where GL timer queries mean nothing."""
         return any(name in self.information.name.lower() for name in ("llvmpipe", "softpipe", "swrast"))

@@ -45,6 +45,7 @@ class _Program:
             self.record = self.record or source.parameters
         self.texel_buffers = {name: unit for source in sources for name, unit in source.texel_buffers.items()}
         self._texel_buffers = TexelBuffers(context, self.texel_buffers) if self.texel_buffers else None
+        self._wanted = self.blocks.keys() | self.texel_buffers.keys()
         if len(set(self.blocks.values())) != len(self.blocks):
             raise ShaderError(f"{self.name}: two blocks share a binding: {self.blocks}")
         self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
@@ -53,9 +54,8 @@ class _Program:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
-        wanted = self.blocks.keys() | self.texel_buffers.keys()
-        if buffers.keys() != wanted:
-            missing, unknown = sorted(wanted - buffers.keys()), sorted(buffers.keys() - wanted)
+        if buffers.keys() != self._wanted:
+            missing, unknown = sorted(self._wanted - buffers.keys()), sorted(buffers.keys() - self._wanted)
             raise ValueError(f"{self.name}: buffers missing {missing}, unknown {unknown}")
         for block, binding in self.blocks.items():
             buffers[block].bind_to_storage_buffer(binding)

@@ -58,6 +58,7 @@ class Record:
             offset += size
             alignment = max(alignment, align)
         self.size = -(-offset // alignment) * alignment
+        self._names = frozenset(members)
         self.dtype = np.dtype(
             {
                 "names": [m.name for m in self.members],
@@ -87,11 +88,9 @@ class Record:
 
     def pack(self, values: dict) -> bytes:
         """One record from member values; raises KeyError when members are missing or unknown."""
-        names = {m.name for m in self.members}
-        if values.keys() != names:
-            raise KeyError(
-                f"{self.name}: missing {sorted(names - values.keys())}, unknown {sorted(values.keys() - names)}"
-            )
+        if values.keys() != self._names:
+            missing, unknown = sorted(self._names - values.keys()), sorted(values.keys() - self._names)
+            raise KeyError(f"{self.name}: missing {missing}, unknown {unknown}")
         record = np.zeros((), self.dtype)
         for member in self.members:
             value = values[member.name]

@@ -73,8 +73,8 @@ void end_gathering_ray(uint index, CameraPath path, vec3 world, float shadow_ray
         vec3 arrived = path.throughput * world * environment_weight(path, shadow_ray_pdf);
         arrived *= 1.0 - direct_photon_share(world, shadow_ray_pdf, gathering_vertices[index].radius);
         // Neighbors share an even environment: its shadows are as soft as those of indirect light.
-        bool shared = (path.flags & PATH_GATHERED_AGAIN) != 0u || environment_is_even();
-        if (shared) gathering_vertices[index].found = arrived;
+        bool is_shared = (path.flags & PATH_GATHERED_AGAIN) != 0u || environment_is_even();
+        if (is_shared) gathering_vertices[index].found = arrived;
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
         return;
     }
