@@ -5,9 +5,10 @@
 // A pixel takes over what the gathering rays of its neighbors found, within a radius that shrinks as all do.
 //
 // Bekaert, Sbert and Halton, Accelerating Path Tracing by Re-Using Paths (2002): a neighbor's ray counts by how much
-// likelier the pixel's own one would have come to the same place, so nothing is blurred that a hemisphere sees otherwise
-// from there; but visibility is taken over. Each neighbor and the pixel share a place by the balance heuristic, in
-// which the pixel's own ray stands for as many as there are neighbors, as in pairwise MIS (Bitterli 2022).
+// likelier the pixel's own one would have come to the same place, so what a hemisphere sees otherwise from there is not
+// blurred; but visibility is taken over. Each neighbor and the pixel share places by the balance heuristic, as in
+// pairwise MIS (Bitterli 2022): the pixel's own ray stands for OWN_RAYS of all neighbors' taps, so that no neighbor's
+// counts for more than taps / OWN_RAYS. What a pixel's own rays find is spread evenly, so it is worth more than one.
 
 layout(local_size_x = 64) in;
 
@@ -42,6 +43,7 @@ layout(std430, binding = 2) buffer Radiances;
 // radii. Normals must be nearer to each other than those of photons and importons.
 const float SHARED_NORMAL_TOLERANCE = 0.9;
 const float SHARED_PLANE_TOLERANCE = 0.35;
+const float OWN_RAYS = 4.0;
 // By the golden angle.
 const mat2 GOLDEN_ROTATION = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
 
@@ -72,7 +74,7 @@ void main() {
     vec3 own = found_by(index), normal = unpack_unit_vector(normal_of(index)), sum = own;
     float total = 1.0;
     uint taps = radius > 0.0 ? parameters.taps : 0u;
-    float scale = 1.0 / max(radius, 1e-30), part = 4.0 / float(max(taps, 1u));
+    float scale = 1.0 / max(radius, 1e-30), part = OWN_RAYS / float(max(taps, 1u));
     Hit hit = unpack_hit(hit_of(index));
     vec2 own_flight = flight(vertex.xyz, normal, hit, scale);
     bool found_own = own != vec3(0.0);
