@@ -166,7 +166,5 @@ def test_first_surfaces_that_take_nothing_are_passed_over(mapper, monkeypatch):
     listed = mapper.stages.density_estimator.photon_list
     assert listed.indirect_count == listed.count > 0
     stored = Photons.stored
-    monkeypatch.setattr(
-        Photons, "stored", lambda *arguments: dataclasses.replace(stored(*arguments), indirect_count=0)
-    )
+    monkeypatch.setattr(Photons, "stored", lambda *arguments: dataclasses.replace(stored(*arguments), indirect_count=0))
     np.testing.assert_array_equal(picture(mapper), passed_over)
