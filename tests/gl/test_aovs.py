@@ -4,7 +4,7 @@
 import numpy as np
 import scenes
 from support.lobes import Lobe, LobeKind, material
-from support.render_states import assert_same_state
+from support.render_states import assert_goes_on
 
 from rppm_addon.scene import AovOutput, Camera, Instance, Light, LightKind, Link, RenderSettings, Scene
 
@@ -64,19 +64,10 @@ def test_what_is_seen_through_adds_its_own(renderer):
 
 def test_a_render_goes_on_bit_for_bit_and_the_picture_stays(mapper):
     scene = pane_over_floor(Lobe(LobeKind.TRANSPARENT), filter_width=1.5)
-    mapper.build(scene)
-    states = []
-    for _ in range(4):
-        mapper.iterate()
-        states.append(mapper.state())
-    mapper.build(scene)
-    mapper.resume(states[1])
-    for _ in range(2):
-        mapper.iterate()
-    assert_same_state(mapper.state(), states[3], "passes", "pass_counts", "radiance")
-    assert states[3].passes["Place"].any()
+    state = assert_goes_on(mapper, scene, "passes", "pass_counts", "radiance")
+    assert state.passes["Place"].any()
     without = pane_over_floor(Lobe(LobeKind.TRANSPARENT), (), filter_width=1.5)
     mapper.update(without)
     for _ in range(4):
         mapper.iterate()
-    np.testing.assert_array_equal(mapper.film.read_radiance(), states[3].radiance)
+    np.testing.assert_array_equal(mapper.film.read_radiance(), state.radiance)

@@ -4,7 +4,7 @@
 import numpy as np
 import scenes
 from support.lobes import Lobe, LobeKind, material
-from support.render_states import assert_same_state
+from support.render_states import assert_goes_on
 
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 from rppm_addon.scene.cryptomatte import identifiers_of
@@ -81,18 +81,8 @@ def test_holdouts_cover_nothing(renderer):
 
 def test_a_render_goes_on_bit_for_bit(mapper):
     """Without more things than pairs, and with."""
-    scene = stripes(objects=24)
-    mapper.build(scene)
-    states = []
-    for _ in range(5):
-        mapper.iterate()
-        states.append(mapper.state())
-    mapper.build(scene)
-    mapper.resume(states[1])
-    for _ in range(3):
-        mapper.iterate()
-    assert_same_state(mapper.state(), states[4], "passes", "radiance")
-    assert states[4].passes["CryptoObject01"].any()
+    state = assert_goes_on(mapper, stripes(objects=24), "passes", "radiance", iterations=5)
+    assert state.passes["CryptoObject01"].any()
 
 
 def test_cryptomatte_leaves_the_picture_alone(renderer):

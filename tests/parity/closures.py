@@ -6,14 +6,11 @@ irradiance, for as many pairs of directions as there are pixels.
 """
 
 import math
-import os
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
 import numpy as np
-import OpenEXR
 
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.gl.records import Record
@@ -22,7 +19,7 @@ from rppm_addon.materials import albedo_tables
 from rppm_addon.materials.node_kinds import FLOAT
 from rppm_addon.materials.nodes.shaders import KINDS
 
-from .scenes import camera, light, new_scene, place, plane
+from .scenes import camera, cycles_channels, light, new_scene, place, plane, unfilter
 
 SIZE = 32
 ANGLE = 70.0
@@ -132,18 +129,14 @@ def by_cycles(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Points (pixels, 3) of the plane, NaN where it is not seen, and their radiance (pixels, 3) for 1 W/sr."""
     scene = new_scene(SIZE)
-    scene.cycles.samples, scene.cycles.max_bounces = 1, 0
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+    scene.cycles.max_bounces = 0
+    unfilter()
     # No edge between triangles in sight.
     plane(100.0, _material(kind, bl_idname, options, inputs, normal), place(at=(40.0, 10.0, 0.0)))
     light("POINT", 4.0 * math.pi, place(at=view.lamp), shadow_soft_size=0.0)
     points = _camera_rays(view)
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.engine, scene.render.filepath = "CYCLES", os.path.join(folder, "cycles.exr")
-        bpy.ops.render.render(write_still=True)
-        channels = OpenEXR.File(scene.render.filepath, separate_channels=True).channels()
-        layer = next(name for name in channels if name.endswith("Combined.R")).removesuffix("R")
-        picture = np.stack([channels[layer + c].pixels for c in "RGB"], axis=-1)[::-1].astype(np.float64)
+    channels = cycles_channels()
+    picture = np.stack([channels[f"Combined.{letter}"] for letter in "RGB"], axis=-1).astype(np.float64)
     return points, picture.reshape(-1, 3)
 
 

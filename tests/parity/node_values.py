@@ -5,20 +5,17 @@ Cycles shades a tilted plane whose material writes the coordinates and each node
 sample per pixel; the GLSL functions are then called with exactly those coordinates.
 """
 
-import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import bpy
 import numpy as np
-import OpenEXR
 
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.materials.node_kinds import FLOAT, NodeKind
 
-from .scenes import new_scene
+from .scenes import cycles_channels, new_scene, unfilter
 
 RESOLUTION = 48
 CORNERS = [(-2.1, -1.9, 0.3), (2.0, -2.05, 1.9), (2.2, 1.95, -0.4), (-1.9, 2.1, -2.0)]
@@ -72,22 +69,6 @@ class _Passes:
         output.aov_name = name
         self.tree.links.new(socket, output.inputs["Value" if is_float else "Color"])
         return name
-
-
-def _render() -> dict[str, np.ndarray]:
-    """Render with Cycles; (H, W) pixels by channel, named pass.component."""
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.samples = 1
-    scene.cycles.pixel_filter_type = "BOX"
-    scene.cycles.filter_width = 0.01
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = os.path.join(folder, "values.exr")
-        bpy.ops.render.render(write_still=True)
-        # Each pass is a part of its own.
-        parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
-        channels = {name: channel for part in parts for name, channel in part.channels.items()}
-        return {name.partition(".")[2]: np.array(channel.pixels) for name, channel in channels.items()}
 
 
 def _pass(channels: dict[str, np.ndarray], name: str) -> np.ndarray:
@@ -144,7 +125,8 @@ def cycles_values(
         names.append({our_name(s.identifier): passes.add(s) for s in node.outputs if s.enabled})
     output = tree.nodes.new("ShaderNodeOutputMaterial")
     tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], output.inputs["Surface"])
-    channels = _render()
+    unfilter()
+    channels = cycles_channels()
     results = [{name: _pass(channels, given) for name, given in case.items()} for case in names]
     vectors = _pass(channels, vector_pass)
     assert np.ptp(vectors, axis=0).min() > 1.0, "Cycles shaded nothing"

@@ -218,13 +218,27 @@ def _render_seeds(seeds: int) -> np.ndarray:
     pictures = []
     for seed in range(seeds):
         scene.cycles.seed = FIRST_SEED + seed
-        with tempfile.TemporaryDirectory() as folder:
-            scene.render.filepath = os.path.join(folder, "cycles.exr")
-            bpy.ops.render.render(write_still=True)
-            channels = OpenEXR.File(scene.render.filepath, separate_channels=True).channels()
-            layer = next(name for name in channels if name.endswith("Combined.R")).removesuffix("R")
-            pictures.append(np.stack([channels[layer + c].pixels for c in "RGBA"], axis=-1)[::-1].astype(np.float64))
-    return np.array(pictures)
+        channels = cycles_channels(scene.cycles.samples)
+        pictures.append(np.stack([channels[f"Combined.{letter}"] for letter in "RGBA"], axis=-1))
+    return np.array(pictures, np.float64)
+
+
+def unfilter() -> None:
+    """Have Cycles look through the middles of pixels, or next to them."""
+    cycles = bpy.context.scene.cycles
+    cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
+
+
+def cycles_channels(samples: int = 1) -> dict[str, np.ndarray]:
+    """What Cycles gives for the view layer, by pass and channel ("Depth.Z"): (H, W) float32, row 0 at the bottom."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", samples
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.filepath = os.path.join(folder, "cycles.exr")
+        bpy.ops.render.render(write_still=True)
+        with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:  # each pass is a part of its own
+            channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
+    return {name.partition(".")[2]: pixels[::-1] for name, pixels in channels.items()}
 
 
 def exported_scene() -> Scene:

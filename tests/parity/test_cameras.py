@@ -2,12 +2,9 @@
 """Panoramas, lenses, borders, shifts and clip distances, against Cycles."""
 
 import math
-import tempfile
-from pathlib import Path
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
 
 from .comparison import CONVERGED, compare
@@ -17,6 +14,7 @@ from .scenes import (
     ball,
     box,
     camera,
+    cycles_channels,
     exported_scene,
     light,
     material,
@@ -25,6 +23,7 @@ from .scenes import (
     plane,
     render_cycles,
     render_rppm,
+    unfilter,
 )
 
 PHOTONS = {"photons": 4096, "photon_path_length": 6, "iterations": 24, "seeds": 2}
@@ -198,22 +197,10 @@ def cycles_passes() -> dict[str, np.ndarray]:
     scene = bpy.context.scene
     layer = scene.view_layers[0]
     layer.use_pass_z = layer.use_pass_normal = True
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 0.01
-    scene.render.engine, scene.cycles.samples = "CYCLES", 1
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = str(Path(folder) / "cycles.exr")
-        bpy.ops.render.render(write_still=True)
-        parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
-        channels = {name: channel for part in parts for name, channel in part.channels.items()}
-
-    def read(suffix: str) -> np.ndarray:
-        return next(channel for name, channel in channels.items() if name.endswith(suffix)).pixels[::-1].copy()
-
-    return {
-        "depth": read("Depth.Z"),
-        "normal": np.stack([read(f"Normal.{axis}") for axis in "XYZ"], axis=-1),
-        "alpha": read("Combined.A"),
-    }
+    unfilter()
+    channels = cycles_channels()
+    normal = np.stack([channels[f"Normal.{axis}"] for axis in "XYZ"], axis=-1)
+    return {"depth": channels["Depth.Z"].copy(), "normal": normal, "alpha": channels["Combined.A"]}
 
 
 @pytest.mark.parametrize("transparent", [False, True])

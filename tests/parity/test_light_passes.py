@@ -3,7 +3,6 @@
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
 
 from rppm_addon.scene.passes import PASSES, SCATTERED_LIGHT
@@ -17,23 +16,23 @@ from .scenes import (
     PRINCIPLED,
     ball,
     camera,
+    cycles_channels,
     exported_scene,
     light,
     material,
     new_scene,
     place,
     plane,
+    unfilter,
 )  # fmt: skip
 
 COLORS = tuple(entry for entry in PASSES if entry.name in {scattered.divided_by for scattered in SCATTERED_LIGHT})
-NOT_FILTERED = 0.01
-"""Pixels of a filter that looks through their middles."""
 INDEX, PANE = 1.3, 12
 """Of the pane, by whose square Cycles does not divide radiance, and columns of pixels that it is within."""
 CLOSE = Tolerance(mean=0.03, block=0.06, mode=0.03)
 
 
-def surfaces(resolution: int) -> bpy.types.Scene:
+def surfaces(resolution: int) -> None:
     """Of all kinds: a diffuse floor, glossy and varnished balls, one of glass, a translucent sheet, a rough pane."""
     scene = new_scene(resolution, world=0.4)
     plane(1.5, material(DIFFUSE, Color=(0.7, 0.5, 0.3)), place(at=(0.0, 0.0, -0.5)))
@@ -48,24 +47,20 @@ def surfaces(resolution: int) -> bpy.types.Scene:
     camera((0.0, -3.0, 1.0), (0.0, 0.0, 0.0), 45.0)
     for entry in (*SCATTERED_LIGHT, *COLORS):
         setattr(scene.view_layers[0], entry.switch, True)
-    return scene
 
 
-def cycles_passes(scene: bpy.types.Scene, path, samples: int, seed: int = FIRST_SEED) -> dict[str, np.ndarray]:
+def cycles_passes(samples: int, seed: int = FIRST_SEED) -> dict[str, np.ndarray]:
     """(H, W, 3) by name, row 0 at the bottom."""
-    scene.render.engine, scene.cycles.samples, scene.cycles.seed = "CYCLES", samples, seed
-    scene.render.filepath = str(path / "cycles.exr")
-    bpy.ops.render.render(write_still=True)
-    parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
-    planes = {name.split(".", 1)[1]: channel.pixels for part in parts for name, channel in part.channels.items()}
+    bpy.context.scene.cycles.seed = seed
+    channels = cycles_channels(samples)
     wanted = (*SCATTERED_LIGHT, *COLORS)
-    return {entry.name: np.stack([planes[layer] for layer in entry.layers], axis=-1)[::-1] for entry in wanted}
+    return {entry.name: np.stack([channels[layer] for layer in entry.layers], axis=-1) for entry in wanted}
 
 
-def test_colors_are_those_of_cycles(renderer, tmp_path):
-    blender_scene = surfaces(48)
-    blender_scene.cycles.pixel_filter_type, blender_scene.cycles.filter_width = "GAUSSIAN", NOT_FILTERED
-    expected = cycles_passes(blender_scene, tmp_path, samples=1)
+def test_colors_are_those_of_cycles(renderer):
+    surfaces(48)
+    unfilter()
+    expected = cycles_passes(samples=1)
     scene = exported_scene()
     names = tuple(entry.name for entry in COLORS)
     scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64, passes=names)
@@ -77,9 +72,9 @@ def test_colors_are_those_of_cycles(renderer, tmp_path):
 
 
 @pytest.mark.long
-def test_light_is_that_of_cycles(renderer, tmp_path):
-    blender_scene = surfaces(32)
-    reference = [cycles_passes(blender_scene, tmp_path, 1024, FIRST_SEED + seed) for seed in range(3)]
+def test_light_is_that_of_cycles(renderer):
+    surfaces(32)
+    reference = [cycles_passes(1024, FIRST_SEED + seed) for seed in range(3)]
     scene = exported_scene()
     names, mine = tuple(entry.name for entry in (*SCATTERED_LIGHT, *COLORS)), []
     for seed in range(3):

@@ -3,7 +3,6 @@
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
 
 from rppm_addon.scene.passes import CAUSTICS, FILM_PASSES, SCATTERED_LIGHT
@@ -14,20 +13,20 @@ from .scenes import (
     GLOSSY,
     ball,
     camera,
+    cycles_channels,
     exported_scene,
     light,
     material,
     new_scene,
     place,
     plane,
+    unfilter,
 )  # fmt: skip
 
 OF_LIGHT = {CAUSTICS.name}.union(*((entry.name, entry.divided_by) for entry in SCATTERED_LIGHT))
 """Passes that test_light_passes.py compares."""
 FIRST_SURFACE = tuple(entry for entry in FILM_PASSES if entry.name not in OF_LIGHT)
 WORLD, MIRROR = 0.3, (0.9, 0.8, 0.7)
-NOT_FILTERED = 0.01
-"""Pixels of a filter that looks through their middles."""
 
 
 @pytest.fixture
@@ -53,17 +52,8 @@ def surfaces():
         if entry.switch:
             setattr(scene.view_layers[0], entry.switch, True)
     scene.view_layers[0].cycles.denoising_store_passes = True
+    unfilter()
     return scene
-
-
-def cycles_channels(scene: bpy.types.Scene, path) -> dict[str, np.ndarray]:
-    """(H, W) by the name of pass and channel, row 0 at the bottom."""
-    scene.render.engine, scene.cycles.samples = "CYCLES", 1
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", NOT_FILTERED
-    scene.render.filepath = str(path / "cycles.exr")
-    bpy.ops.render.render(write_still=True)
-    parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
-    return {name.split(".", 1)[1]: channel.pixels[::-1] for part in parts for name, channel in part.channels.items()}
 
 
 def mirrored_world_once(expected: dict[str, np.ndarray]) -> list[np.ndarray]:
@@ -74,8 +64,8 @@ def mirrored_world_once(expected: dict[str, np.ndarray]) -> list[np.ndarray]:
     return [np.where(twice, WORLD * color, plane) for color, plane in zip(MIRROR, planes, strict=True)]
 
 
-def test_every_pass_of_blender_is_that_of_cycles(renderer, surfaces, tmp_path):
-    expected = cycles_channels(surfaces, tmp_path)
+def test_every_pass_of_blender_is_that_of_cycles(renderer, surfaces):
+    expected = cycles_channels()
     scene = exported_scene()
     names = tuple(entry.name for entry in FIRST_SURFACE)
     assert {entry.name for entry in FIRST_SURFACE if entry.switch} <= set(scene.settings.passes)
@@ -92,7 +82,7 @@ def test_every_pass_of_blender_is_that_of_cycles(renderer, surfaces, tmp_path):
         assert theirs.std() > 0.0, f"{entry.name}: nothing is shown"
 
 
-def test_aovs_are_those_of_cycles(renderer, surfaces, tmp_path):
+def test_aovs_are_those_of_cycles(renderer, surfaces):
     """Of nodes and of sockets; what is seen in the mirror does not count."""
     for thing in surfaces.objects:
         if thing.type != "MESH":
@@ -109,7 +99,7 @@ def test_aovs_are_those_of_cycles(renderer, surfaces, tmp_path):
     for name, kind in (("Place", "COLOR"), ("Facing", "VALUE"), ("Tint", "COLOR")):
         aov = layer.aovs.add()
         aov.name, aov.type = name, kind
-    expected = cycles_channels(surfaces, tmp_path)
+    expected = cycles_channels()
     scene = exported_scene()
     scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64, passes=())
     frame = renderer.render(scene).frame
@@ -121,7 +111,7 @@ def test_aovs_are_those_of_cycles(renderer, surfaces, tmp_path):
         assert theirs.std() > 0.0
 
 
-def test_shadows_on_catchers_are_those_of_cycles(renderer, tmp_path):
+def test_shadows_on_catchers_are_those_of_cycles(renderer):
     """Of a black ball, as light from other surfaces is left out."""
     scene = new_scene(resolution=32, world=0.0)
     plane(3.0, material(DIFFUSE)).is_shadow_catcher = True
@@ -130,12 +120,8 @@ def test_shadows_on_catchers_are_those_of_cycles(renderer, tmp_path):
     camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5))
     layer = scene.view_layers[0]
     layer.cycles.use_pass_shadow_catcher = layer.rppm.use_pass_shadow_catcher = True
-    scene.render.engine, scene.cycles.samples = "CYCLES", 128
-    scene.render.filepath = str(tmp_path / "cycles.exr")
-    bpy.ops.render.render(write_still=True)
-    with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:
-        channels = {name: channel.pixels[::-1] for part in file.parts for name, channel in part.channels.items()}
-    theirs = np.stack([channels[f"ViewLayer.Shadow Catcher.{letter}"] for letter in "RGB"], axis=-1)
+    channels = cycles_channels(128)
+    theirs = np.stack([channels[f"Shadow Catcher.{letter}"] for letter in "RGB"], axis=-1)
     exported = exported_scene()
     exported.settings = exported.settings.with_values(iterations=128, photons=64)
     mine = renderer.render(exported).frame.passes["Shadow Catcher"]

@@ -1,15 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The pass Vector beside Cycles', pixel by pixel."""
 
-import bpy
 import numpy as np
-import OpenEXR
 import pytest
 from support.moving import FRAME, animate, taken_scene
 
-from .scenes import DIFFUSE, PRINCIPLED, box, camera, light, material, new_scene, place, plane
-
-NOT_FILTERED = 0.01
+from .scenes import (
+    DIFFUSE,
+    PRINCIPLED,
+    box,
+    camera,
+    cycles_channels,
+    light,
+    material,
+    new_scene,
+    place,
+    plane,
+    unfilter,
+)
 
 
 @pytest.fixture
@@ -40,20 +48,16 @@ def moving():
     return scene
 
 
-def cycles_vectors(scene: bpy.types.Scene, path) -> np.ndarray:
+def cycles_vectors() -> np.ndarray:
     """(H, W, 4), row 0 at the bottom."""
-    scene.render.engine, scene.cycles.samples = "CYCLES", 1
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", NOT_FILTERED
-    scene.render.filepath = str(path / "cycles.exr")
-    bpy.ops.render.render(write_still=True)
-    with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:
-        channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
-    return np.stack([channels[f"ViewLayer.Vector.{letter}"][::-1] for letter in "XYZW"], axis=-1)
+    unfilter()
+    channels = cycles_channels()
+    return np.stack([channels[f"Vector.{letter}"] for letter in "XYZW"], axis=-1)
 
 
-def test_vectors_are_those_of_cycles(renderer, moving, tmp_path):
+def test_vectors_are_those_of_cycles(renderer, moving):
     """Not of orthographic cameras: those of Cycles are of a perspective before and after."""
-    expected = cycles_vectors(moving, tmp_path)
+    expected = cycles_vectors()
     scene = taken_scene()
     assert scene.neighbors is not None and scene.shutter is None and scene.warnings == []
     scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64)

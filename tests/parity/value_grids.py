@@ -6,7 +6,6 @@ a face of its own: inputs are attributes of faces, which are not interpolated, a
 which Cycles neither filters nor clamps. All cases share a render.
 """
 
-import os
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -15,7 +14,6 @@ from pathlib import Path
 import bpy
 import moderngl
 import numpy as np
-import OpenEXR
 from mathutils import Euler, Matrix
 
 from rppm_addon.blender.export.context import ExportContext
@@ -26,7 +24,7 @@ from rppm_addon.gl.sources import expand
 from rppm_addon.materials.node_kinds import FLOAT, NodeKind
 from rppm_addon.scene.node_graphs import Link, ShaderNode
 
-from .scenes import new_scene
+from .scenes import cycles_channels, new_scene, unfilter
 
 SAMPLE_SIZE = 0.02
 SCENE_MATRIX = Matrix.Translation((3.0, -2.0, 5.0)) @ Matrix.Rotation(np.pi / 2, 4, "Z")
@@ -208,10 +206,7 @@ def cycles_values(cases: Sequence[Case]) -> list[dict[str, np.ndarray]]:
     scene.camera.matrix_world = CAMERA_MATRIX
     camera.clip_start = 0.1
     scene.collection.objects.link(scene.camera)
-    scene.render.engine = "CYCLES"
-    scene.cycles.samples = 1
-    scene.cycles.pixel_filter_type = "BOX"
-    scene.cycles.filter_width = 0.01
+    unfilter()
     aovs = set()
     for case in cases:
         for index, name in enumerate(case.compared):
@@ -220,12 +215,7 @@ def cycles_values(cases: Sequence[Case]) -> list[dict[str, np.ndarray]]:
         aov = scene.view_layers[0].aovs.add()
         aov.name = f"{'float' if is_float else 'vector'}_{index}"
         aov.type = "VALUE" if is_float else "COLOR"
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = os.path.join(folder, "cycles.exr")
-        bpy.ops.render.render(write_still=True)
-        parts = OpenEXR.File(scene.render.filepath, separate_channels=True).parts
-        channels = {name: channel.pixels[::-1] for part in parts for name, channel in part.channels.items()}
-        pictures = {".".join(name.split(".")[-2:]): pixels for name, pixels in channels.items()}
+    pictures = cycles_channels()
     values, start = [], 0
     for case in cases:
         found = {}

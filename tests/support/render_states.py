@@ -6,7 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.state import RenderState
+from rppm_addon.scene import Scene
 
 
 def assert_same_array(mine: np.ndarray, other: np.ndarray, name: str) -> None:
@@ -34,3 +36,21 @@ def assert_same_state(mine: RenderState, other: RenderState, *names: str) -> Non
             assert_same_array(a, b, field.name)
         else:
             assert a == b, field.name
+
+
+def assert_goes_on(mapper: ProgressivePhotonMapper, scene: Scene, *names: str, iterations: int = 4) -> RenderState:
+    """A render that is begun anew from the state after two iterations ends as the one that was not, which it returns.
+
+    names: fields of the states that must be equal, all by default.
+    """
+    mapper.build(scene)
+    states = []
+    for _ in range(iterations):
+        mapper.iterate()
+        states.append(mapper.state())
+    mapper.build(scene)
+    mapper.resume(states[1])
+    for _ in range(iterations - 2):
+        mapper.iterate()
+    assert_same_state(mapper.state(), states[-1], *names)
+    return states[-1]

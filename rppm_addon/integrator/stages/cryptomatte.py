@@ -98,9 +98,7 @@ class Cryptomatte(BufferSet):
             importons.living.run(
                 self._program,
                 {
-                    "Closures": importons.closures.buffer,
-                    "Rays": importons.rays.buffer,
-                    "CameraPaths": importons.paths.buffer,
+                    **importons.path_blocks,
                     "Attributes": context.geometry.attributes.buffer,
                     "Identifiers": names.buffer,
                     "Pairs": pairs.buffer,

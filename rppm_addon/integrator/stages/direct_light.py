@@ -115,9 +115,7 @@ class DirectLight(BufferSet):
             self._sample,
             {
                 **context.lights.tree_buffers,
-                "Closures": importons.closures.buffer,
-                "Rays": importons.rays.buffer,
-                "CameraPaths": importons.paths.buffer,
+                **importons.path_blocks,
                 "ShadowRays": self._rays.buffer,
                 "Contributions": self.contributions.buffer,
                 "LightSplits": self.splits.buffer,

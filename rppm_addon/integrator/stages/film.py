@@ -147,9 +147,7 @@ class Film(BufferSet):
             self._pass_program,
             {
                 "Camera": camera,
-                "Closures": importons.closures.buffer,
-                "Rays": importons.rays.buffer,
-                "CameraPaths": importons.paths.buffer,
+                **importons.path_blocks,
                 "PassCounts": self._counts.buffer,
                 **self.pass_blocks(band),
                 "Hits": importons.hits.buffer,
@@ -178,9 +176,7 @@ class Film(BufferSet):
         importons.living.run(
             self._caught_shadows,
             {
-                "Closures": importons.closures.buffer,
-                "Rays": importons.rays.buffer,
-                "CameraPaths": importons.paths.buffer,
+                **importons.path_blocks,
                 "LitCatchers": catcher.lit.buffer,
                 **self.pass_blocks(band),
             },

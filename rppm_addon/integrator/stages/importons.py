@@ -67,6 +67,11 @@ class Importons(BufferSet):
         if self.aovs.size:
             self.aovs.clear()
 
+    @property
+    def path_blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that look at the paths and the surfaces that they have met."""
+        return {"Closures": self.closures.buffer, "Rays": self.rays.buffer, "CameraPaths": self.paths.buffer}
+
     def trace(self, context: StageContext) -> bool:
         """Find what the paths that go on hit; whether any may do so."""
         with context.timers.stage("camera tracing"):
@@ -113,9 +118,7 @@ class Importons(BufferSet):
                 self._scatter,
                 {
                     **lights.tree_buffers,
-                    "Closures": self.closures.buffer,
-                    "Rays": self.rays.buffer,
-                    "CameraPaths": self.paths.buffer,
+                    **self.path_blocks,
                     "Importons": self.importons.buffer,
                     "Radiances": self.radiances.buffer,
                     "Materials": context.materials.buffers["Materials"],

@@ -85,9 +85,7 @@ class MotionVectors(BufferSet):
         importons.living.run(
             self._program,
             {
-                "Closures": importons.closures.buffer,
-                "Rays": importons.rays.buffer,
-                "CameraPaths": importons.paths.buffer,
+                **importons.path_blocks,
                 "Hits": importons.hits.buffer,
                 "Triangles": context.geometry.triangles.buffer,
                 "TrianglesBefore": self._before.buffer,
