@@ -13,7 +13,7 @@ from rppm_addon.commands.frame_numbers import frame_numbers, path_of_frame
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene.errors import SettingsError
 
-from .conftest import start_rppm
+from .conftest import rppm_here, start_rppm
 
 
 @pytest.mark.parametrize(
@@ -77,10 +77,10 @@ def test_names_of_frames(name, frame, expected):
         (("floor.blend", "-o", "out_####.exr"), 1, "say which frame"),
     ],
 )
-def test_arguments_that_do_not_go_together(tmp_path, rppm, monkeypatch, arguments, status, why):
+def test_arguments_that_do_not_go_together(tmp_path, monkeypatch, arguments, status, why):
     monkeypatch.chdir(Path(__file__).resolve().parents[2])
     arguments = [str(tmp_path / item) if "." in item and ".." not in item else item for item in arguments]
-    found, output, errors = rppm("render", *arguments)
+    found, output, errors = rppm_here("render", *arguments)
     assert (found, errors.count("\n"), "Traceback" in errors) == (status, 1, False), errors
     assert why in errors.replace(f"{tmp_path}/", "")
     assert not any(tmp_path.iterdir())

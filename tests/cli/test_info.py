@@ -3,10 +3,12 @@
 
 import json
 
+from .conftest import rppm_here
 
-def test_the_memory_of_a_saved_scene(tmp_path, rppm, saved_scene):
+
+def test_the_memory_of_a_saved_scene(tmp_path, saved_scene):
     report = tmp_path / "new" / "info.json"
-    status, output, errors = rppm(
+    status, output, errors = rppm_here(
         "info", "--scene", saved_scene, "--resolution", "40x30", "--json", report,
         "--set", "rppm.photons=2000", "--set", "rppm.max_photon_bounces=2",
     )  # fmt: skip
@@ -32,14 +34,14 @@ def test_the_memory_of_a_blend_file(tmp_path, rppm, blend_files):
     assert "32 R + 64 M L" in output
 
 
-def test_options_of_a_scene_need_one(rppm):
+def test_options_of_a_scene_need_one():
     for options in (("--resolution", "8x8"), ("--set", "rppm.photons=10"), ("--frame", "1")):
-        status, output, errors = rppm("info", *options)
+        status, output, errors = rppm_here("info", *options)
         assert (status, output) == (1, "") and "--scene" in errors
 
 
-def test_the_device_alone_as_json(tmp_path, rppm):
-    status, output, errors = rppm("info", "--json", tmp_path / "info.json")
+def test_the_device_alone_as_json(tmp_path):
+    status, output, errors = rppm_here("info", "--json", tmp_path / "info.json")
     assert status == 0, errors
     told = json.loads((tmp_path / "info.json").read_text())
     assert set(told) == {"blender", "device", "denoiser"} and told["device"]["limits"]

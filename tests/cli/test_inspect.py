@@ -9,10 +9,13 @@ import PIL.Image
 from rppm_addon.commands.inspection import false_colors
 from rppm_addon.pictures import read_exr
 
+from .conftest import rppm_here
 
-def test_a_saved_scene_is_inspected(tmp_path, rppm, saved_scene):
+
+def test_a_saved_scene_is_inspected(tmp_path, saved_scene):
     png, exr, report = tmp_path / "new" / "cost.png", tmp_path / "cost.exr", tmp_path / "cost.json"
-    status, output, errors = rppm("inspect", saved_scene, "-o", png, "-o", exr, "--quantity", "list", "--json", report)
+    outputs = ("-o", png, "-o", exr, "--json", report)
+    status, output, errors = rppm_here("inspect", saved_scene, *outputs, "--quantity", "list")
     assert status == 0, errors
     picture = read_exr(exr)
     listed = picture.layer("List")
@@ -29,8 +32,8 @@ def test_a_saved_scene_is_inspected(tmp_path, rppm, saved_scene):
     assert "steps" in output and "deep cubemap cells" in output and "yellow" in output
 
 
-def test_an_unknown_quantity_is_refused(tmp_path, rppm, saved_scene):
-    status, _, errors = rppm("inspect", saved_scene, "-o", tmp_path / "x.png", "--quantity", "speed")
+def test_an_unknown_quantity_is_refused(tmp_path, saved_scene):
+    status, _, errors = rppm_here("inspect", saved_scene, "-o", tmp_path / "x.png", "--quantity", "speed")
     assert status == 2 and "speed" in errors and "steps" in errors
 
 

@@ -9,6 +9,8 @@ from rppm_addon.pictures import read_exr
 from rppm_addon.scene import AovOutput, save_scene
 from rppm_addon.scene.cryptomatte import identifiers_of, metadata
 
+from .conftest import rppm_here
+
 
 @pytest.fixture
 def scene_file(tmp_path):
@@ -34,15 +36,15 @@ def check(picture, scene):
     assert picture.attributes.items() >= {**scene.stamps, **metadata(scene)}.items()
 
 
-def test_a_file_has_its_passes_and_their_names(tmp_path, rppm, scene_file):
+def test_a_file_has_its_passes_and_their_names(tmp_path, scene_file):
     file, scene = scene_file
-    status, _, errors = rppm("render", file, "-o", tmp_path / "whole.exr", "--samples", 2)
+    status, _, errors = rppm_here("render", file, "-o", tmp_path / "whole.exr", "--samples", 2)
     assert status == 0, errors
     check(read_exr(tmp_path / "whole.exr"), scene)
 
 
 @pytest.mark.long
-def test_parts_give_the_file_of_the_whole(tmp_path, rppm, scene_file):
+def test_parts_give_the_file_of_the_whole(tmp_path, scene_file):
     file, scene = scene_file
     whole, first, second, merged = (tmp_path / f"{name}.exr" for name in ("whole", "first", "second", "merged"))
     for arguments in (
@@ -51,7 +53,7 @@ def test_parts_give_the_file_of_the_whole(tmp_path, rppm, scene_file):
         ("render", file, "-o", second, "--samples-range", "2:5"),
         ("merge", first, second, "-o", merged),
     ):
-        status, _, errors = rppm(*arguments)
+        status, _, errors = rppm_here(*arguments)
         assert status == 0, errors
     expected, found = read_exr(whole), read_exr(merged)
     assert expected.channels.keys() == found.channels.keys()
