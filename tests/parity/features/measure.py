@@ -75,8 +75,11 @@ def white_of(reference: np.ndarray) -> float:
     return float(np.percentile(reference, 99)) or 1.0
 
 
-def measure(row: Row, renderer: Renderer) -> Measurement:
-    """Build the row's scene, render it with both engines and compare."""
+def measure(row: Row, renderer: Renderer, part: float = 1.0) -> Measurement:
+    """Build the row's scene, render it with both engines and compare.
+
+    part: of the usual iterations of light that RPPM takes.
+    """
     row.build()
     values = row.kind is Kind.VALUES
     cycles = bpy.context.scene.cycles
@@ -84,7 +87,10 @@ def measure(row: Row, renderer: Renderer) -> Measurement:
         cycles.pixel_filter_type, cycles.filter_width = "BOX", 0.01
     scene = export_scene(bpy.context.evaluated_depsgraph_get())
     settings = (VALUES if values else LIGHT) | row.settings
-    scene.settings = scene.settings.with_values(**settings | {"iterations": settings["iterations"] * row.effort})
+    iterations = settings["iterations"] * row.effort
+    scene.settings = scene.settings.with_values(
+        **settings | {"iterations": iterations if values else round(part * iterations)}
+    )
     reference = render_cycles(1, 1) if values else render_cycles(SAMPLES * row.effort, CYCLES_SEEDS)
     pictures = _batches(renderer, scene, 1 if values else BATCHES)
     return compared(pictures, reference, values, tuple(scene.warnings))
