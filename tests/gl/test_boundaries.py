@@ -228,7 +228,9 @@ def ball_estimate(radius: float, even_sky: bool) -> float:
     return float((2 * (1 - t) * seen).mean() * reach)
 
 
-@pytest.mark.parametrize("radius", [0.2, 0.4, 0.69, 1.0, 1.5])
+@pytest.mark.parametrize(
+    "radius", [0.2, 0.69, 1.5, *(pytest.param(other, marks=pytest.mark.long) for other in (0.4, 1.0))]
+)
 @pytest.mark.parametrize("light", ["sun", "world"])
 def test_a_ball_is_estimated_as_its_closed_form_tells(renderer, light, radius):
     """Sunlight has no bias up to 0.7 of the ball's radius: each photon is weighed by the importon's own cosine.

@@ -280,7 +280,10 @@ def test_radii_shrink_at_the_rates_of_the_theory(alpha):
         assert abs(np.log(values[(1 << 20) - 1] / values[(1 << 19) - 1]) / np.log(2) - limit) < 1e-3
 
 
-@pytest.mark.parametrize("alpha", [0.7, 0.5])
+ALPHAS = [0.7, pytest.param(0.5, marks=pytest.mark.long)]
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
 def test_bias_of_direct_light(mapper, alpha):
     scene = lamp(0.0, 8192, 0.3, alpha)
     points = pixel_points(scene)
@@ -301,6 +304,7 @@ def test_bias_of_a_caustic(mapper):
     assert_bias(means, lens_radiance(np.linalg.norm(points, axis=-1)), bias, 0.7)
 
 
+@pytest.mark.long
 def test_bias_of_interreflection(mapper, monkeypatch):
     """With a wide radius that holds a thousand photons: with eight, noise would hide the bias."""
     monkeypatch.setattr("rppm_addon.integrator.density_estimation.radii.EXPECTED_PHOTONS", 1000)
@@ -314,13 +318,14 @@ def test_bias_of_interreflection(mapper, monkeypatch):
 
 # Few photons in a kernel, so that the strata of the emission's Sobol points, larger than that, do not matter: with
 # many the variance is up to hundreds of times smaller than that of independent photons, and falls more slowly.
-@pytest.mark.parametrize("alpha", [0.7, 0.5])
+@pytest.mark.parametrize("alpha", ALPHAS)
 def test_variance_of_direct_light(mapper, alpha):
     scene = lamp(0.5, 512, 0.06, alpha, 16)
     means, squares, radii = running_means(mapper, scene, 24)
     assert_variance(means, predicted_variance(scene, lamp_radiance, squares, radii), alpha)
 
 
+@pytest.mark.long
 def test_variance_of_a_caustic(mapper):
     scene = lens(512, 0.003, size=16)
     means, squares, radii = running_means(mapper, scene, 24)

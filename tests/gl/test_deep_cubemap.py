@@ -42,8 +42,9 @@ def reference(meshes):
     return Reference(meshes)
 
 
-def test_a_million_random_rays(context, library, meshes, reference):
-    rays = ray_records(*make_rays("uniform", 1_000_000, PLAIN, seed=1))
+@pytest.mark.parametrize("count", [100_000, pytest.param(1_000_000, marks=pytest.mark.long)])
+def test_random_rays(context, library, meshes, reference, count):
+    rays = ray_records(*make_rays("uniform", count, PLAIN, seed=1))
     with Scene(context, library, meshes, PLAIN, 128) as scene:
         scene.trace(rays[:1000])  # compiles
         start = time.perf_counter()

@@ -66,11 +66,20 @@ FOUND = {
 standard errors are 0.6 to 1 % of the mean."""
 OFTEN = {*FOUND, "LGE traced", "LGE stored"}
 """Tried each time: where the last surface finds no indirect light, the gather has nothing to add."""
+SELDOM = {
+    ("LSGE traced", PHOTONS), ("LGGE traced traced", PHOTONS), ("LGGE stored traced", PHOTONS),
+    ("LGDGE stored", RAYS), ("LGDGE stored", PHOTONS),
+}  # fmt: skip
+"""Five seconds and more each; in the other mode or gathered, the classes are tried each time."""
+GATHERED_SELDOM = {("LGDE stored", PHOTONS), ("LGDGE stored", RAYS), ("LGGE stored stored", RAYS)}
 GATHERING = [
-    pytest.param(name, mode, id=f"{name}-{mode.value}", marks=[] if name in OFTEN else [pytest.mark.long])
+    pytest.param(
+        name, mode, id=f"{name}-{mode.value}",
+        marks=[] if name in OFTEN and (name, mode) not in GATHERED_SELDOM else [pytest.mark.long],
+    )
     for name in CLASSES
     for mode in MODES
-]
+]  # fmt: skip
 WITHOUT_EXTENT: dict[str, Build] = {
     "LGE point": lambda mode: straight(TRACED, mode),
     "LGGE point": lambda mode: two_bounces(TRACED, TRACED, mode),
@@ -114,8 +123,14 @@ def glossy_diffuse_glossy(roughness: float, mode: DirectLight) -> Case:
     return Case(scene, expected, WIDE, FLOOR_AXES)
 
 
-@pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.value)
-@pytest.mark.parametrize("name", CLASSES)
+@pytest.mark.parametrize(
+    ("name", "mode"),
+    [
+        pytest.param(name, mode, id=f"{name}-{mode.value}", marks=[pytest.mark.long] if (name, mode) in SELDOM else [])
+        for name in CLASSES
+        for mode in MODES
+    ],
+)
 def test_glossy_paths_are_rendered_once(mapper, name, mode):
     compare(mapper, f"{name} {mode.value}", CLASSES[name](mode))
 

@@ -77,7 +77,9 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.long] if name == "1 m by photons" else []) for name in CASES]
+)
 def test_the_floor_gets_the_world_by_the_wall(mapper, name):
     """The floor has the white world for neighbor, and, where the wall is, the wall's color."""
     extent, wall, mode, settings = CASES[name]

@@ -76,7 +76,7 @@ def test_a_state_goes_on_bit_for_bit(mapper, other_mapper, direct_light, stops):
         assert_same_state(run_until(other_mapper, LAST), whole)
 
 
-@pytest.mark.parametrize("moving", [False, True])
+@pytest.mark.parametrize("moving", [pytest.param(False, marks=pytest.mark.long), True])
 def test_automatic_photons_are_those_of_the_whole(mapper, other_mapper, moving):
     """Later iterations have other numbers than the first one, however one comes to them."""
     scene = busy_room()

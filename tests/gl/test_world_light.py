@@ -66,7 +66,9 @@ def hole_form_factor(scene: Scene) -> np.ndarray:
     return corner(right, top) - corner(left, top) - corner(right, bottom) + corner(left, bottom)
 
 
-@pytest.mark.parametrize("route", [DensityEstimation.GRID, DensityEstimation.RASTERIZED])
+@pytest.mark.parametrize(
+    "route", [DensityEstimation.GRID, pytest.param(DensityEstimation.RASTERIZED, marks=pytest.mark.long)]
+)
 def test_the_floor_gets_the_sky_through_the_hole(mapper, route):
     scene = room(BLACK, density_estimation=route)
     pictures = picture_by_seed(mapper, f"hole {route.name}", scene)

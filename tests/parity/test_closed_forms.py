@@ -26,8 +26,10 @@ from .scenes import (
 WHOLE = np.ones((1, RESOLUTION, RESOLUTION, 3))
 
 
-@pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
-@pytest.mark.parametrize("shape", ["box", "ball"])
+@pytest.mark.parametrize(
+    ("shape", "mode"),
+    [("box", "RAYS"), ("box", "PHOTONS"), ("ball", "RAYS"), pytest.param("ball", "PHOTONS", marks=pytest.mark.long)],
+)
 def test_furnace(renderer, shape, mode):
     """Inside a closed surface that emits 1 and reflects a half, radiance is 1 / (1 - 0.5) everywhere."""
     new_scene()

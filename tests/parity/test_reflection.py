@@ -52,7 +52,8 @@ def test_rough_metal(renderer, roughness):
     compare(f"metal_{roughness}", result.pictures, reference, CONVERGED)
 
 
-@pytest.mark.parametrize("roughness", [0.1, pytest.param(0.5, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("roughness", [0.1, 0.5])
 def test_plastic(renderer, roughness):
     new_scene()
     _floor_wall_and_light()
