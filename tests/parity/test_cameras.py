@@ -26,7 +26,7 @@ from .scenes import (
     unfilter,
 )
 
-PHOTONS = {"photons": 4096, "photon_path_length": 6, "iterations": 24, "seeds": 2}
+PHOTONS = {"photons": 4096, "photon_path_length": 6, "iterations": 12, "seeds": 2}
 """Settings with which the noise of a block is about a percent."""
 
 

@@ -39,7 +39,7 @@ def test_furnace(renderer, shape, mode):
     else:
         ball(1.0, glowing, segments=48)
     camera((0.5, 0.3, 0.2), (-1.0, -0.4, -0.1), 80.0)
-    result = render_rppm(renderer, direct_light=mode, photons=32768, photon_path_length=11, iterations=8)
+    result = render_rppm(renderer, direct_light=mode, photons=32768, photon_path_length=11, iterations=4)
     compare(f"furnace_{shape}_{mode.lower()}", result.pictures, 2.0 * WHOLE, CONVERGED)
 
 
@@ -48,7 +48,7 @@ def test_diffuse_plane_under_a_white_sky(renderer, mode):
     new_scene(world=1.0)
     plane(3.0, material(DIFFUSE, Color=0.6))
     camera((0.0, -1.0, 6.0), (0.0, 0.0, 0.0), 30.0)
-    result = render_rppm(renderer, direct_light=mode, photons=65536, photon_path_length=2, iterations=12)
+    result = render_rppm(renderer, direct_light=mode, photons=32768, photon_path_length=2, iterations=12)
     compare(f"sky_{mode.lower()}", result.pictures, 0.6 * WHOLE, CONVERGED)
 
 

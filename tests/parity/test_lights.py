@@ -12,7 +12,7 @@ UP_TWO = {"at": (0.3, 0.2, 2.0)}
 TILTED = {"at": (0.5, 0.0, 2.0), "turn": (20.0, 30.0, 10.0)}
 
 
-def _lamp(kind, where, energy=100.0, **properties):
+def _light(kind, where, energy=100.0, **properties):
     return lambda: light(kind, energy, place(**where), **properties)
 
 
@@ -35,10 +35,10 @@ def _square_seen_by_no_ray():
 
 
 LIGHTS = {
-    "point": _lamp("POINT", UP_TWO, shadow_soft_size=0.0),
-    "point_soft": _lamp("POINT", UP_TWO, shadow_soft_size=0.5),
-    "point_sphere": _lamp("POINT", UP_TWO, shadow_soft_size=0.5, use_soft_falloff=False),
-    "point_factors": _lamp(
+    "point": _light("POINT", UP_TWO, shadow_soft_size=0.0),
+    "point_soft": _light("POINT", UP_TWO, shadow_soft_size=0.5),
+    "point_sphere": _light("POINT", UP_TWO, shadow_soft_size=0.5, use_soft_falloff=False),
+    "point_factors": _light(
         "POINT",
         UP_TWO,
         energy=3.0,
@@ -49,24 +49,24 @@ LIGHTS = {
         use_temperature=True,
         temperature=4000.0,
     ),
-    "spot": _lamp("SPOT", TILTED, shadow_soft_size=0.0, spot_size=math.radians(70.0), spot_blend=0.5),
-    "spot_scaled": _lamp(
+    "spot": _light("SPOT", TILTED, shadow_soft_size=0.0, spot_size=math.radians(70.0), spot_blend=0.5),
+    "spot_scaled": _light(
         "SPOT", TILTED | {"scale": (1.0, 1.6, 1.0)}, shadow_soft_size=0.2, spot_size=math.radians(50.0), spot_blend=0.8
     ),
-    "sun": _lamp("SUN", TILTED, energy=3.0, angle=0.0),
-    "sun_wide": _lamp("SUN", TILTED, energy=3.0, angle=math.radians(40.0)),
-    "area_square": _lamp("AREA", UP_TWO, shape="SQUARE", size=1.0),
-    "area_rectangle": _lamp("AREA", TILTED | {"scale": (2.0, 0.5, 1.0)}, shape="RECTANGLE", size=0.6, size_y=1.4),
-    "area_disk": _lamp("AREA", UP_TWO, shape="DISK", size=1.0),
-    "area_ellipse": _lamp("AREA", TILTED | {"scale": (2.0, 1.0, 3.0)}, shape="ELLIPSE", size=0.5, size_y=0.3),
-    "area_spread": _lamp("AREA", TILTED, shape="SQUARE", size=0.7, spread=math.radians(100.0)),
-    "area_not_normalized": _lamp("AREA", UP_TWO, energy=10.0, shape="DISK", size=1.5, normalize=False),
+    "sun": _light("SUN", TILTED, energy=3.0, angle=0.0),
+    "sun_wide": _light("SUN", TILTED, energy=3.0, angle=math.radians(40.0)),
+    "area_square": _light("AREA", UP_TWO, shape="SQUARE", size=1.0),
+    "area_rectangle": _light("AREA", TILTED | {"scale": (2.0, 0.5, 1.0)}, shape="RECTANGLE", size=0.6, size_y=1.4),
+    "area_disk": _light("AREA", UP_TWO, shape="DISK", size=1.0),
+    "area_ellipse": _light("AREA", TILTED | {"scale": (2.0, 1.0, 3.0)}, shape="ELLIPSE", size=0.5, size_y=0.3),
+    "area_spread": _light("AREA", TILTED, shape="SQUARE", size=0.7, spread=math.radians(100.0)),
+    "area_not_normalized": _light("AREA", UP_TWO, energy=10.0, shape="DISK", size=1.5, normalize=False),
     "emissive_mesh": _glowing_square,
     "emissive_mesh_of_no_ray": _square_seen_by_no_ray,
 }
 MODES = {
     "RAYS": {"photons": 1024, "photon_path_length": 2, "iterations": 12},
-    "PHOTONS": {"photons": 65536, "photon_path_length": 2, "iterations": 6},
+    "PHOTONS": {"photons": 32768, "photon_path_length": 2, "iterations": 6},
 }
 
 

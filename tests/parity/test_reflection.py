@@ -48,7 +48,7 @@ def test_rough_metal(renderer, roughness):
     metal = material(PRINCIPLED, Base_Color=(0.9, 0.6, 0.3), Metallic=1.0, Roughness=roughness)
     ball(0.9, metal, place(at=(0.0, 0.3, 0.9)))
     reference = render_cycles(samples=512)
-    result = render_rppm(renderer, photons=65536, photon_path_length=6, iterations=12)
+    result = render_rppm(renderer, photons=16384, photon_path_length=6, iterations=12)
     compare(f"metal_{roughness}", result.pictures, reference, CONVERGED)
 
 

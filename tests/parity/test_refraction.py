@@ -36,7 +36,7 @@ def test_glass_slab(renderer, mode):
     light("AREA", 200.0, place(at=(0.0, 0.0, 3.0)), shape="SQUARE", size=3.0)
     camera((0.0, -2.4, 3.4), (0.0, 0.0, 0.3), 36.0)
     reference = render_cycles(samples=1024)
-    result = render_rppm(renderer, direct_light=mode, photons=49152, iterations=16, **PATHS)
+    result = render_rppm(renderer, direct_light=mode, photons=32768, iterations=8, **PATHS)
     compare(f"slab_{mode.lower()}", result.pictures, reference, CONVERGED)
 
 

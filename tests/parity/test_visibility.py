@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ray visibility of objects and lights, lamps whose nodes change the falloff, and emission that varies over a mesh."""
+"""Ray visibility of objects and lights, nodes that change a light's falloff, and emission that varies over a mesh."""
 
 import math
 
@@ -22,8 +22,8 @@ from .scenes import (
 )
 
 MODES = {
-    "RAYS": {"photons": 8192, "photon_path_length": 6, "camera_path_length": 6, "iterations": 20},
-    "PHOTONS": {"photons": 65536, "photon_path_length": 6, "camera_path_length": 6, "iterations": 8},
+    "RAYS": {"photons": 8192, "photon_path_length": 6, "camera_path_length": 6, "iterations": 10},
+    "PHOTONS": {"photons": 32768, "photon_path_length": 6, "camera_path_length": 6, "iterations": 8},
 }
 OBJECTS = [
     ("visible_camera", "RAYS"),
@@ -55,8 +55,8 @@ def test_lights_that_do_not_light_all(renderer, flag):
     new_scene(world=0.1)
     plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7)))
     ball(0.7, material(GLOSSY, "GGX", Color=(0.9, 0.6, 0.3), Roughness=0.4), place(at=(0.0, 0.0, 0.7)))
-    lamp = light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
-    setattr(lamp, flag, False)
+    made = light("AREA", 60.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
+    setattr(made, flag, False)
     camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), 40.0)
     reference = render_cycles(samples=512)
     result = render_rppm(renderer, direct_light="RAYS", **MODES["RAYS"])
@@ -65,14 +65,14 @@ def test_lights_that_do_not_light_all(renderer, flag):
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize(("kind", "output"), [("POINT", "Linear"), ("AREA", "Constant"), ("SPOT", "Quadratic")])
-def test_falloff_of_lamps(renderer, kind, output, mode):
+def test_falloff_of_lights(renderer, kind, output, mode):
     new_scene()
     plane(3.0, material(DIFFUSE, Color=(0.8, 0.7, 0.6)))
     camera((0.0, -1.0, 6.0), (0.0, 0.0, 0.0), 30.0)
-    lamp = light(kind, 40.0, place(at=(0.3, 0.2, 2.0)))
-    if lamp.data.node_tree is None:
-        lamp.data.use_nodes = True
-    tree = lamp.data.node_tree
+    made = light(kind, 40.0, place(at=(0.3, 0.2, 2.0)))
+    if made.data.node_tree is None:
+        made.data.use_nodes = True
+    tree = made.data.node_tree
     falloff = tree.nodes.new("ShaderNodeLightFalloff")
     falloff.inputs["Strength"].default_value = 0.8
     tree.links.new(falloff.outputs[output], tree.nodes["Emission"].inputs["Strength"])
@@ -127,7 +127,7 @@ def test_shadow_catchers_show_the_shadow_of_lights(renderer):
 
 @pytest.mark.parametrize("lets_pass", [True, False])
 def test_transparent_shadows(renderer, lets_pass):
-    """Half of the light passes a transparent screen, or none of a lamp's."""
+    """Half of the light passes a transparent screen, or none of a light's."""
     new_scene()
     plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7)))
     half = material("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.4, 0.8), Alpha=0.5, Specular_IOR_Level=0.0)
