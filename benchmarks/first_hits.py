@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures both routes to photons' first hits, in turns, and checks that they give the same bits.
 
-Takes scenes that `rppm export` wrote; without any, a box with a glass and a mirror sphere. Point lamps, a spot and suns
-take the place of the strongest light, each alone. Prints a table.
+Takes scenes that `rppm export` wrote; without any, a box with a glass and a mirror sphere. Point lights, a spot and
+suns take the place of the strongest light, each alone. Prints a table.
 """
 
 import dataclasses
@@ -20,7 +20,7 @@ from .route_comparison import named_scenes, parse
 
 ROUTES = FirstPhotonHits.RASTERIZED, FirstPhotonHits.TRACED
 STAGES = "emission", "first photon hits"
-LAMPS = {
+LIGHTS = {
     "point": {"kind": LightKind.POINT, "radius": 0.0},
     "point, radius 0.5 % of the scene's": {"kind": LightKind.POINT},
     "spot": {"kind": LightKind.SPOT, "radius": 0.0, "spot_angle": 1.6, "spot_blend": 0.2},
@@ -31,8 +31,8 @@ _LEARNING = 5
 """Iterations that are not counted: photons go where they are of use from the sixth on as from the second on."""
 
 
-def with_lamp(scene: Scene, name: str) -> Scene:
-    values = {"strength": np.full(3, 10.0), "graph": None} | LAMPS[name]
+def with_light(scene: Scene, name: str) -> Scene:
+    values = {"strength": np.full(3, 10.0), "graph": None} | LIGHTS[name]
     if "radius" not in values:
         corners = [
             scene.meshes[item.mesh].positions @ item.matrix[:3, :3].T + item.matrix[:3, 3] for item in scene.instances
@@ -82,14 +82,14 @@ def main(arguments: list[str] | None = None) -> int:
     context = Context.create()
     library, clock = ProgramLibrary(context), Clock(context)
     print(f"{context.information.name}; {clock.description}\n")
-    print("| scene | lamp | emission and first hits, ms: traced | rasterized | ratio |", end=" ")
+    print("| scene | light | emission and first hits, ms: traced | rasterized | ratio |", end=" ")
     print("iteration, ms: traced | rasterized | ratio | making them, ms | memory, MiB |\n|---|---|" + 8 * "---:|")
     for name, scene in named_scenes(options):
-        for lamp in LAMPS:
-            rasterized, traced = measure(context, library, clock, with_lamp(scene, lamp), options.iterations)
+        for light in LIGHTS:
+            rasterized, traced = measure(context, library, clock, with_light(scene, light), options.iterations)
             cells = [f"{1e3 * b:.3g} | {1e3 * a:.3g} | {a / b:.2f}" for a, b in zip(rasterized[:2], traced[:2])]
             cells += [f"{1e3 * rasterized[2]:.3g}", f"{rasterized[3] - traced[3]:.1f}"]
-            print(f"| {name} | {lamp} |", " | ".join(cells), "|", flush=True)
+            print(f"| {name} | {light} |", " | ".join(cells), "|", flush=True)
     context.release()
     return 0
 

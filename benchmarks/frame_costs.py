@@ -31,7 +31,7 @@ WARM_UP = 3
 
 
 def static_scene(side: int) -> bpy.types.Scene:
-    """2 side^2 triangles of a wavy floor in a few objects, a lamp, and a camera that circles above."""
+    """2 side^2 triangles of a wavy floor in a few objects, a light, and a camera that circles above."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     for number in range(4):
@@ -40,10 +40,10 @@ def static_scene(side: int) -> bpy.types.Scene:
         mesh = bpy.context.object.data
         for vertex in mesh.vertices:
             vertex.co.z = 0.1 * math.sin(9.0 * vertex.co.x) * math.cos(7.0 * vertex.co.y)
-    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-    lamp.location, lamp.data.energy = (1.0, 1.0, 3.0), 300.0
+    light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))
+    light.location, light.data.energy = (1.0, 1.0, 3.0), 300.0
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    for made in (lamp, camera):
+    for made in (light, camera):
         scene.collection.objects.link(made)
     target = camera.constraints.new("TRACK_TO")
     target.target = bpy.data.objects["Grid"]
@@ -69,7 +69,7 @@ def moving_scene() -> bpy.types.Scene:
     shown.data.materials.append(material)
     roughness = material.node_tree.nodes["Principled BSDF"].inputs["Roughness"]
     roughness.driver_add("default_value").driver.expression = "0.2 + 0.6 * (frame % 7) / 7"
-    bpy.data.lights["Lamp"].driver_add("energy").driver.expression = "200 + frame % 11"
+    bpy.data.lights["Light"].driver_add("energy").driver.expression = "200 + frame % 11"
     return scene
 
 

@@ -17,9 +17,9 @@ def _stage() -> bpy.types.Scene:
     scene.rppm.photons = 1024
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = (0.0, 0.0, 20.0)
-    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-    lamp.location = (0.0, 0.0, 10.0)
-    for added in (camera, lamp):
+    light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))
+    light.location = (0.0, 0.0, 10.0)
+    for added in (camera, light):
         scene.collection.objects.link(added)
     scene.camera = camera
     scene.world = bpy.data.worlds.new("World")

@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
         default=[],
         metavar="PATH=VALUE",
         help="rppm.NAME for a render setting (rppm.alpha=0.6); in a .blend file any data path below the scene or "
-        "bpy.data (render.film_transparent=true, 'objects[\"Lamp\"].data.energy=50'); may be repeated",
+        "bpy.data (render.film_transparent=true, 'objects[\"Light\"].data.energy=50'); may be repeated",
     )
 
     program = _Parser(prog="rppm", description="Progressive photon mapping by rasterization.")

@@ -2,7 +2,7 @@
 """PATH=VALUE of --set: finds and sets a value of a .blend file without evaluating code.
 
 A path is what Blender's "Copy Full Data Path" shows after ``bpy.data.`` or after the scene:
-``render.film_transparent``, ``objects["Lamp"].data.energy``, ``objects["Lamp"].location[2]``.
+``render.film_transparent``, ``objects["Light"].data.energy``, ``objects["Light"].location[2]``.
 """
 
 import re

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Animations in which each kind of thing changes from frame to frame; frames are those of FRAMES.
 
-Each function fills a scene that has a floor, a wall and a lamp (``stage``). They are deterministic: positions are
+Each function fills a scene that has a floor, a wall and a light (``stage``). They are deterministic: positions are
 written out, and physics is baked into keyframes.
 """
 
@@ -16,15 +16,15 @@ FRAMES = range(1, 5)
 
 
 def stage(scene: bpy.types.Scene) -> None:
-    """A floor, a wall, an area lamp and a camera that looks at them from the front."""
+    """A floor, a wall, an area light and a camera that looks at them from the front."""
     set_world(scene, (0.05, 0.06, 0.08))
     floor = add_mesh(scene, "Floor", [(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)])
     wall = add_mesh(scene, "Wall", [(-3, 3, 0), (3, 3, 0), (3, 3, 4), (-3, 3, 4)])
     white = material("White", "ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.6, 1.0))
     for thing in (floor, wall):
         thing.data.materials.append(white)
-    lamp = add_light(scene, "AREA", "Lamp", energy=200.0, size=0.5)
-    lamp.location, lamp.rotation_euler = (1.0, -1.0, 3.5), (0.2, 0.25, 0.0)
+    light = add_light(scene, "AREA", "Light", energy=200.0, size=0.5)
+    light.location, light.rotation_euler = (1.0, -1.0, 3.5), (0.2, 0.25, 0.0)
     scene.camera.location, scene.camera.rotation_euler = (0.0, -5.0, 2.2), (math.radians(74.0), 0.0, 0.0)
     scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
     scene.frame_set(FRAMES[0])
@@ -258,9 +258,9 @@ def materials(scene: bpy.types.Scene, folder: Path) -> None:
     link(noisy.node_tree, noise.outputs["Color"], noisy.node_tree.nodes["Shader"].inputs["Color"])
     noise.inputs["W"].driver_add("default_value").driver.expression = "frame * 0.5"
     driven.data.materials.append(noisy)
-    lamp = bpy.data.objects["Lamp"]
-    keyed(lamp.data, "energy", 200.0, 100.0, 0.0, 50.0)
-    keyed(lamp.data, "color", (1, 1, 1), (1, 0.5, 0.2), (1, 1, 1), (0.2, 0.5, 1))
+    light = bpy.data.objects["Light"]
+    keyed(light.data, "energy", 200.0, 100.0, 0.0, 50.0)
+    keyed(light.data, "color", (1, 1, 1), (1, 0.5, 0.2), (1, 1, 1), (0.2, 0.5, 1))
     second = add_light(scene, "POINT", "Second", energy=60.0)
     keyed(second, "hide_render", True, False, False, True)
     keyed(second, "hide_viewport", True, False, False, True)

@@ -8,7 +8,7 @@ from rppm_addon.scene import Scene
 
 
 def stage(scene, material, size=16):
-    """A quad with the material that fills the picture, a quad that it lights, a sun, a lamp and a gray world."""
+    """A quad with the material that fills the picture, a quad that it lights, a sun, a light and a gray world."""
     scene.render.resolution_x = scene.render.resolution_y = size
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 2.0
     shown = add_mesh(scene, "Shown")
@@ -16,7 +16,7 @@ def stage(scene, material, size=16):
     shown.data.materials.append(material)
     add_mesh(scene, "Wall", [(-1, -1, 0), (-1, 1, 0), (-1, 1, 2), (-1, -1, 2)], [(0, 1, 2, 3)])
     add_light(scene, "SUN", "Sun", energy=1.0)
-    add_light(scene, "POINT", "Lamp", energy=10.0)
+    add_light(scene, "POINT", "Light", energy=10.0)
     set_world(scene, (0.2, 0.2, 0.2))
     scene.rppm.samples, scene.rppm.photons, scene.rppm.cubemap_resolution = 1, 512, 16
 

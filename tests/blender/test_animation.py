@@ -70,8 +70,8 @@ def moving(lit):
     add_mesh(lit, "Glowing", location=(0.9, 0.9, 0.2), scale=(0.3, 0.3, 1.0)).data.materials.append(asking)
     keyed(lit, '["glow"]', (0.5, 0.5, 0.5, 0.5, 2.0, 2.0))
 
-    lamp = add_light(lit, "POINT", "Lamp", energy=50.0)
-    keyed(lamp.data, "energy", (50.0, 50.0, 50.0, 20.0, 20.0, 20.0))
+    light = add_light(lit, "POINT", "Light", energy=50.0)
+    keyed(light.data, "energy", (50.0, 50.0, 50.0, 20.0, 20.0, 20.0))
     keyed(lit.world, 'node_tree.nodes["Background"].inputs[1].default_value', (1.0, 1.0, 1.0, 1.0, 1.0, 3.0))
     lit.world.node_tree.nodes["Background"].inputs[0].default_value = (0.05, 0.05, 0.1, 1.0)
     return lit

@@ -166,7 +166,7 @@ def test_missing_images(scene, renderer, tmp_path):
         radiance, warnings, _ = picture(renderer, scene)
         assert any(f'Material "{material.name}": node "Picture"' in text for text in warnings)
         assert radiance[..., 0].mean() > 4 * radiance[..., 1].mean()  # magenta
-        for name in ("Shown", "Wall", "Sun", "Lamp"):
+        for name in ("Shown", "Wall", "Sun", "Light"):
             bpy.data.objects.remove(bpy.data.objects[name])
 
 

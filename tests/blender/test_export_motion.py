@@ -238,8 +238,8 @@ def test_particles_that_are_born_or_die_are_not_seen(scene):
 def test_lights_and_cameras_move(scene):
     set_world(scene)
     add_mesh(scene)
-    lamp = add_light(scene, "POINT")
-    animate(lamp, "location", (-1.0, 0.0, 3.0), (0.0, 0.0, 3.0), (2.0, 0.0, 3.0))
+    light = add_light(scene, "POINT")
+    animate(light, "location", (-1.0, 0.0, 3.0), (0.0, 0.0, 3.0), (2.0, 0.0, 3.0))
     animate(scene.camera, "location", (0.0, 0.0, 5.0), (0.0, 0.0, 5.0), (0.0, 2.0, 5.0))
     animate(scene.camera.data, "lens", 50.0, 50.0, 100.0)
     blur()
@@ -249,7 +249,7 @@ def test_lights_and_cameras_move(scene):
     np.testing.assert_allclose(shutter.camera.matrices[:, 1, 3], [0.0, 0.0, 1.0], atol=1e-6)
     widths = shutter.camera.windows[:, 1] - shutter.camera.windows[:, 0]
     np.testing.assert_allclose(widths, 36.0 / np.array([50.0, 50.0, 75.0]), rtol=1e-5)
-    lamp.cycles.use_motion_blur = scene.camera.cycles.use_motion_blur = False
+    light.cycles.use_motion_blur = scene.camera.cycles.use_motion_blur = False
     assert taken_scene().shutter is None
 
 

@@ -114,7 +114,7 @@ def test_a_viewport_ends_by_a_noise_of_its_own(scene):
 
 def test_what_scripts_and_presets_set_is_exported(scene):
     """Blender evaluates a scene anew for what users set, and not by itself for what Python sets."""
-    lamp = add_light(scene, "POINT")
+    light = add_light(scene, "POINT")
     before = export(scene)
     for item in scene.rppm.bl_rna.properties:  # one at a time: each is an edit by itself
         if item.type in {"INT", "FLOAT", "BOOLEAN"} and item.identifier not in BESIDES | {"cubemap_resolution"}:
@@ -132,9 +132,9 @@ def test_what_scripts_and_presets_set_is_exported(scene):
     assert export(scene).settings.density_estimation is DensityEstimation.RASTERIZED
     scene.rppm.first_photon_hits = "TRACED"
     assert export(scene).settings.first_photon_hits is FirstPhotonHits.TRACED
-    scene.rppm.cubemap_center_object = lamp
+    scene.rppm.cubemap_center_object = light
     assert export(scene).cubemap_center == pytest.approx([0.0, 0.0, 3.0])
-    lamp.data.rppm.photon_weight = 3.0
+    light.data.rppm.photon_weight = 3.0
     assert (before.lights[0].photon_weight, export(scene).lights[0].photon_weight) == (1.0, 3.0)
 
 

@@ -22,7 +22,7 @@ def test_sixty_frames_hold_no_more_than_twenty(lit, tmp_path, persistent):
     row.driver_add("modifiers[0].count").driver.expression = "1 + frame % 5"
     row.driver_add("location", 0).driver.expression = "0.01 * frame"
     add_mesh(lit, "Guest", location=(0.0, 1.0, 0.5)).driver_add("hide_render").driver.expression = "frame % 3 == 0"
-    add_light(lit, "POINT", "Lamp").data.driver_add("energy").driver.expression = "20 + frame % 7"
+    add_light(lit, "POINT", "Light").data.driver_add("energy").driver.expression = "20 + frame % 7"
     tree = bpy.data.objects["Quad"].active_material.node_tree
     tree.nodes["Diffuse BSDF"].inputs["Roughness"].driver_add("default_value").driver.expression = "(frame % 4) / 4"
     set_world(lit, (0.1, 0.1, 0.1))

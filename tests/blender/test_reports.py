@@ -58,11 +58,11 @@ def test_the_radius_that_is_shown_is_the_one_that_is_used(facing):
 
 
 def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
-    """Lamps of all kinds, one of them with nodes, a glowing quad and a sky, with factors."""
+    """Lights of all kinds, one of them with nodes, a glowing quad and a sky, with factors."""
     factors = {"POINT": 1.0, "SPOT": 2.5, "SUN": 0.25, "AREA": 1.0}
     for kind, factor in factors.items():
-        lamp = add_light(facing, kind, f"The {kind}", energy=3.0 if kind == "SUN" else 40.0)
-        lamp.data.rppm.photon_weight = factor
+        light = add_light(facing, kind, f"The {kind}", energy=3.0 if kind == "SUN" else 40.0)
+        light.data.rppm.photon_weight = factor
     tree = bpy.data.objects["The AREA"].data
     tree.use_nodes = True
     tree.node_tree.nodes["Emission"].inputs["Strength"].default_value = 2.0
@@ -114,14 +114,14 @@ def test_what_a_final_render_reports(facing):
 
 
 def test_an_error_is_shown_until_a_render_succeeds(facing):
-    lamp = add_light(facing, "SUN")
-    lamp.data.rppm.photon_weight = 0.0
+    light = add_light(facing, "SUN")
+    light.data.rppm.photon_weight = 0.0
     with pytest.raises(RuntimeError, match="photon share 0"):
         bpy.ops.render.render()
     panel, context = panels.performance.RPPM_PT_status, context_of(facing)
     assert not panels.warnings.RPPM_PT_warnings.poll(context)
     assert panel.poll(context) and "all lights have photon share 0" in " ".join(drawn(panel, context).labels)
-    lamp.data.rppm.photon_weight = 1.0
+    light.data.rppm.photon_weight = 1.0
     rendered(facing)
     assert "photon share 0" not in " ".join(drawn(panel, context).labels)
 

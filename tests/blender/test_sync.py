@@ -31,8 +31,8 @@ def synced(scene):
         if bpy.app.version < (5, 0, 0):
             material.use_nodes = True
     cube.data.materials.append(bpy.data.materials["Red"])
-    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-    bpy.context.collection.objects.link(lamp)
+    light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))
+    bpy.context.collection.objects.link(light)
     world = scene.world = bpy.data.worlds.new("World")
     if bpy.app.version < (5, 0, 0):
         world.use_nodes = True
@@ -102,11 +102,11 @@ def ask_for_generated():
 
 
 def brighten():
-    bpy.data.lights["Lamp"].energy += 50.0
+    bpy.data.lights["Light"].energy += 50.0
 
 
-def move_lamp():
-    bpy.data.objects["Lamp"].location.z += 1.0
+def move_light():
+    bpy.data.objects["Light"].location.z += 1.0
 
 
 def recolor_world():
@@ -163,7 +163,7 @@ def next_frame():
 
 EDITS = (
     move, move_twin, edit_mesh, edit_other_mesh, paint, paint_unused, use_blue, swap_slot, ask_for_generated, brighten,
-    move_lamp, recolor_world, hide, hide_from_camera, subdivide, remove, add, exchange_data, instance_collection,
+    move_light, recolor_world, hide, hide_from_camera, subdivide, remove, add, exchange_data, instance_collection,
     parent, other_settings, next_frame,
 )  # fmt: skip
 
@@ -257,7 +257,7 @@ def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
     """What an edit costs does not grow with the scene: the depsgraph's instances are not listed again."""
     passes = []
     monkeypatch.setattr(synced._objects, "export", lambda *a: passes.append(a))
-    for edit in (move, edit_mesh, paint, brighten, move_lamp, recolor_world):
+    for edit in (move, edit_mesh, paint, brighten, move_light, recolor_world):
         edit()
         bpy.context.view_layer.update()
         assert same(synced.scene, fresh()), edit.__name__

@@ -19,7 +19,7 @@ SKY = 0.25
 
 @pytest.fixture
 def lit_twice(scene):
-    """A scene with a lamp and a world that has a sun."""
+    """A scene with a light and a world that has a sun."""
     add_light(scene, "POINT")
     world = set_world(scene, (SKY, SKY, SKY))
     sky = add_node(world.node_tree, "ShaderNodeTexSky")
@@ -37,9 +37,9 @@ def panorama(seed=3):
 
 def test_lights_and_world_are_switched_apart(lit_twice):
     assert relit(lit_twice, ViewLighting(), None) is lit_twice
-    without_lamps = relit(lit_twice, ViewLighting(use_scene_lights=False), None)
-    assert [light.of_world for light in without_lamps.lights] == [True]
-    assert without_lamps.world is lit_twice.world and without_lamps.images is lit_twice.images
+    without_lights = relit(lit_twice, ViewLighting(use_scene_lights=False), None)
+    assert [light.of_world for light in without_lights.lights] == [True]
+    assert without_lights.world is lit_twice.world and without_lights.images is lit_twice.images
     without_world = relit(lit_twice, ViewLighting(use_scene_world=False), None)
     assert [light.of_world for light in without_world.lights] == [False]
     assert not relit(lit_twice, ViewLighting(False, False), None).lights

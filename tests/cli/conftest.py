@@ -76,15 +76,15 @@ rppm_addon.register()
 bpy.ops.wm.read_factory_settings(use_empty=True)
 scene = bpy.context.scene
 bpy.ops.mesh.primitive_plane_add(size=18, location=(-9, 0, 0))
-lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-lamp.location, lamp.data.energy = (-1, 1, 2), 300
+light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))
+light.location, light.data.energy = (-1, 1, 2), 300
 camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
 camera.location = (0, 0, 4)
-for made in (lamp, camera):
+for made in (light, camera):
     scene.collection.objects.link(made)
-lamp.keyframe_insert("location", frame=1)
-lamp.location.x = -90
-lamp.keyframe_insert("location", frame=2)
+light.keyframe_insert("location", frame=1)
+light.location.x = -90
+light.keyframe_insert("location", frame=2)
 for frame, length in (4, 0), (5, 1), (6, 0):
     scene.rppm.radius_minimum, scene.rppm.radius_maximum = 2 * length, length
     scene.rppm.keyframe_insert("radius_minimum", frame=frame)
@@ -103,7 +103,7 @@ rppm_addon.unregister()
 
 @pytest.fixture(scope="session")
 def blend_files(tmp_path_factory):
-    """The same floor as a .blend whose lamp is gone in frame 2, and whose settings cannot be used in frame 5; and that
+    """The same floor as a .blend whose light is gone in frame 2, and whose settings cannot be used in frame 5; and that
     file without a camera."""
     pytest.importorskip("bpy", reason="the bpy module is not installed")
     folder = tmp_path_factory.mktemp("blend")

@@ -24,7 +24,7 @@ LAST = LEARNING_ITERATIONS + 3
 
 @pytest.fixture(scope="module")
 def two_floors(tmp_path_factory):
-    """The floor, another above it that sends light back, and a lamp of less use far away, as a .npz."""
+    """The floor, another above it that sends light back, and a light of less use far away, as a .npz."""
     scene = floor_scene()
     above = np.diag([1.0, -1.0, -1.0, 1.0])
     above[2, 3] = 4.5

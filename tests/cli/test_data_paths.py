@@ -15,7 +15,7 @@ bpy = pytest.importorskip("bpy", reason="the bpy module is not installed")
 def roots():
     bpy.ops.wm.read_factory_settings(use_empty=False)
     scene = bpy.context.scene
-    scene.objects["Light"].name = 'A "lamp" = b'
+    scene.objects["Light"].name = 'A "light" = b'
     scene["mine"] = 1.5
     return scene, bpy.data
 
@@ -45,7 +45,7 @@ def test_what_is_no_assignment_is_refused(text):
         ("render.film_transparent", "true", lambda: bpy.context.scene.render.film_transparent is True),
         ("render.resolution_x", "77", lambda: bpy.context.scene.render.resolution_x == 77),
         ("view_settings.view_transform", "Raw", lambda: bpy.context.scene.view_settings.view_transform == "Raw"),
-        (r'objects["A \"lamp\" = b"].data.energy', "50", lambda: bpy.data.lights["Light"].energy == 50.0),
+        (r'objects["A \"light\" = b"].data.energy', "50", lambda: bpy.data.lights["Light"].energy == 50.0),
         ('objects["Cube"].location', "1,2, -3", lambda: bpy.data.objects["Cube"].location[:] == (1, 2, -3)),
         ('objects["Cube"].location[2]', "-4.5", lambda: bpy.data.objects["Cube"].location[2] == -4.5),
         ('cameras["Camera"].type', "ORTHO", lambda: bpy.data.cameras["Camera"].type == "ORTHO"),

@@ -142,7 +142,7 @@ def test_frame_and_data_paths_change_a_blend_render(tmp_path, rppm, blend_files)
     dark, double, single = (tmp_path / f"{name}.exr" for name in ("dark", "double", "single"))
     for path, options in (
         (single, []),
-        (double, ["--set", 'objects["Lamp"].data.energy=600']),
+        (double, ["--set", 'objects["Light"].data.energy=600']),
         (dark, ["--frame", "2", "--set", "render.resolution_percentage=50"]),
     ):
         status, _, errors = rppm("render", blend_files[0], "-o", path, *options)

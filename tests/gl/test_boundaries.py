@@ -65,9 +65,9 @@ def sun(*toward: float) -> Light:
     return Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), toward), np.ones(3))
 
 
-def point_lamp(*place: float, color: tuple = (1, 1, 1)) -> Light:
+def point_light(*place: float, color: tuple = (1, 1, 1)) -> Light:
     return Light(
-        "lamp",
+        "light",
         LightKind.POINT,
         scenes.placed(*place),
         np.array(color, float),
@@ -92,7 +92,7 @@ def test_a_closed_box_with_walls_of_a_millimeter_is_black_outside(renderer, dire
     meshes = [box("inside", 0.5, inwards=True), box("outside", 0.501)]
     options = settings(0.1, 8, photons=4096, direct_light=direct_light, camera_path_length=2)
     camera = view((2, 1.4, 1.1), (0, 0, 0), 1.0)
-    scene = scene_of(camera, meshes, [point_lamp(0.1, -0.1, 0.2)], options)
+    scene = scene_of(camera, meshes, [point_light(0.1, -0.1, 0.2)], options)
     scene.materials[0] = scenes.diffuse(0.9, 0.9, 0.9)
     if mirrored:
         scene.camera.matrix = scenes.looking((2, 0, 0), (3, 0, 0))
@@ -106,7 +106,7 @@ def test_a_closed_box_with_walls_of_a_millimeter_is_black_outside(renderer, dire
 
 def test_the_sides_of_a_leaf_are_apart(renderer):
     """A sheet without thickness, red light above it and green light below it."""
-    lights = [point_lamp(0, 0, 1, color=(1, 0, 0)), point_lamp(0, 0, -1, color=(0, 1, 0))]
+    lights = [point_light(0, 0, 1, color=(1, 0, 0)), point_light(0, 0, -1, color=(0, 1, 0))]
     for height, own, other in ((2, 0, 1), (-2, 1, 0)):
         camera = view((0, 0, height), (0, 0, 0), 0.3)
         image = picture(renderer, scene_of(camera, [sheet("leaf", (-1, -1), (1, 1))], lights, settings(0.1)))

@@ -304,9 +304,9 @@ def ball_room(camera, **settings):
     """The camera in the middle of a ball of radius 2."""
     ball = scenes.sphere("ball")
     instance = Instance(0, scenes.placed(0, 0, 0, 2.0), [0])
-    lamp = Light("lamp", LightKind.POINT, scenes.placed(0.3, 0.2, 0.1), np.ones(3))
+    light = Light("light", LightKind.POINT, scenes.placed(0.3, 0.2, 0.1), np.ones(3))
     material = scenes.diffuse(0.5, 0.5, 0.5)
-    return Scene(camera, [ball], [instance], [material], [lamp], settings=RenderSettings(**settings))
+    return Scene(camera, [ball], [instance], [material], [light], settings=RenderSettings(**settings))
 
 
 def test_depth_of_a_panorama_is_the_distance(renderer):

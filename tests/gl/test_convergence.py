@@ -55,9 +55,9 @@ def settings(photons: int, radius: float, alpha: float, segments: int) -> Render
     )  # fmt: skip
 
 
-def lamp(light_radius: float, photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scene:
-    """A lamp 1 m above a floor: E = pi (1 + x^2)^-1.5, whatever the lamp's radius."""
-    light = Light("lamp", LightKind.POINT, scenes.placed(0, 0, 1), np.full(3, np.pi), radius=light_radius)
+def lit_floor(light_radius: float, photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scene:
+    """A light 1 m above a floor: E = pi (1 + x^2)^-1.5, whatever the light's radius."""
+    light = Light("light", LightKind.POINT, scenes.placed(0, 0, 1), np.full(3, np.pi), radius=light_radius)
     light.visibility ^= RayVisibility.CAMERA
     return Scene(
         camera_down(3, 0.8, size), [floor(4)], [Instance(0, np.eye(4), [0])], [scenes.diffuse(1, 1, 1)], [light],
@@ -65,7 +65,7 @@ def lamp(light_radius: float, photons: int, radius: float, alpha: float = 0.7, s
     )  # fmt: skip
 
 
-def lamp_radiance(distance: np.ndarray) -> np.ndarray:
+def floor_radiance(distance: np.ndarray) -> np.ndarray:
     return (1 + distance**2) ** -1.5
 
 
@@ -285,15 +285,15 @@ ALPHAS = [0.7, pytest.param(0.5, marks=pytest.mark.long)]
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_bias_of_direct_light(mapper, alpha):
-    scene = lamp(0.0, 8192, 0.3, alpha)
+    scene = lit_floor(0.0, 8192, 0.3, alpha)
     points = pixel_points(scene)
     means, _, radii = running_means(mapper, scene, 8)
-    bias = predicted_bias(lamp_radiance, points, radii)
-    leading = 0.5 * SECOND_MOMENT * laplacian(lamp_radiance, points) * radii[0] ** 2
+    bias = predicted_bias(floor_radiance, points, radii)
+    leading = 0.5 * SECOND_MOMENT * laplacian(floor_radiance, points) * radii[0] ** 2
     ratio = (bias[0] * leading).sum() / (leading**2).sum()
     print("bias of the first iteration over its leading term", ratio)
     assert abs(ratio - 1) < radii[0] ** 2  # the next order
-    assert_bias(means, lamp_radiance(np.linalg.norm(points, axis=-1)), bias, alpha)
+    assert_bias(means, floor_radiance(np.linalg.norm(points, axis=-1)), bias, alpha)
 
 
 def test_bias_of_a_caustic(mapper):
@@ -320,9 +320,9 @@ def test_bias_of_interreflection(mapper, monkeypatch):
 # many the variance is up to hundreds of times smaller than that of independent photons, and falls more slowly.
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_variance_of_direct_light(mapper, alpha):
-    scene = lamp(0.5, 512, 0.06, alpha, 16)
+    scene = lit_floor(0.5, 512, 0.06, alpha, 16)
     means, squares, radii = running_means(mapper, scene, 24)
-    assert_variance(means, predicted_variance(scene, lamp_radiance, squares, radii), alpha)
+    assert_variance(means, predicted_variance(scene, floor_radiance, squares, radii), alpha)
 
 
 @pytest.mark.long

@@ -26,8 +26,8 @@ def lit_floor(name: str, aimed: bool) -> Scene:
         scene.images = [Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))]
         scene.world = image_world(0)
     if name == "mesh":
-        scene.meshes.append(scenes.sphere("lamp", 8, 4))
-        scene.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
+        scene.meshes.append(scenes.sphere("light", 8, 4))
+        scene.materials.append(material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
         scene.instances.append(Instance(1, scenes.placed(0, 0, 2, 0.3), [1]))
     if aimed:
         scene.materials.append(material("air", Lobe(LobeKind.REFRACTION, ior=1.0)))

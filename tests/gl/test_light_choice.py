@@ -140,21 +140,21 @@ def errors(mapper, scene, iterations: int, runs: int) -> float:
     return float((pictures.var(axis=0, ddof=1) / pictures.mean(axis=0) ** 2).mean())
 
 
-LAMP = Light("lamp", LightKind.POINT, scenes.placed(0.4, 0.2, 1.0), 2 * np.ones(3), radius=0.2)
+LIGHT = Light("light", LightKind.POINT, scenes.placed(0.4, 0.2, 1.0), 2 * np.ones(3), radius=0.2)
 
 
 def test_a_faint_world_adds_no_noise(mapper):
-    """Beside a lamp; chosen with half of the shadow rays it made the variance forty times as large."""
+    """Beside a light; chosen with half of the shadow rays it made the variance forty times as large."""
     dark, gray = (
-        errors(mapper, floor_scene(LAMP, DirectLight.RAYS, World(np.full(3, radiance)), size=16), 8, 8)
+        errors(mapper, floor_scene(LIGHT, DirectLight.RAYS, World(np.full(3, radiance)), size=16), 8, 8)
         for radiance in (0.0, 0.05)
     )
     print(f"relative variance of 8 iterations: black world {dark:.2e}, gray world {gray:.2e}")
     assert gray < 2 * dark + 1e-6
 
 
-def test_points_on_a_lamp_keep_their_order_over_the_iterations(mapper):
+def test_points_on_a_light_keep_their_order_over_the_iterations(mapper):
     """Owen-scrambled points in two dimensions: the variance falls faster than with N^-1.4, at random N^-1."""
-    few, many = (errors(mapper, floor_scene(LAMP, DirectLight.RAYS, size=16), n, 8) for n in (4, 32))
+    few, many = (errors(mapper, floor_scene(LIGHT, DirectLight.RAYS, size=16), n, 8) for n in (4, 32))
     print(f"relative variance: 4 iterations {few:.2e}, 32 iterations {many:.2e}, power {np.log2(few / many) / 3:.2f}")
     assert many < few * 8**-1.4

@@ -51,7 +51,7 @@ TRACED_LIGHTS = {
 
 
 def open_room(lights: list[Light]) -> Scene:
-    """Walls, a finely meshed sphere and slivers, some of them across the lamps; the roof has a hole."""
+    """Walls, a finely meshed sphere and slivers, some of them across the lights; the roof has a hole."""
     scene = wide(scenes.room(8, photons=PHOTONS))
     random = np.random.default_rng(7)
     middle = random.uniform(-1.0, 1.0, (300, 1, 3))

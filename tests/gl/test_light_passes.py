@@ -30,7 +30,7 @@ def everything(size: int = 24, **settings: object):
         material("rough glass", Lobe(LobeKind.GLASS, roughness=0.5)),
         material("pane", Lobe(LobeKind.TRANSPARENT, 0.5), Lobe(LobeKind.DIFFUSE, 0.5, (0.0, 0.8, 0.8))),
         material("sheet", Lobe(LobeKind.TRANSLUCENT, 0.5), Lobe(LobeKind.REFRACTION, 0.5, roughness=0.5)),
-        material("lamp", Lobe(LobeKind.EMISSION, color=(1.0, 0.5, 0.2)), Lobe(LobeKind.DIFFUSE, color=(0.2, 0.2, 0.2))),
+        material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 0.5, 0.2)), Lobe(LobeKind.DIFFUSE, color=(0.2, 0.2, 0.2))),
         material("amber", Lobe(LobeKind.GLASS), absorption=np.array([0.2, 1.0, 3.0])),
     ]
     varnish = len(scene.materials) - 7
@@ -117,14 +117,14 @@ def test_what_is_handed_out_is_exposed_and_without_color(renderer):
 
 
 def below_glass(**settings: object):
-    """A floor below a slab, lit by a lamp above it, and seen from below it."""
+    """A floor below a slab, lit by a light above it, and seen from below it."""
     scene = scenes.room(16, iterations=4, photons=16384, passes=LIGHT, **settings)
     parts = [(scenes.rectangle("floor", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)), Lobe(LobeKind.DIFFUSE))]
     parts += panes(slab=True)
     scene.meshes = [mesh for mesh, _ in parts]
     scene.materials = [material(mesh.name, lobe) for mesh, lobe in parts]
     scene.instances = [Instance(number, np.eye(4), [number]) for number in range(len(parts))]
-    scene.lights = [Light("lamp", LightKind.POINT, scenes.placed(0, 0, 1.4), np.full(3, 5.0))]
+    scene.lights = [Light("light", LightKind.POINT, scenes.placed(0, 0, 1.4), np.full(3, 5.0))]
     scene.camera.matrix = scenes.looking((0, -0.5, 0.5), (0, 0, 0))
     return scene
 

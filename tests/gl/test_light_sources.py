@@ -76,7 +76,7 @@ IRRADIANCE = {  # on the floor straight below, W/m^2
 def floor_scene(light, mode, world=None, albedo=0.5, size=32, h=2.0, window=0.6):
     floor = scenes.rectangle("floor", (-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0))
     camera = Camera(scenes.looking((0, 0, 1.2), (0, 0, 0)), (-window, window, -window, window), size, size)
-    # Shadow rays need no photons; those of a lamp tell 0.3 % of the mean in eight iterations, the world's in sixteen.
+    # Shadow rays need no photons; those of a light tell 0.3 % of the mean in eight iterations, the world's in sixteen.
     iterations = 8 if mode is DirectLight.PHOTONS and world is None else 16
     photons = 64 if mode is DirectLight.RAYS and world is None else 32768
     settings = RenderSettings(
@@ -139,12 +139,12 @@ def test_an_emissive_mesh_lights_as_an_area_light(renderer, kind):
         if kind is LobeKind.EMISSION
         else Lobe(kind, color=(0, 0, 0), specular_ior_level=0, emission_color=(5, 5, 5), emission_strength=1.0)
     )
-    lamp = scenes.rectangle("lamp", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2))
+    panel = scenes.rectangle("glow", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2))
     reference = renderer.render(floor_scene(LIGHTS["square"], DirectLight.RAYS)).frame.combined[..., :3].mean()
     for mode in DirectLight:
         scene = floor_scene(None, mode)
-        scene.meshes.append(lamp)
-        scene.materials.append(material("lamp", lobe))
+        scene.meshes.append(panel)
+        scene.materials.append(material("light", lobe))
         scene.instances.append(Instance(1, np.eye(4), [1]))
         assert renderer.render(scene).frame.combined[..., :3].mean() == pytest.approx(reference, rel=0.02)
 
@@ -175,8 +175,8 @@ def test_aiming_moves_no_energy(renderer, name):
         made = floor_scene(LIGHTS.get(name), DirectLight.PHOTONS, world)
         made.settings.photon_path_length = made.settings.camera_path_length = 4
         if name == "mesh":
-            made.meshes.append(scenes.rectangle("lamp", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2)))
-            made.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
+            made.meshes.append(scenes.rectangle("glow", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2)))
+            made.materials.append(material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
             made.instances.append(Instance(1, np.eye(4), [1]))
         return made
 

@@ -102,12 +102,12 @@ def shown_by(kind: str) -> Scene:
         weight = facing.graph.add("layer_weight", "facing", blend=0.5)
         facing.graph.surface = facing.graph.add("mix_shader", "shader", fac=weight, shader_001=facing.graph.surface)
         scene.materials[0] = facing
-        scene.lights = [Light("lamp", LightKind.POINT, scenes.placed(0, 0, 0.7), np.full(3, 2.0), radius=0.1)]
+        scene.lights = [Light("light", LightKind.POINT, scenes.placed(0, 0, 0.7), np.full(3, 2.0), radius=0.1)]
     elif kind == "textured emitter":
         scene.lights = []
         scene.materials.append(material("glow", Lobe(LobeKind.EMISSION, color=(9, 9, 9), color_image=0)))
         scene.meshes.append(
-            scenes.rectangle("lamp", (-0.3, -0.3, 0.9), (-0.3, 0.3, 0.9), (0.3, 0.3, 0.9), (0.3, -0.3, 0.9))
+            scenes.rectangle("light", (-0.3, -0.3, 0.9), (-0.3, 0.3, 0.9), (0.3, 0.3, 0.9), (0.3, -0.3, 0.9))
         )
         scene.instances.append(Instance(len(scene.meshes) - 1, np.eye(4), [len(scene.materials) - 1]))
     return scene

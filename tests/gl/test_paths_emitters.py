@@ -50,13 +50,13 @@ def source(kind: str, matrix: np.ndarray) -> tuple[Light | None, list[tuple[Mesh
         return inside[..., None] * RADIANCE
 
     if kind == "area":
-        light = Light("lamp", LightKind.AREA, matrix, RADIANCE, shape="RECTANGLE", size=(0.7, 0.4))
+        light = Light("light", LightKind.AREA, matrix, RADIANCE, shape="RECTANGLE", size=(0.7, 0.4))
         return light, [], rectangle
     if kind == "ball":
-        return Light("lamp", LightKind.POINT, matrix, RADIANCE * np.pi * 0.2**2, radius=0.2), [], ball
+        return Light("light", LightKind.POINT, matrix, RADIANCE * np.pi * 0.2**2, radius=0.2), [], ball
     corners = (center - x - y, center - x + y, center + x + y, center + x - y)
     emission = Lobe(LobeKind.EMISSION, color=tuple(RADIANCE))
-    return None, [(scenes.rectangle("lamp", *map(tuple, corners)), emission)], rectangle
+    return None, [(scenes.rectangle("light", *map(tuple, corners)), emission)], rectangle
 
 
 def seen_straight(kind: str, mode: DirectLight) -> Case:

@@ -77,7 +77,7 @@ BALL = Ball((3, 0, 2), 0.5)
 def test_a_footprint_holds_as_many_photons_as_it_should(mapper, surfaces, meshes, tolerance):
     """By the area over which a photon's solid angle comes to be spread."""
     position = np.array([0.0, 0.0, 2.0])
-    light = Light("lamp", LightKind.POINT, scenes.placed(*position), np.full(3, STRENGTH))
+    light = Light("light", LightKind.POINT, scenes.placed(*position), np.full(3, STRENGTH))
     photons, radii = traced_photons(mapper, light, surfaces, meshes)
     solid_angles = photons[0]["flux"][:, 0].astype(float) / STRENGTH
     area = landed_area(position, -photons[0]["direction"].astype(float), surfaces, photons[-1]) * solid_angles
@@ -90,7 +90,7 @@ def test_a_footprint_holds_as_many_photons_as_it_should(mapper, surfaces, meshes
 def test_a_large_light_blurs_footprints(mapper):
     """By half of what a pinhole at the first hit shows of it."""
     half = 0.5
-    light = Light("lamp", LightKind.AREA, scenes.placed(0, 0, 2), np.full(3, STRENGTH), size=(2 * half, 2 * half))
+    light = Light("light", LightKind.AREA, scenes.placed(0, 0, 2), np.full(3, STRENGTH), size=(2 * half, 2 * half))
     light.matrix[:3, :3] = np.array([[0, 0, -1], [0, 1, 0], [1, 0, 0]])  # toward the mirror
     photons, radii = traced_photons(
         mapper, light, [MIRROR, GROUND], [MIRROR.rectangle("mirror", 1.5), GROUND.rectangle("ground", 40)]

@@ -18,23 +18,23 @@ SETTINGS = {
 
 
 def test_sources_have_their_power_and_photons(renderer):
-    """An area light of 12 pi / 4 W, a lamp of half of that with four times its photons, a glowing ball and the sky."""
+    """An area light of 12 pi / 4 W, a point light of half with four times its photons, a glowing ball and the sky."""
     scene = scenes.room(8, **SETTINGS)
-    lamp = Light("light", LightKind.POINT, np.eye(4), np.full(3, 12 / 32), photon_weight=4.0)
-    scene.lights.append(dataclasses.replace(lamp, name="lamp"))
-    scene.lights.append(dataclasses.replace(lamp, name="lamp", strength=np.zeros(3)))  # gives no light
+    point = Light("light", LightKind.POINT, np.eye(4), np.full(3, 12 / 32), photon_weight=4.0)
+    scene.lights.append(dataclasses.replace(point, name="point"))
+    scene.lights.append(dataclasses.replace(point, name="point", strength=np.zeros(3)))  # gives no light
     scene.materials[3] = material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0)))
     scene.world = World(np.full(3, 0.01))
     statistics = renderer.render(scene).statistics
     watts, photons = statistics.source_watts, statistics.source_photons
-    assert set(watts) == set(photons) == {source_name("light"), source_name("lamp"), SURFACES, ENVIRONMENT}
+    assert set(watts) == set(photons) == {source_name("light"), source_name("point"), SURFACES, ENVIRONMENT}
     assert watts[source_name("light")] == pytest.approx(math.pi * 12 * 0.25, rel=1e-3)
-    assert watts[source_name("lamp")] == pytest.approx(4 * math.pi * 12 / 32, rel=1e-6)
+    assert watts[source_name("point")] == pytest.approx(4 * math.pi * 12 / 32, rel=1e-6)
     # The ball's facets have slightly less area than the sphere; both of their sides emit.
     assert watts[SURFACES] == pytest.approx(2 * math.pi * 4 * math.pi * 0.35**2, rel=0.05)
     assert watts[ENVIRONMENT] == pytest.approx(4 * math.pi**2 * 3.0 * 0.01, rel=0.01)
     assert sum(photons.values()) == 4000
-    weights = {name: value * (4.0 if name == source_name("lamp") else 1.0) for name, value in watts.items()}
+    weights = {name: value * (4.0 if name == source_name("point") else 1.0) for name, value in watts.items()}
     for name, count in photons.items():
         assert count == pytest.approx(4000 * weights[name] / sum(weights.values()), abs=1.0)
 

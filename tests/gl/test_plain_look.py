@@ -78,7 +78,7 @@ def test_the_background_is_the_worlds_unless_the_film_is_transparent(draw):
 
 
 def test_emission_goes_with_the_exposure(draw):
-    glowing = [material("lamp", Lobe(LobeKind.EMISSION, color=(1.0, 0.5, 0.25), strength=4.0)), scenes.diffuse(*GREEN)]
+    glowing = [material("light", Lobe(LobeKind.EMISSION, color=(1.0, 0.5, 0.25), strength=4.0)), scenes.diffuse(*GREEN)]
     dark = draw(balls(materials=glowing))
     bright = draw(balls(materials=glowing, exposure=2.0))
     at = np.argwhere(dark[..., 0] > 3.0).mean(axis=0).astype(int)

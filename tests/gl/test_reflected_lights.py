@@ -38,9 +38,9 @@ def sheet() -> Mesh:
     return scenes.rectangle("sheet", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
 
 
-def lamp(height: float) -> Light:
+def light(height: float) -> Light:
     """2 m wide, shines down on the floor."""
-    return Light("lamp", LightKind.AREA, scenes.placed(0, 0, height), np.full(3, RADIANCE), size=(2.0, 2.0))
+    return Light("light", LightKind.AREA, scenes.placed(0, 0, height), np.full(3, RADIANCE), size=(2.0, 2.0))
 
 
 def reflecting_floor(surface, *lights: Light, occluder: bool = False, **settings: object) -> Scene:
@@ -87,43 +87,43 @@ def shining_by_path() -> Material:
     return Material("shining by path", graph)
 
 
-def lamp_irradiance(height: float) -> float:
+def light_irradiance(height: float) -> float:
     """In the middle of the floor, W/m^2."""
     x = (np.arange(200) + 0.5) / 100 - 1.0
     distance2 = x[:, None] ** 2 + x**2 + height**2
     return float(RADIANCE * (height**2 / distance2**2).sum() * 0.01**2)
 
 
-def test_glass_reflects_a_lamp_in_each_iteration(renderer):
-    seen = renderer.render(reflecting_floor(GLASS, lamp(2.0))).frame.combined[..., :3]
+def test_glass_reflects_a_light_in_each_iteration(renderer):
+    seen = renderer.render(reflecting_floor(GLASS, light(2.0))).frame.combined[..., :3]
     # Fresnel's reflectance is flat where light comes at right angles.
     np.testing.assert_allclose(seen, NORMAL_REFLECTANCE * RADIANCE, rtol=2e-3)
 
 
 def test_what_is_hidden_is_not_reflected(renderer):
-    seen = renderer.render(reflecting_floor(GLASS, lamp(2.0), occluder=True)).frame.combined[..., :3]
+    seen = renderer.render(reflecting_floor(GLASS, light(2.0), occluder=True)).frame.combined[..., :3]
     np.testing.assert_allclose(seen[:, :7], NORMAL_REFLECTANCE * RADIANCE, rtol=2e-3)
     np.testing.assert_array_equal(seen[:, 9:], 0.0)
 
 
-def test_lamps_behind_each_other_are_all_reflected(renderer):
-    scene = reflecting_floor(GLASS, lamp(2.0), lamp(3.0))
+def test_lights_behind_each_other_are_all_reflected(renderer):
+    scene = reflecting_floor(GLASS, light(2.0), light(3.0))
     seen = renderer.render(scene).frame.combined[..., :3]
     np.testing.assert_allclose(seen, 2 * NORMAL_REFLECTANCE * RADIANCE, rtol=2e-3)  # equal ones: whichever is chosen
 
 
 def test_one_shadow_ray_serves_reflection_and_diffuse_light(renderer):
-    scene = reflecting_floor(VARNISH, lamp(2.0))
+    scene = reflecting_floor(VARNISH, light(2.0))
     scene.settings.iterations = 16
     seen = renderer.render(scene).frame.combined[..., :3]
-    expected = 0.5 / np.pi * lamp_irradiance(2.0) + NORMAL_REFLECTANCE * RADIANCE
+    expected = 0.5 / np.pi * light_irradiance(2.0) + NORMAL_REFLECTANCE * RADIANCE
     deviation = seen.mean(-1).std() / expected
     assert abs(seen.mean() / expected - 1.0) < 5 * deviation / np.sqrt(seen[..., 0].size) + 1e-4
     assert deviation < 0.02  # the reflection alone, found by one path in 12, would make 0.25 of it
 
 
-def test_lit_by_photons_paths_find_the_lamp(renderer):
-    scene = reflecting_floor(GLASS, lamp(2.0), direct_light=DirectLight.PHOTONS)
+def test_lit_by_photons_paths_find_the_light(renderer):
+    scene = reflecting_floor(GLASS, light(2.0), direct_light=DirectLight.PHOTONS)
     scene.settings.iterations = 64
     seen = renderer.render(scene).frame.combined[..., :3]
     # One path in 25 reflects, each with a deviation of its own size.
@@ -158,8 +158,8 @@ def test_meshes_that_are_hidden_or_unseen_are_not_reflected(renderer):
     np.testing.assert_array_equal(renderer.render(scene).frame.combined[..., :3], 0.0)
 
 
-def test_a_lamp_in_front_of_an_emissive_mesh(renderer):
-    scene = reflecting_floor(GLASS, lamp(2.0))
+def test_a_light_in_front_of_an_emissive_mesh(renderer):
+    scene = reflecting_floor(GLASS, light(2.0))
     add_object(scene, sheet(), SHINING, 3.0)
     seen = renderer.render(scene).frame.combined[..., :3]
     np.testing.assert_allclose(seen, 2 * NORMAL_REFLECTANCE * RADIANCE, rtol=2e-3)  # equal ones: whichever is chosen

@@ -24,7 +24,7 @@ STOPS = (1, 2, 3, 7, 16, 17)
 
 
 def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
-    """Caustics, light scattered between walls, glossy paths, a pane that some camera paths end on, and a second lamp
+    """Caustics, light scattered between walls, glossy paths, a pane that some camera paths end on, and a second light
     whose photons are of less use."""
     scene = scenes.room(
         16, direct_light=direct_light, photons=4096, camera_path_length=4, photon_path_length=4, radius_scale=100.0,
@@ -32,9 +32,9 @@ def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
     )  # fmt: skip
     rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)
     scene.materials[1] = material("rough", rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1)))
-    lamp = np.eye(4)
-    lamp[:3, 3] = (0.9, 0.9, 0.9)
-    scene.lights.append(Light("in the corner", LightKind.POINT, lamp, np.full(3, 0.5)))
+    light = np.eye(4)
+    light[:3, 3] = (0.9, 0.9, 0.9)
+    scene.lights.append(Light("in the corner", LightKind.POINT, light, np.full(3, 0.5)))
     pane = material("pane", Lobe(LobeKind.PRINCIPLED, alpha=0.4, roughness=0.0))
     scene.materials.append(pane)
     scene.meshes.append(

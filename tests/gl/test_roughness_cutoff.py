@@ -53,8 +53,8 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight) -> Scene
         scene.images = [Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))]
         scene.world = image_world(0)
     if light == "mesh":
-        scene.meshes.append(scenes.rectangle("lamp", (1, -0.3, 1), (1, 0.3, 1), (1.2, 0.3, 1.5), (1.2, -0.3, 1.5)))
-        scene.materials.append(material("lamp", Lobe(LobeKind.EMISSION, color=(9, 9, 9))))
+        scene.meshes.append(scenes.rectangle("light", (1, -0.3, 1), (1, 0.3, 1), (1.2, 0.3, 1.5), (1.2, -0.3, 1.5)))
+        scene.materials.append(material("light", Lobe(LobeKind.EMISSION, color=(9, 9, 9))))
         scene.instances.append(Instance(1, np.eye(4), [1]))
     return scene
 
@@ -121,7 +121,7 @@ def test_rough_glass_passes_a_point_light(renderer):
 def swept_sheet(path: str, kind: LobeKind, mode: DirectLight, roughness: float, cut: float) -> Scene:
     """Light, the swept sheet (G), and for LDGE and LGDE a wall (D) before or after it.
 
-    The wall is on the other side of sheets that transmit. Lamps are narrow: they light only what the path names.
+    The wall is on the other side of sheets that transmit. Lights are narrow: they light only what the path names.
     """
     side = 1 if kind is LobeKind.GLOSSY else -1
     lobe = Lobe(kind, color=(0.8, 0.8, 0.8), roughness=roughness, ior=1.3)
@@ -132,8 +132,8 @@ def swept_sheet(path: str, kind: LobeKind, mode: DirectLight, roughness: float, 
         "LDGE": ((-0.8, 0, 0.75 * side), (1, 0, 0.75 * side)),
         "LGDE": ((-0.8, 0, 1), (0, 0, 0)),
     }[path]
-    lamp = Light("lamp", LightKind.AREA, scenes.looking(light_at, light_to), np.full(3, 9.0), size=(0.4, 0.4))
-    lamp.spread = math.pi if path == "LGE" else 0.5
+    light = Light("light", LightKind.AREA, scenes.looking(light_at, light_to), np.full(3, 9.0), size=(0.4, 0.4))
+    light.spread = math.pi if path == "LGE" else 0.5
     eye, target = ((-0.2, 0, 0.4 * side), (1, 0, 0.4 * side)) if path == "LGDE" else ((-1, 0, 1.2), (0, 0, 0))
     camera = Camera(scenes.looking(eye, target), (-0.25, 0.25, -0.25, 0.25), 32, 32, True)
     # What camera rays alone find takes many of them and no photons.
@@ -154,7 +154,7 @@ def swept_sheet(path: str, kind: LobeKind, mode: DirectLight, roughness: float, 
     if path != "LGE":
         meshes.append(wall)
         instances.append(Instance(1, np.eye(4), [1]))
-    return Scene(camera, meshes, instances, materials, [lamp], settings=settings)
+    return Scene(camera, meshes, instances, materials, [light], settings=settings)
 
 
 def jump(renderer, first: tuple, second: tuple) -> tuple[float, float]:

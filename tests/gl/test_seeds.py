@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
-from test_convergence import blurred, lamp, lamp_radiance, pixel_points
+from test_convergence import blurred, floor_radiance, lit_floor, pixel_points
 
 from rppm_addon.integrator.common import band
 from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
@@ -53,14 +53,14 @@ def test_errors_of_seeds_are_independent(renderer, direct_light):
     """Correlations over pixels of all iterations of all seeds, but those of the same seed; also of seed a's iteration
     b with seed b's iteration a. Kernels smaller than pixels keep the errors of a picture's pixels apart."""
     seeds, iterations = 12, 4
-    scene = lamp(0.5, 32768, 0.04, size=32)
+    scene = lit_floor(0.5, 32768, 0.04, size=32)
     scene.settings.direct_light = direct_light
     scene.settings.alpha = 0.999999
     scene.settings.iterations = iterations
     points = pixel_points(scene)
-    exact = lamp_radiance(np.linalg.norm(points, axis=-1))
+    exact = floor_radiance(np.linalg.norm(points, axis=-1))
     if direct_light is DirectLight.PHOTONS:
-        exact = blurred(lamp_radiance, points, 0.04)
+        exact = blurred(floor_radiance, points, 0.04)
     errors = np.zeros((seeds, iterations, exact.size))
     for seed in range(seeds):
         scene.settings.seed = seed + 1

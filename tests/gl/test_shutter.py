@@ -46,7 +46,7 @@ def way(member: int, matrix: np.ndarray, *translation: float) -> Movement:
 
 
 def everything_moves(scene: Scene, amount: float) -> Scene:
-    """A ball, its shape, the lamp and the camera, by up to so much."""
+    """A ball, its shape, the light and the camera, by up to so much."""
     camera, mesh = scene.camera, scene.meshes[5]
     shapes = np.stack([mesh.positions * np.float32(1.0 - 0.3 * amount), mesh.positions])
     camera_way = way(0, camera.matrix, 0.2 * amount, 0.0, 0.0)
@@ -87,10 +87,10 @@ def test_a_blurred_picture_after_others_is_the_same(mapper, other_mapper):
 
 
 def test_a_state_goes_on_in_the_middle(mapper, other_mapper):
-    """Also where the lamp grows, so that lights share photons by powers that change."""
+    """Also where the light grows, so that lights share photons by powers that change."""
     scene = everything_moves(room(), 1.0)
-    lamp = scene.lights[0]
-    scene.lights = [lamp, dataclasses.replace(lamp, name="other", matrix=scenes.placed(0.5, 0.5, 0.9))]
+    light = scene.lights[0]
+    scene.lights = [light, dataclasses.replace(light, name="other", matrix=scenes.placed(0.5, 0.5, 0.9))]
     scene.shutter.lights[0].matrices[1] @= np.diag([3.0, 3.0, 1.0, 1.0])
     mapper.update(scene)
     states = []
@@ -168,7 +168,7 @@ def test_a_caustic_is_the_mean_of_those_at_moments(renderer):
         [scenes.rectangle("floor", (-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)), scenes.sphere("ball")],
         [Instance(0, np.eye(4), [0]), Instance(1, scenes.placed(0, 0, 1.0, 0.4), [1])],
         [scenes.diffuse(0.6, 0.6, 0.6), material("glass", Lobe(LobeKind.GLASS, ior=1.5))],
-        [Light("lamp", LightKind.SPOT, scenes.placed(0, 0, 4), np.full(3, 20.0), radius=0.4, spot_angle=1.0)],
+        [Light("light", LightKind.SPOT, scenes.placed(0, 0, 4), np.full(3, 20.0), radius=0.4, spot_angle=1.0)],
         settings=RenderSettings(photons=4096, photon_path_length=5, camera_path_length=3, use_final_gather=False),
     )
     scene = open_for(still, instances=[way(1, still.instances[1].matrix, 1.0, 0.3, 0.2)])

@@ -24,7 +24,7 @@ from .scenes import camera, cycles_channels, light, new_scene, place, plane, unf
 SIZE = 32
 ANGLE = 70.0
 TANGENT = (1.0, 0.0, 0.0)
-Record("ClosureTestParameters", viewer="vec3", count="uint", lamp="vec3", choices="uint", normal="vec3", unused="uint")
+Record("ClosureTestParameters", viewer="vec3", count="uint", light="vec3", choices="uint", normal="vec3", unused="uint")
 
 _SHADER = """#version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
@@ -39,7 +39,7 @@ layout(std430, binding = 2) readonly buffer Inputs { float inputs[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    vec3 point = points[index].xyz, wo = normalize(parameters.viewer - point), wi = normalize(parameters.lamp - point);
+    vec3 point = points[index].xyz, wo = normalize(parameters.viewer - point), wi = normalize(parameters.light - point);
     vec3 up = vec3(0.0, 0.0, wo.z > 0.0 ? 1.0 : -1.0), normal = parameters.normal * up.z;
     vec3 sum = vec3(0.0);
     // More than three lobes take turns.
@@ -58,7 +58,7 @@ void main() {
                  * evaluate_lobe(lobe, lobe_normal(lobe), wo, wi);
         }
     }
-    vec3 apart = parameters.lamp - point;
+    vec3 apart = parameters.light - point;
     results[index] = vec4(sum / float(parameters.choices) / dot(apart, apart), 0.0);
 }
 """
@@ -66,10 +66,10 @@ void main() {
 
 @dataclass(frozen=True)
 class View:
-    """Where camera and lamp are, about a horizontal plane through the origin."""
+    """Where camera and light are, about a horizontal plane through the origin."""
 
     camera: tuple[float, float, float]
-    lamp: tuple[float, float, float]
+    light: tuple[float, float, float]
 
 
 ABOVE = View((0.0, -1.6, 1.2), (0.5, 0.6, 0.9))
@@ -133,7 +133,7 @@ def by_cycles(
     unfilter()
     # No edge between triangles in sight.
     plane(100.0, _material(kind, bl_idname, options, inputs, normal), place(at=(40.0, 10.0, 0.0)))
-    light("POINT", 4.0 * math.pi, place(at=view.lamp), shadow_soft_size=0.0)
+    light("POINT", 4.0 * math.pi, place(at=view.light), shadow_soft_size=0.0)
     points = _camera_rays(view)
     channels = cycles_channels()
     picture = np.stack([channels[f"Combined.{letter}"] for letter in "RGB"], axis=-1).astype(np.float64)
@@ -196,7 +196,7 @@ def by_closure(
         len(points),
         buffers,
         {
-            "viewer": view.camera, "count": len(points), "lamp": view.lamp, "choices": choices,
+            "viewer": view.camera, "count": len(points), "light": view.light, "choices": choices,
             "normal": normal / np.linalg.norm(normal), "unused": 0,
         },
     )  # fmt: skip

@@ -21,9 +21,9 @@ from mathutils import Vector
 
 SIZE, STEP, ANGLE = 32, 8, 70.0
 CAMERAS = {"above": (0.0, -1.6, 1.2), "below": (0.0, -1.6, -1.2)}
-LAMPS = {"above": (0.5, 0.6, 0.9), "below": (0.3, 0.4, -0.9)}
+LIGHTS = {"above": (0.5, 0.6, 0.9), "below": (0.3, 0.4, -0.9)}
 VIEWS = (("above", "above"), ("above", "below"), ("below", "above"))
-"""Of camera and lamp."""
+"""Of camera and light."""
 COLOR, TINT = (0.8, 0.5, 0.2), (0.4, 0.8, 0.9)
 GLASS = {"base_color": COLOR, "transmission_weight": 1.0}
 SHEET = {"base_color": COLOR, "subsurface_weight": 1.0}
@@ -111,13 +111,13 @@ def look(scene: bpy.types.Scene, at: tuple, step: int = 1) -> tuple[np.ndarray, 
     return points[seen], radiance.reshape(-1, 3)[seen]
 
 
-def lit(inputs: dict, camera: tuple, lamp: tuple) -> tuple[np.ndarray, np.ndarray]:
+def lit(inputs: dict, camera: tuple, light_at: tuple) -> tuple[np.ndarray, np.ndarray]:
     scene = new_scene(SIZE, 1, 0)
     add_plane(scene, inputs)
     light = bpy.data.lights.new("Light", "POINT")
     light.energy, light.shadow_soft_size = 4.0 * math.pi, 0.0
     light = bpy.data.objects.new("Light", light)
-    light.location = lamp
+    light.location = light_at
     scene.collection.objects.link(light)
     return look(scene, camera, STEP)
 
@@ -148,9 +148,9 @@ def rounded(values: np.ndarray) -> list:
 def main() -> None:
     lit_cases, share_cases, places = [], [], {}
     for name, inputs in LIT.items():
-        for camera, lamp in VIEWS:
-            places[camera], radiance = lit(inputs, CAMERAS[camera], LAMPS[lamp])
-            case = {"name": name, "camera": camera, "lamp": lamp, "inputs": inputs}
+        for camera, light in VIEWS:
+            places[camera], radiance = lit(inputs, CAMERAS[camera], LIGHTS[light])
+            case = {"name": name, "camera": camera, "light": light, "inputs": inputs}
             lit_cases.append(case | {"radiance": rounded(radiance)})
     for name, inputs in SHARES.items():
         for camera in CAMERAS:
@@ -161,7 +161,7 @@ def main() -> None:
             case = {"name": name, "camera": camera, "inputs": inputs, "cosines": rounded(cosines)}
             share_cases.append(case | {"reflected": rounded(reflected), "passed": rounded(passed)})
     measured = {
-        "blender": [bpy.app.version_string], "cameras": [CAMERAS], "lamps": [LAMPS],
+        "blender": [bpy.app.version_string], "cameras": [CAMERAS], "lights": [LIGHTS],
         "points": [{camera: rounded(points) for camera, points in places.items()}],
         "lit": lit_cases, "shares": share_cases,
     }  # fmt: skip

@@ -76,7 +76,7 @@ def test_when_the_shutter_opens(renderer, position):
     animate(moving, "location", (-1.5, 0.0, 0.6), (0.0, 0.0, 0.6), (0.0, 0.8, 0.6))
     animate(moving, "scale", (0.5, 1.0, 1.0), (1.0, 1.0, 1.0), (1.0, 1.0, 2.0))
     blur(0.8, position)
-    # The lamp glares in the floor: few samples of it are many times as bright as their mean.
+    # The light glares in the floor: few samples of it are many times as bright as their mean.
     compare_with_cycles(renderer, f"position_{position.lower()}", samples=1024, iterations=96, seeds=4)
 
 
@@ -172,16 +172,16 @@ MOMENTS = (np.arange(12) + 0.5) / 12 - 0.5
 
 
 @pytest.mark.long
-def test_a_moving_lamp(renderer):
-    """Cycles leaves lamps where they are: its pictures at moments are what a blurred one is to show."""
+def test_a_moving_light(renderer):
+    """Cycles leaves lights where they are: its pictures at moments are what a blurred one is to show."""
     stage(world=0.05)
     bar()
-    lamp = light("SPOT", 100.0, place(at=(0.0, -0.5, 2.2)), spot_size=0.9, shadow_soft_size=0.1)
-    animate(lamp, "location", (-2.0, -0.5, 2.2), (0.0, -0.5, 2.2), (1.0, 0.5, 2.2))
-    animate(lamp, "rotation_euler", (0.0, -0.5, 0.0), (0.0, 0.0, 0.0), (0.0, 0.9, 0.0))
+    spot = light("SPOT", 100.0, place(at=(0.0, -0.5, 2.2)), spot_size=0.9, shadow_soft_size=0.1)
+    animate(spot, "location", (-2.0, -0.5, 2.2), (0.0, -0.5, 2.2), (1.0, 0.5, 2.2))
+    animate(spot, "rotation_euler", (0.0, -0.5, 0.0), (0.0, 0.0, 0.0), (0.0, 0.9, 0.0))
     blur()
     reference = cycles_at_moments(64, MOMENTS)
-    compare("motion_lamp", render_blurred(renderer, **SETTINGS), reference, CONVERGED)
+    compare("motion_light", render_blurred(renderer, **SETTINGS), reference, CONVERGED)
 
 
 @pytest.mark.long
@@ -196,7 +196,7 @@ def test_a_moving_emissive_mesh(renderer):
 
 @pytest.mark.long
 def test_a_moving_glass_ball_and_its_caustic(renderer):
-    """Under a lamp wide enough for Cycles to find it through the ball."""
+    """Under a light wide enough for Cycles to find it through the ball."""
     new_scene(world=0.1)
     plane(6.0, material(DIFFUSE, Color=(0.6, 0.6, 0.6)))
     glow = plane(0.5, material(EMISSION, Color=(1.0, 1.0, 1.0), Strength=20.0))

@@ -54,7 +54,7 @@ def assert_alike(
     seen = np.isfinite(points).all(axis=1)
     cycles, ours, brightest = cycles[seen], ours[seen], brightest_beside(cycles)[seen]
     assert len(cycles) > 300 and cycles.max() > 0.0
-    if view.camera[2] * view.lamp[2] < 0.0 and "ior" in inputs:
+    if view.camera[2] * view.light[2] < 0.0 and "ior" in inputs:
         # Cycles leaves radiance alone where it enters a denser medium; ours shrinks by the squared index.
         ours *= inputs["ior"] ** (2.0 if view.camera[2] > 0.0 else -2.0)
         # It also lights pairs of directions that no microfacet links but one seen from behind.

@@ -15,7 +15,7 @@ from . import closures
 from .closures import View
 
 MEASURED = json.loads((Path(__file__).parent / "thin_wall.json").read_text(encoding="utf-8"))
-(POINTS,), (CAMERAS,), (LAMPS,) = MEASURED["points"], MEASURED["cameras"], MEASURED["lamps"]
+(POINTS,), (CAMERAS,), (LIGHTS,) = MEASURED["points"], MEASURED["cameras"], MEASURED["lights"]
 OPTIONS = {"distribution": "MULTI_GGX", "thin_wall": True}
 EXACT, TABLES = 0.006, 0.016
 """As in test_shader_nodes.py."""
@@ -61,7 +61,7 @@ void main() {
 
 
 def named(cases: list[dict]) -> list:
-    ids = ["-".join(case[key] for key in ("name", "camera", "lamp") if key in case) for case in cases]
+    ids = ["-".join(case[key] for key in ("name", "camera", "light") if key in case) for case in cases]
     return [pytest.param(case, id=name) for case, name in zip(cases, ids, strict=True)]
 
 
@@ -74,7 +74,7 @@ def tolerance(case: dict) -> float:
 @pytest.mark.parametrize("case", named(MEASURED["lit"]))
 def test_lit(library, folder, case):
     """Every point's radiance agrees within a share of it, or of a fiftieth of the brightest."""
-    view = View(CAMERAS[case["camera"]], LAMPS[case["lamp"]])
+    view = View(CAMERAS[case["camera"]], LIGHTS[case["light"]])
     points, cycles = np.array(POINTS[case["camera"]]), np.array(case["radiance"])
     with library.context.moderngl:
         ours = closures.by_closure(

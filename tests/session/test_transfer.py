@@ -131,7 +131,7 @@ def test_instances_that_stay_are_not_described_again():
 def test_many_new_members_come_in_several_messages():
     scene = floor_scene()
     scene.instances = [Instance(0, np.full((4, 4), index), [0], f"Stone {index}") for index in range(10000)]
-    scene.lights = [dataclasses.replace(scene.lights[0], name=f"Lamp {index}") for index in range(1000)]
+    scene.lights = [dataclasses.replace(scene.lights[0], name=f"Light {index}") for index in range(1000)]
     parts, _ = SceneSender().send(1, scene)
     assert len(parts) > 6
     assert max(len(json.dumps(part.document)) for part in parts) < 200_000

@@ -19,13 +19,13 @@ def floor_scene():
         triangle_corners=np.array([[0, 1, 2], [0, 2, 3]], np.int32),
         triangle_slots=np.zeros(2, np.int32),
     )
-    lamp = np.eye(4)
-    lamp[:3, 3] = (-1.0, 1.0, 2.0)
+    light = np.eye(4)
+    light[:3, 3] = (-1.0, 1.0, 2.0)
     return Scene(
         Camera(down, (-0.5, 0.5, -0.375, 0.375), 16, 12),
         meshes=[floor],
         instances=[Instance(0, np.eye(4), [0], "Floor")],
         materials=[material("Gray", Lobe(LobeKind.DIFFUSE, color=(0.5, 0.5, 0.5)))],
-        lights=[Light("Lamp", LightKind.POINT, lamp, np.full(3, 10.0))],
+        lights=[Light("Light", LightKind.POINT, light, np.full(3, 10.0))],
         settings=RenderSettings(iterations=3, photons=1024),
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maps of lamps: how they lie side by side, and their means."""
+"""Maps of lights: how they lie side by side, and their means."""
 
 import numpy as np
 import pytest
@@ -67,7 +67,7 @@ def graph_of(kind: str, output: str) -> NodeGraph:
         ("light_path", "ray_length", "distance"),
     ],
 )
-def test_what_lamps_vary_by(kind, output, what):
+def test_what_lights_vary_by(kind, output, what):
     varies = light_variation(graph_of(kind, output))
     told = {name for name in ("place", "direction", "uv", "distance") if getattr(varies, name)}
     assert told == {what} and bool(varies) == (what != "distance")

@@ -79,7 +79,7 @@ def test_what_stays_is_shared():
 
 def test_meshes_lights_and_the_camera_move():
     scene = with_shutter()
-    scene.lights = [Light("lamp", LightKind.POINT, np.eye(4), np.ones(3))]
+    scene.lights = [Light("light", LightKind.POINT, np.eye(4), np.ones(3))]
     mesh = scene.meshes[0]
     shapes = np.stack([mesh.positions, mesh.positions + np.float32([0, 0, 2])])
     normals = np.zeros((2, *mesh.corner_normals.shape), np.float32)

@@ -52,8 +52,8 @@ def test_glass_is_a_veil():
 
 def test_emission_adds_to_what_it_is_added_to():
     def make(graph):
-        lamp = graph.add("emission", "emission", color=RED, strength=2.0)
-        return graph.add("add_shader", "shader", shader=lamp, shader_001=graph.add("bsdf_diffuse", "bsdf", color=BLUE))
+        light = graph.add("emission", "emission", color=RED, strength=2.0)
+        return graph.add("add_shader", "shader", shader=light, shader_001=graph.add("bsdf_diffuse", "bsdf", color=BLUE))
 
     found = surface_of(make)
     np.testing.assert_array_equal(found.color, BLUE)

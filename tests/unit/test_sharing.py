@@ -23,7 +23,7 @@ def scene() -> Scene:
         meshes=[mesh],
         instances=[Instance(0, np.eye(4), [0]), Instance(0, 2.0 * np.eye(4), [1])],
         materials=[material(name, Lobe(LobeKind.DIFFUSE)) for name in ("a", "b")],
-        lights=[Light("lamp", LightKind.POINT, np.eye(4), np.ones(3))],
+        lights=[Light("light", LightKind.POINT, np.eye(4), np.ones(3))],
         world=image_world(0),
         images=[Image("sky", np.zeros((2, 2, 4), np.uint8), "LINEAR")],
         warnings=["something"],

@@ -16,8 +16,8 @@ IN_VIEW = {"at": (1.25, 0.6, 1.2), "turn": (-70.0, 10.0, 20.0)}
 ABOVE = {"at": (0.7, -0.9, 2.8), "turn": (15.0, 20.0, 0.0)}
 
 
-def lamps(group: str, name: str, make, **members: object) -> None:
-    """A row of a lamp over a gray ball on a gray ground."""
+def lights(group: str, name: str, make, **members: object) -> None:
+    """A row of a light over a gray ball on a gray ground."""
 
     def build() -> None:
         stage.empty()
@@ -29,11 +29,11 @@ def lamps(group: str, name: str, make, **members: object) -> None:
     add(Row(group, name, build, **members))
 
 
-def _lamp(kind, energy=60.0, where=None, **properties):
+def _light(kind, energy=60.0, where=None, **properties):
     return lambda: light(kind, energy, place(**(where or ABOVE)), **properties)
 
 
-LAMPS = {
+LIGHTS = {
     "Point Light": {
         "no size": ("POINT", {"shadow_soft_size": 0.0}), "size 0.4": ("POINT", {"shadow_soft_size": 0.4}),
         "size 0.4, no soft falloff": ("POINT", {"shadow_soft_size": 0.4, "use_soft_falloff": False}),
@@ -59,13 +59,13 @@ LAMPS = {
         "not normalized": ("AREA", {"energy": 25.0, "size": 1.2, "normalize": False}),
     },
 }  # fmt: skip
-for _group, _rows in LAMPS.items():
+for _group, _rows in LIGHTS.items():
     for _name, (_kind, _properties) in _rows.items():
-        lamps(_group, _name, _lamp(_kind, **_properties), effort=2 if "spread" in _properties else 1)
+        lights(_group, _name, _light(_kind, **_properties), effort=2 if "spread" in _properties else 1)
 
 
-def lamp_with_nodes(kind, feed, where=None, **properties):
-    """A lamp whose emission is fed by ``feed(net)``: color and strength; the camera sees it where a place is given."""
+def light_with_nodes(kind, feed, where=None, **properties):
+    """A light whose emission is fed by ``feed(net)``: color and strength; the camera sees it where a place is given."""
 
     def make() -> None:
         made = light(kind, 60.0, place(**(where or ABOVE)), **properties)
@@ -81,43 +81,43 @@ def lamp_with_nodes(kind, feed, where=None, **properties):
     return make
 
 
-lamps("Light nodes", "constant", lamp_with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
-lamps(
+lights("Light nodes", "constant", light_with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
+lights(
     "Light nodes",
     "blackbody",
-    lamp_with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8),
+    light_with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8),
 )
-lamps(
+lights(
     "Light nodes",
     "quadratic falloff",
-    lamp_with_nodes(
+    light_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0})),
         shadow_soft_size=0.1,
     ),
 )
-lamps(
+lights(
     "Light nodes",
     "smooth quadratic falloff",
-    lamp_with_nodes(
+    light_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0, "Smooth": 1.0})),
         shadow_soft_size=0.1,
     ),
 )
-lamps(
+lights(
     "Light nodes",
     "linear falloff",
-    lamp_with_nodes(
+    light_with_nodes(
         "POINT",
         lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Linear", {"Strength": 0.4})),
         shadow_soft_size=0.1,
     ),
 )
-lamps(
+lights(
     "Light nodes",
     "constant falloff",
-    lamp_with_nodes(
+    light_with_nodes(
         "AREA", lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Constant", {"Strength": 0.2})), size=0.8
     ),
 )
@@ -166,13 +166,13 @@ BY_DIRECTION = {
     "sun, image": ("SUN", _image, {"angle": 0.8}),
 }  # fmt: skip
 for _name, (_kind, _feed, _properties) in BY_DIRECTION.items():
-    lamps("Light nodes", _name, lamp_with_nodes(_kind, _feed, **_properties), effort=2)
+    lights("Light nodes", _name, light_with_nodes(_kind, _feed, **_properties), effort=2)
 for _name in ("spot, image", "spot, sphere, color by normal", "point, color by normal", "area, incoming"):
     _kind, _feed, _properties = BY_DIRECTION[_name]
-    lamps(
+    lights(
         "Light nodes",
         f"{_name}, by photons",
-        lamp_with_nodes(_kind, _feed, **_properties),
+        light_with_nodes(_kind, _feed, **_properties),
         settings={"direct_light": DirectLight.PHOTONS, "photons": 16384},
         effort=4,
     )
@@ -184,15 +184,16 @@ for _name, _where in {
 }.items():
     _kind, _feed, _properties = BY_DIRECTION[_name]
     _size = {"AREA": {"size": 0.8}, "SUN": {}}.get(_kind, {"shadow_soft_size": 0.4})
-    lamps("Light nodes", f"{_name}, in view", lamp_with_nodes(_kind, _feed, _where, **(_properties | _size)), effort=3)
+    _make = light_with_nodes(_kind, _feed, _where, **(_properties | _size))
+    lights("Light nodes", f"{_name}, in view", _make, effort=3)
 
 
 def _two() -> None:
-    _lamp("POINT", 30.0, shadow_soft_size=0.1, color=(1.0, 0.5, 0.2))()
-    _lamp("AREA", 40.0, {"at": (-1.5, -1.0, 2.0), "turn": (30.0, -40.0, 0.0)}, size=0.6, color=(0.3, 0.6, 1.0))()
+    _light("POINT", 30.0, shadow_soft_size=0.1, color=(1.0, 0.5, 0.2))()
+    _light("AREA", 40.0, {"at": (-1.5, -1.0, 2.0), "turn": (30.0, -40.0, 0.0)}, size=0.6, color=(0.3, 0.6, 1.0))()
 
 
-lamps("Lights", "two of them", _two)
+lights("Lights", "two of them", _two)
 
 
 def _glowing(feed, half=0.7):
@@ -206,9 +207,9 @@ def _glowing(feed, half=0.7):
     return make
 
 
-lamps("Glowing mesh", "plain", _glowing(lambda net: ((1.0, 0.8, 0.6), 10.0)), effort=2)
-lamps("Glowing mesh", "strength by an image", _glowing(lambda net: (texture(kind="opaque")(net), 20.0)), effort=2)
-lamps(
+lights("Glowing mesh", "plain", _glowing(lambda net: ((1.0, 0.8, 0.6), 10.0)), effort=2)
+lights("Glowing mesh", "strength by an image", _glowing(lambda net: (texture(kind="opaque")(net), 20.0)), effort=2)
+lights(
     "Glowing mesh",
     "strength by a checker",
     _glowing(
@@ -219,7 +220,7 @@ lamps(
     ),
     effort=2,
 )
-lamps(
+lights(
     "Glowing mesh",
     "one side only",
     _glowing(
@@ -230,7 +231,7 @@ lamps(
     ),
     effort=2,
 )
-lamps(
+lights(
     "Glowing mesh",
     "by a ramp of noise",
     _glowing(lambda net: (net.out("ValToRGB", 0, {0: net.out("TexNoise", "Fac", {"Scale": 5.0})}), 20.0)),
@@ -245,15 +246,15 @@ def _small_bulbs() -> None:
         stage.ball(surface, {"at": (x, y, 2.9), "scale": (0.18, 0.18, 0.18)}, 12)
 
 
-lamps("Glowing mesh", "two bulbs", _small_bulbs, effort=2)
+lights("Glowing mesh", "two bulbs", _small_bulbs, effort=2)
 
 
 def _in_view(visible: bool):
     def make() -> None:
-        _lamp("AREA", 60.0, IN_VIEW, size=0.8)().visible_camera = visible
+        _light("AREA", 60.0, IN_VIEW, size=0.8)().visible_camera = visible
 
     return make
 
 
-lamps("Area Light", "in view", _in_view(True), effort=3)
-lamps("Area Light", "hidden from the camera", _in_view(False), effort=3)
+lights("Area Light", "in view", _in_view(True), effort=3)
+lights("Area Light", "hidden from the camera", _in_view(False), effort=3)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""IES profiles: their values by direction, and lamps that have them."""
+"""IES profiles: their values by direction, and lights that have them."""
 
 import bpy
 import numpy as np
 
 from .image_textures import folder
-from .lights import WHITE, lamp_with_nodes, lamps
+from .lights import WHITE, light_with_nodes, lights
 from .rows import value
 
 GROUP = "IES Texture"
@@ -17,8 +17,8 @@ def profile(kind: int, around: np.ndarray, down: np.ndarray, tilt: str = "TILT=N
     candela = (400.0 + 1200.0 * random).round(1)
     if kind == 1 and around[-1] == 360.0:
         candela[-1] = candela[0]
-    lamp = f"1 1000 1.5 {len(down)} {len(around)} {kind} 2 0.1 0.2 0.0\n1.0 0.9, 40"
-    head = f"IESNA:LM-63-1995\n[TEST] parity\n{tilt}\n{lamp}\n"
+    luminaire = f"1 1000 1.5 {len(down)} {len(around)} {kind} 2 0.1 0.2 0.0\n1.0 0.9, 40"
+    head = f"IESNA:LM-63-1995\n[TEST] parity\n{tilt}\n{luminaire}\n"
     rows = "\n".join(" ".join(map(str, row)) for row in (down, around, *candela))
     return f"{head}{rows}\n"
 
@@ -74,9 +74,9 @@ value(GROUP, "no profile", _shown("nothing", 1.0), warns=True)
 for _kind, _properties in {
     "POINT": {"shadow_soft_size": 0.1}, "SPOT": {"shadow_soft_size": 0.0, "spot_size": 1.5}, "AREA": {"size": 0.5},
 }.items():  # fmt: skip
-    lamps(
+    lights(
         GROUP,
-        f"{_kind.lower()} lamp",
-        lamp_with_nodes(_kind, lambda net: (WHITE, _profile_node(net, PROFILES["half"])), **_properties),
+        f"{_kind.lower()} light",
+        light_with_nodes(_kind, lambda net: (WHITE, _profile_node(net, PROFILES["half"])), **_properties),
         effort=2,
     )

@@ -97,7 +97,7 @@ def lit(
         plain, plain_net = material("Ground")
         plain_net.output(plain_net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
         stage.set_up(surface, world, None if on_ground else plain)
-        stage.lamp()
+        stage.area_light()
         if prepare is not None:
             prepare()
         net.output(give(net))

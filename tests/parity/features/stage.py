@@ -87,6 +87,6 @@ def background() -> bpy.types.Node:
     return next(n for n in bpy.context.scene.world.node_tree.nodes if n.type == "BACKGROUND")
 
 
-def lamp() -> bpy.types.Object:
+def area_light() -> bpy.types.Object:
     """The area light that lights what is lit."""
     return light("AREA", 90.0, place(at=(1.6, -1.6, 3.0), turn=(35.0, 25.0, 0.0)), shape="SQUARE", size=1.4)
