@@ -3,8 +3,8 @@
 
 Without one, since the branch left main, or on main since the commit before. A changed test, or a module of tests, asks
 for the test files that import it; all else asks for folders by the room that it is in (``ROOMS``), as nearly all tests
-import nearly all of the package. Nothing is printed where git knows no history, nor for a change that touches more long
-tests than CI has time for: ``make test-long`` is for these.
+import nearly all of the package. Nothing is printed where git knows no history. Of more than CI has time for, only the
+test files that were themselves changed are printed, or none where these are too many: ``make test-long`` is for the rest.
 """
 
 import ast
@@ -100,14 +100,20 @@ def changed_since(commit: str | None) -> list[str]:
     return (_git("diff", "--name-only", base) or "").splitlines()
 
 
-def bounded(names: list[str], root: Path = ROOT) -> list[str]:
-    """Those of the files that have long tests, or none where these are too many."""
+def bounded(names: list[str], changed: list[str], root: Path = ROOT) -> list[str]:
+    """Those of the files that have long tests; of too many those that were changed, or none where these are too many."""
     long = [name for name in names if "mark.long" in (root / name).read_text(encoding="utf-8")]
     if len(long) <= MOST_FILES:
         return long
-    print(f"the change asks for the long tests of {len(long)} files: run make test-long", file=sys.stderr)
-    return []
+    own = [name for name in long if name in changed]
+    kept = own if len(own) <= MOST_FILES else []
+    print(
+        f"the change asks for the long tests of {len(long)} files, of which {len(kept)} run: run make test-long",
+        file=sys.stderr,
+    )
+    return kept
 
 
 if __name__ == "__main__":
-    print(" ".join(bounded(touched(changed_since(sys.argv[1] if len(sys.argv) > 1 else None)))))
+    changed_files = changed_since(sys.argv[1] if len(sys.argv) > 1 else None)
+    print(" ".join(bounded(touched(changed_files), changed_files)))

@@ -66,8 +66,10 @@ def test_rooms_are_there():
 
 
 def test_more_than_ci_has_time_for_is_left_to_hand(tmp_path, capsys):
+    """But for what was changed itself."""
     names = [f"test_{number}.py" for number in range(MOST_FILES + 2)]
     for name in names:
         (tmp_path / name).write_text("@pytest.mark.long" if name != names[0] else "", encoding="utf-8")
-    assert bounded(names[:-1], tmp_path) == names[1:-1] and not capsys.readouterr().err
-    assert bounded(names, tmp_path) == [] and "make test-long" in capsys.readouterr().err
+    assert bounded(names[:-1], [], tmp_path) == names[1:-1] and not capsys.readouterr().err
+    for changed, kept in (([], []), (names[:3], names[1:3]), (names, [])):
+        assert bounded(names, changed, tmp_path) == kept and "make test-long" in capsys.readouterr().err
