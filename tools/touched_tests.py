@@ -3,8 +3,8 @@
 
 Without one, since the branch left main, or on main since the commit before. A changed test, or a module of tests, asks
 for the test files that import it; all else asks for folders by the room that it is in (``ROOMS``), as nearly all tests
-import nearly all of the package. Nothing is printed where git knows no history. Of more than CI has time for, only the
-test files that were themselves changed are printed, or none where these are too many: ``make test-long`` is for the rest.
+import nearly all of the package. Nothing is printed where git knows no history. Of more than CI has time for, only
+the test files that were themselves changed are printed, if they are few: ``make test-long`` is for the rest.
 """
 
 import ast
@@ -101,7 +101,7 @@ def changed_since(commit: str | None) -> list[str]:
 
 
 def bounded(names: list[str], changed: list[str], root: Path = ROOT) -> list[str]:
-    """Those of the files that have long tests; of too many those that were changed, or none where these are too many."""
+    """Those of the files that have long tests; of too many those that were changed, if these are few."""
     long = [name for name in names if "mark.long" in (root / name).read_text(encoding="utf-8")]
     if len(long) <= MOST_FILES:
         return long

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A real Blender window with the built extension installed; `make test-gui` runs these tests."""
 
+import contextlib
+import fcntl
+import hashlib
 import importlib.util
 import json
 import shutil
@@ -17,6 +20,8 @@ CANNOT_BUILD = 77
 """Exit status of build_chroot.sh where a machine cannot have a chroot."""
 PICTURES = ROOT / "out" / "gui"
 """Where logs and screenshots stay, to be looked at."""
+CACHES = ("home/.cache", "programs")
+"""Of a session's folder: what the driver and RPPM compiled."""
 
 
 @pytest.fixture(scope="session")
@@ -43,12 +48,43 @@ def archive(tmp_path_factory) -> Path:
     return file
 
 
+@contextlib.contextmanager
+def kept_caches(chroot: Path):
+    """Where a session leaves what its first render compiled to those after it and beside it, until the sources change;
+    no other session reads or writes there meanwhile."""
+    digest = hashlib.sha256()
+    for folder in ("shaders", "rppm_addon"):
+        for file in sorted(path for path in (ROOT / folder).rglob("*") if path.suffix not in ("", ".pyc")):
+            digest.update(file.read_bytes())
+    kept = chroot.with_name(f"compiled-{digest.hexdigest()[:16]}")
+    with chroot.with_name("compiled.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield kept
+
+
+def keep_caches(chroot: Path, folder: Path) -> None:
+    with kept_caches(chroot) as kept:
+        if kept.is_dir():
+            return
+        for old in kept.parent.glob("compiled-*"):
+            shutil.rmtree(old)
+        for name in CACHES:
+            shutil.copytree(folder / name, kept / name)
+
+
+def take_caches(chroot: Path, folder: Path) -> None:
+    with kept_caches(chroot) as kept:
+        if kept.is_dir():
+            shutil.copytree(kept, folder, dirs_exist_ok=True)
+
+
 @pytest.fixture(scope="session")
 def session_folder(chroot, archive, tmp_path_factory) -> Path:
     """What the Blenders of all tests see as /mnt: the extension is installed, caches are filled by the first."""
     folder = tmp_path_factory.mktemp("gui")
     for name in ("home", "user", "programs"):
         (folder / name).mkdir()
+    take_caches(chroot, folder)
     shutil.copytree(HERE / "inside", folder / "inside")
     shutil.copy(ROOT / "docs" / "samples" / "first_light.blend", folder)
     shutil.copy(archive, folder / "rppm.zip")
@@ -63,6 +99,7 @@ def session_folder(chroot, archive, tmp_path_factory) -> Path:
         (folder / "first_1.png").unlink()
     finally:
         machine.close()
+    keep_caches(chroot, folder)
     return folder
 
 
