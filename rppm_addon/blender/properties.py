@@ -176,7 +176,7 @@ class RppmLightProperties(bpy.types.PropertyGroup):
     photon_weight: FloatProperty(
         name="Photon Weight",
         description=(
-            "Weight of this light, on top of its power, when photons are shared out; "
+            "Weight of this light, on top of its power, when photons are allocated to lights; "
             "more photons make its light smoother, never brighter"
         ),
         default=1.0,

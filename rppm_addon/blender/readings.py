@@ -66,8 +66,8 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
     return MemoryReading(expected(settings, width, height), scene_bytes)
 
 
-def photon_shares(watts: Mapping[str, float], factors: Mapping[str, float]) -> dict[str, float]:
-    """Shares of the photons by source, summing to 1: power times the user's factor, 1 where none is named."""
-    weights = {name: value * max(factors.get(name, 1.0), 0.0) for name, value in watts.items()}
+def photon_allocation(watts: Mapping[str, float], photon_weights: Mapping[str, float]) -> dict[str, float]:
+    """Fractions of the photons by source, summing to 1: power times the user's weight, 1 where none is named."""
+    weights = {name: value * max(photon_weights.get(name, 1.0), 0.0) for name, value in watts.items()}
     total = sum(weights.values())
     return {name: weight / total if total > 0 else 0.0 for name, weight in weights.items()}

@@ -54,7 +54,7 @@ class Light:
     of_world: bool = False
     """SUN: whether the graph is a world's, which the sun belongs to, and sees directions as a world does."""
     photon_weight: float = 1.0
-    """Weight of this light when photons are shared out (paper section 4.3), on top of its power."""
+    """Weight of this light when photons are allocated (paper section 4.3), on top of its power."""
 
 
 @dataclass

@@ -136,7 +136,7 @@ class RenderSettings:
     photons: int = setting(
         0,
         "Photons",
-        "Photons emitted in each sample, shared among the lights by their power and photon weight; "
+        "Photons emitted in each sample, allocated to the lights by their power and photon weight; "
         "0 is automatic: as many as the picture has pixels, within limits, and fewer after the first sample "
         "where caustics are a small part of the light",
         minimum=0,

@@ -53,7 +53,7 @@ COUNTERPARTS = {
     "CYCLES_RENDER_PT_performance_memory": "RPPM_PT_performance",
     "CYCLES_RENDER_PT_sampling": "RPPM_PT_sampling",
     "CYCLES_RENDER_PT_sampling_advanced": "RPPM_PT_advanced",
-    "CYCLES_RENDER_PT_sampling_lights": "RPPM_PT_light_shares",
+    "CYCLES_RENDER_PT_sampling_lights": "RPPM_PT_photon_allocation",
     "CYCLES_RENDER_PT_sampling_render": "RPPM_PT_sampling_final",
     "CYCLES_RENDER_PT_sampling_viewport": "RPPM_PT_sampling_viewport",
     "CYCLES_RENDER_PT_simplify": "RPPM_PT_simplify",

@@ -228,19 +228,19 @@ def test_rates_and_the_last_renders(scene):
 
 
 def test_shares_of_lights(scene):
-    """Power times factor as it is now; lights that no render knows yet come last."""
+    """Power times weight as it is now; lights that no render knows yet come last."""
     point = add_light(scene, "POINT", "Light")
     add_light(scene, "SUN", "Late")
     point.data.rppm.photon_weight = 3.0
     watts = {source_name("Light"): 10.0, source_name("Gone"): 10.0, SURFACES: 20.0, ENVIRONMENT: 60.0}
     photons = {source_name("Light"): 500, source_name("Gone"): 0, SURFACES: 250, ENVIRONMENT: 250}
-    panel = panels.lights.RPPM_PT_light_shares
+    panel = panels.lights.RPPM_PT_photon_allocation
     record = drawn(panel, context_of(scene))
     assert record.properties == ["photon_weight"] * 2 and "once the scene was rendered" in record.labels[-1]
     reports.record(scene.session_uid, report(source_watts=watts, source_photons=photons))
     rows = panels.lights.source_rows(scene)
     assert [row.name for row in rows] == ["World", "Light", SURFACES, "Gone", "Late"]
-    assert [row.share for row in rows] == pytest.approx([60 / 120, 30 / 120, 20 / 120, 10 / 120, None], nan_ok=True)
+    assert [row.allocated for row in rows] == pytest.approx([60 / 120, 30 / 120, 20 / 120, 10 / 120, None], nan_ok=True)
     assert [row.sent for row in rows[:4]] == [0.25, 0.5, 0.25, 0.0]
     assert [row.light for row in rows] == [None, point.data, None, None, bpy.data.lights["Late"]]
     labels = drawn(panel, context_of(scene)).labels
@@ -253,7 +253,7 @@ def test_shares_of_lights(scene):
 def test_many_lights_are_cut_short(scene):
     for number in range(40):
         add_light(scene, "POINT", f"Light {number}")
-    record = drawn(panels.lights.RPPM_PT_light_shares, context_of(scene))
+    record = drawn(panels.lights.RPPM_PT_photon_allocation, context_of(scene))
     assert len(record.properties) == panels.lights.LIGHTS_SHOWN and "and 16 more" in record.labels
 
 

@@ -14,7 +14,7 @@ from drawing import context_of, drawn
 from rppm_addon.blender import panels, reports
 from rppm_addon.blender.export.settings import export_settings
 from rppm_addon.blender.operators import RPPM_OT_select_subject
-from rppm_addon.blender.readings import memory_reading, photon_shares, radius_reading
+from rppm_addon.blender.readings import memory_reading, photon_allocation, radius_reading
 from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
@@ -78,11 +78,11 @@ def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
     for name, row in shares.items():
         sent = report.source_photons[name if name in names else source_name(name)]
         assert row.sent == sent / 4000
-        assert 4000 * row.share == pytest.approx(sent, abs=1.0) and sent > 10, name
+        assert 4000 * row.allocated == pytest.approx(sent, abs=1.0) and sent > 10, name
     # Other factors change the shares before anything is rendered again, and the next render agrees.
     bpy.data.lights["The SUN"].rppm.photon_weight = 4.0
-    expected = {row.name: row.share for row in panels.lights.source_rows(facing)}
-    assert expected["The SUN"] > 2 * shares["The SUN"].share
+    expected = {row.name: row.allocated for row in panels.lights.source_rows(facing)}
+    assert expected["The SUN"] > 2 * shares["The SUN"].allocated
     rendered(facing)
     for row in panels.lights.source_rows(facing):
         assert row.sent == pytest.approx(expected[row.name], abs=1.0 / 4000)
@@ -181,9 +181,9 @@ def test_little_is_kept():
 
 
 def test_shares_without_any_weight():
-    assert photon_shares({}, {}) == {}
-    assert photon_shares({"a": 1.0}, {"a": 0.0}) == {"a": 0.0}
-    assert photon_shares({"a": 1.0, "b": 3.0}, {"a": 3.0}) == {"a": 0.5, "b": 0.5}
+    assert photon_allocation({}, {}) == {}
+    assert photon_allocation({"a": 1.0}, {"a": 0.0}) == {"a": 0.0}
+    assert photon_allocation({"a": 1.0, "b": 3.0}, {"a": 3.0}) == {"a": 0.5, "b": 0.5}
 
 
 def test_nothing_that_is_reported_is_saved(facing, tmp_path):
@@ -287,7 +287,7 @@ def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
     assert kept.viewport == kept.latest == told and kept.finals == ()
     assert told.photons_per_second == pytest.approx(status.photons_per_second, rel=0.01)
     assert told.iterations_per_second == pytest.approx(status.iterations_per_second, rel=0.01)
-    assert [(row.name, row.share, row.sent) for row in panels.lights.source_rows(facing)] == [("Sun", 1.0, 1.0)]
+    assert [(row.name, row.allocated, row.sent) for row in panels.lights.source_rows(facing)] == [("Sun", 1.0, 1.0)]
     final = rendered(facing)
     assert final.source_watts == told.source_watts and final.source_photons == told.source_photons
     assert final.radius_meters == pytest.approx(told.radius_meters, rel=1e-6)

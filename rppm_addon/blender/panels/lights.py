@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import bpy
 
 from ...integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
-from ..readings import photon_shares
+from ..readings import photon_allocation
 from ..reports import RenderReport, reports_of
 from .base import RppmPanel
 
@@ -21,11 +21,11 @@ class SourceRow:
     name: str
     icon: str
     light: bpy.types.Light | None
-    """Whose factor is shown; None where there is none to set."""
-    share: float | None
-    """Of the photons, by the powers of the last render and the factors as they are now; None before a render."""
+    """Whose photon weight is shown; None where there is none to set."""
+    allocated: float | None
+    """Fraction of the photons, by the powers of the last render and the weights as they are; None before a render."""
     sent: float | None
-    """Of the photons of the last render's last iteration, which knew what photons are good for."""
+    """Fraction of the photons of the last render's last iteration, which knew what photons are good for."""
 
 
 def powers_of(scene: bpy.types.Scene) -> RenderReport | None:
@@ -43,17 +43,17 @@ def source_rows(scene: bpy.types.Scene) -> list[SourceRow]:
     if report is not None:
         # By name rather than by all of the scene's objects, which may be many thousands.
         lights = {name: _light_of(name) for name in report.source_watts}
-        factors = {name: light.rppm.photon_weight for name, light in lights.items() if light is not None}
-        shares = photon_shares(report.source_watts, factors)
+        weights = {name: light.rppm.photon_weight for name, light in lights.items() if light is not None}
+        allocation = photon_allocation(report.source_watts, weights)
         emitted = max(sum(report.source_photons.values()), 1)
         for name in report.source_watts:
             icon = {SURFACES: "MATERIAL", ENVIRONMENT: "WORLD"}.get(name, "LIGHT")
             shown = _object_name(name)
             rows.append(
-                SourceRow(shown, icon, lights[name], shares[name], report.source_photons.get(name, 0) / emitted)
+                SourceRow(shown, icon, lights[name], allocation[name], report.source_photons.get(name, 0) / emitted)
             )
         listed = {light for light in lights.values() if light is not None}
-        rows.sort(key=lambda row: -row.share)
+        rows.sort(key=lambda row: -row.allocated)
     rows += [SourceRow(light.name, "LIGHT", light, None, None) for light in bpy.data.lights if light not in listed]
     return rows
 
@@ -68,8 +68,8 @@ def _light_of(source: str) -> bpy.types.Light | None:
     return found.data if found is not None and found.type == "LIGHT" else None
 
 
-class RPPM_PT_light_shares(RppmPanel, bpy.types.Panel):
-    bl_label = "Light Shares"
+class RPPM_PT_photon_allocation(RppmPanel, bpy.types.Panel):
+    bl_label = "Photon Allocation"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -78,9 +78,9 @@ class RPPM_PT_light_shares(RppmPanel, bpy.types.Panel):
         if not rows:
             layout.label(text="The scene has no lights", icon="INFO")
             return
-        known = any(row.share is not None for row in rows)
+        known = any(row.allocated is not None for row in rows)
         heading = layout.row()
-        for text in ("Light", "Factor", "Share", "Sent") if known else ("Light", "Factor"):
+        for text in ("Light", "Weight", "Allocated", "Sent") if known else ("Light", "Weight"):
             heading.label(text=text)
         column = layout.column(align=True)
         for source in rows[:LIGHTS_SHOWN]:
@@ -91,14 +91,14 @@ class RPPM_PT_light_shares(RppmPanel, bpy.types.Panel):
             else:
                 line.label(text="")
             if known:
-                line.label(text="" if source.share is None else f"{source.share:.1%}")
+                line.label(text="" if source.allocated is None else f"{source.allocated:.1%}")
                 line.label(text="" if source.sent is None else f"{source.sent:.1%}")
         if len(rows) > LIGHTS_SHOWN:
             layout.label(text=f"and {len(rows) - LIGHTS_SHOWN} more")
         if known:
-            layout.label(text="Share: by power and factor; Sent: with what was learned", icon="INFO")
+            layout.label(text="Allocated: by power and weight; Sent: with what was learned", icon="INFO")
         else:
-            layout.label(text="The shares are shown once the scene was rendered", icon="INFO")
+            layout.label(text="The allocation is shown once the scene was rendered", icon="INFO")
 
 
-CLASSES = (RPPM_PT_light_shares,)
+CLASSES = (RPPM_PT_photon_allocation,)
