@@ -9,6 +9,7 @@ import enum
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from .errors import SettingsError
 from .passes import DENOISING_ALBEDO, DENOISING_NORMAL, RenderPass, aov_passes, passes_named, with_divisors
@@ -476,7 +477,7 @@ class RenderSettings:
         Raises SettingsError for an unknown name or a value of the wrong kind.
         """
         fields = {info.property_of(name): (name, info) for name, info in settings_of(RenderSettings).items()}
-        converted = {}
+        converted: dict[str, Any] = {}
         for given, value in values.items():
             if given not in fields:
                 raise SettingsError(f"there is no setting {given}; the settings are {', '.join(fields)}")
@@ -485,7 +486,7 @@ class RenderSettings:
         return dataclasses.replace(self, **converted)
 
 
-def _converted(name: str, kind: type, value: object, offset: int = 0) -> object:
+def _converted(name: str, kind: type[Any], value: Any, offset: int = 0) -> Any:
     """A value, perhaps text, as the field has it; ``offset``: what users see more."""
     try:
         if kind is bool and isinstance(value, str):

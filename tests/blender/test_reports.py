@@ -116,14 +116,14 @@ def test_what_a_final_render_reports(facing):
 def test_an_error_is_shown_until_a_render_succeeds(facing):
     light = add_light(facing, "SUN")
     light.data.rppm.photon_weight = 0.0
-    with pytest.raises(RuntimeError, match="photon share 0"):
+    with pytest.raises(RuntimeError, match="photon weight of 0"):
         bpy.ops.render.render()
     panel, context = panels.performance.RPPM_PT_status, context_of(facing)
     assert not panels.warnings.RPPM_PT_warnings.poll(context)
-    assert panel.poll(context) and "all lights have photon share 0" in " ".join(drawn(panel, context).labels)
+    assert panel.poll(context) and "all lights have photon weight of 0" in " ".join(drawn(panel, context).labels)
     light.data.rppm.photon_weight = 1.0
     rendered(facing)
-    assert "photon share 0" not in " ".join(drawn(panel, context).labels)
+    assert "photon weight of 0" not in " ".join(drawn(panel, context).labels)
 
 
 def test_warnings_name_what_can_be_selected(facing):

@@ -120,7 +120,7 @@ def test_without_light_the_picture_is_black(renderer, kind, caplog):
 def test_no_share_of_photons_is_an_error(renderer):
     scene = small_room()
     scene.lights[0].photon_weight = 0.0
-    with pytest.raises(SceneError, match="photon share"):
+    with pytest.raises(SceneError, match="photon weight"):
         renderer.render(scene)
 
 

@@ -158,12 +158,12 @@ class Lights(BufferSet):
         keep_light_objects: bool = False,
         keep_learned: bool = False,
     ) -> None:
-        """Lay out all lights and share the photons of an iteration among them.
+        """Lay out all lights and allocate the photons of an iteration to them.
 
         photons: of that iteration, no more than the scene's. keep_world, keep_light_objects: the world, or
         all light objects, are those of the last call. keep_learned: the lights are those of the last call at another
         time, and what was learned of them holds.
-        Raises SceneError when all lights have a photon share of 0.
+        Raises SceneError when all lights have a photon weight of 0.
         """
         self.times_built += 1
         self.scene_radius = radius = max(geometry.radius * 1.001, 1e-6)
@@ -172,12 +172,12 @@ class Lights(BufferSet):
         powers: list[float] = []
         weights: list[float] = []
 
-        def add(name: str, entry: np.ndarray, power: np.ndarray, share: float = 1.0) -> None:
+        def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0) -> None:
             if np.isfinite(power).all() and np.max(power) > 0:
                 names.append(name)
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
-                weights.append(float(np.mean(power)) * max(share, 0.0))
+                weights.append(float(np.mean(power)) * max(weight, 0.0))
 
         if not keep_light_objects:
             self.light_maps.build(scene.lights, scene.images, materials)
@@ -205,7 +205,7 @@ class Lights(BufferSet):
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
             entries, powers, weights = [entry], [1.0], [1.0]
         if sum(weights) <= 0:
-            raise SceneError("all lights have photon share 0; raise the share of one")
+            raise SceneError("all lights have a photon weight of 0; raise that of one")
 
         kept = self.table if keep_learned and names == self._names else None
         self._names, self._powers, self._power = names, powers, sum(powers)
