@@ -27,8 +27,7 @@ OUTPUT = Path(__file__).parents[2] / "out" / "path_classes"
 
 def render(mapper: ProgressivePhotonMapper, scene: Scene, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """(H, W, 3) radiance, and the mean over the iterations of the squares of both splat radii, m^2."""
-    scene.settings.seed = seed
-    mapper.build(scene)
+    mapper.update(dataclasses.replace(scene, settings=scene.settings.with_values(seed=seed)))
     squares = []
     for _ in range(scene.settings.iterations):
         mapper.iterate()

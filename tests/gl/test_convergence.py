@@ -10,6 +10,8 @@ The first iterations guide photons and fit the wide radius to what they find, so
 radius and the flux of its photons as they were; Eq. 2 alone is compared with the limits.
 """
 
+import dataclasses
+
 import numpy as np
 import pytest
 import scenes
@@ -178,8 +180,7 @@ def running_means(mapper, scene: Scene, seeds: int) -> tuple[np.ndarray, np.ndar
     means, squares, radii = [], [], []
     half, size = scene.camera.window[1], scene.camera.width
     for seed in range(seeds):
-        scene.settings.seed = seed
-        mapper.build(scene)
+        mapper.update(dataclasses.replace(scene, settings=scene.settings.with_values(seed=seed)))
         for iteration in range(1, CHECKPOINTS[-1] + 1):
             mapper.iterate()
             if iteration in CHECKPOINTS:
