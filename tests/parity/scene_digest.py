@@ -5,7 +5,9 @@ What Blender keeps for its windows is left out, as are RPPM's own settings and t
 between processors.
 """
 
+import functools
 import hashlib
+import sys
 import warnings
 from pathlib import Path
 
@@ -46,6 +48,13 @@ _VALUES = {
 }  # fmt: skip
 
 
+@functools.lru_cache(maxsize=1 << 16)
+def _few_bits(value: float) -> bytes:
+    """Of one number, as _Digest.numbers has them of an array."""
+    (bits,) = np.float32([0.0 if abs(np.float32(value)) < np.float32(1e-6) else value]).view(np.uint32)
+    return (((int(bits) + 0x4B) >> 8) & 0xFFFFFFFF).to_bytes(4, sys.byteorder)
+
+
 class _Digest:
     def __init__(self) -> None:
         self.hash = hashlib.sha256()
@@ -57,6 +66,9 @@ class _Digest:
 
     def numbers(self, values: object) -> None:
         """Floats but for the last 8 bits; what is next to nothing is nothing."""
+        if isinstance(values, list):  # of a property: few, and there are thousands of these
+            self.hash.update(b"".join(map(_few_bits, values)))
+            return
         bits = np.ascontiguousarray(values, np.float32).ravel()
         bits = np.where(np.abs(bits) < 1e-6, np.float32(0.0), bits).view(np.uint32)
         self.hash.update((((bits.astype(np.uint64) + 0x4B) >> 8).astype(np.uint32)).tobytes())
