@@ -55,9 +55,8 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
     def expected(settings: RenderSettings, width: int, height: int, in_viewport: bool = False) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
         photons = settings.photons_for(width, height)
-        segments, passes, aovs = settings.photon_path_length, settings.film_passes, settings.aovs
-        noise = settings.use_adaptive_sampling
-        return expected_memory(width, height, photons, segments, rasterized, passes, aovs, noise, in_viewport)
+        segments, passes, noise = settings.photon_path_length, settings.found_passes, settings.use_adaptive_sampling
+        return expected_memory(width, height, photons, segments, rasterized, passes, noise, in_viewport)
 
     scene_bytes = None
     if report is not None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..denoising.denoiser import Denoiser
 from ..denoising.places import library_places
-from ..pictures import standard_view
+from ..pictures import FilePicture, PictureName, standard_view, write_multilayer_exr
 from ..scene.errors import CheckpointError
 from ..scene.fingerprint import settings_of_plain
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
@@ -21,8 +21,9 @@ from ..session.frame_passes import frame_passes
 from ..session.merged_passes import MergedPasses
 from ..session.renderer import exposed
 from ..session.results import Frame
-from ..session.still_keeper import refuse_differences
+from ..session.still_keeper import picture_of, pictures_of, refuse_differences
 from .picture_files import write_png
+from .picture_set import described, metadata_of, path_of_picture
 from .recorder import picture_metadata, write_frame
 
 
@@ -54,25 +55,94 @@ class MergedStill:
             "parts": [{"first": first, "end": end, "file": file} for first, end, file in self.parts],
         }
 
-    def write(self, paths: Sequence[Path]) -> None:
-        """Write pictures as rppm render does. Raises PictureError or BlenderError."""
+    @property
+    def metadata(self) -> dict[str, object]:
+        """Of its EXR."""
         devices = ", ".join(self.devices)
-        metadata = picture_metadata(self.iterations, self.photons, self.seconds, devices, self.radius_meters)
-        for path in paths:
-            if path.suffix == ".exr":
-                settings = settings_of_plain(self.render.settings)
-                write_frame(path, self.frame, settings, self.render.placement, metadata, self.render.attributes)
-            elif self.render.source.get("blend"):
-                from .blend_file import BlendRequest, save_view
+        return picture_metadata(self.iterations, self.photons, self.seconds, devices, self.radius_meters)
 
-                request = BlendRequest.from_plain(self.render.source["blend"])
-                if not request.path.is_file():
-                    raise CheckpointError(
-                        f"{path} would be shown as {request.path} says, which is not there; put it back, or write .exr"
-                    )
-                save_view(request, self.frame.combined, path)
-            else:
-                write_png(path, standard_view(self.frame.combined))
+    @property
+    def name(self) -> PictureName:
+        """Which of the render's pictures it is."""
+        return picture_of(self.render.source)
+
+    def write_exr(self, path: Path) -> None:
+        """Write it alone. Raises PictureError."""
+        settings = settings_of_plain(self.render.settings)
+        write_frame(path, self.frame, settings, self.render.placement, self.metadata, self.render.attributes)
+
+    def write_png(self, path: Path) -> None:
+        """Write it as rppm render does. Raises PictureError or BlenderError."""
+        if not self.render.source.get("blend"):
+            write_png(path, standard_view(self.frame.combined))
+            return
+        from .blend_file import BlendRequest, save_view
+
+        request = BlendRequest.from_plain(self.render.source["blend"])
+        if not request.path.is_file():
+            raise CheckpointError(
+                f"{path} would be shown as {request.path} says, which is not there; put it back, or write .exr"
+            )
+        save_view(request, self.frame.combined, path)
+
+
+def write_stills(stills: Sequence[MergedStill], paths: Sequence[Path]) -> list[Path]:
+    """Write the pictures of a render, one of each view layer and view, as rppm render does; returns the files.
+
+    Raises PictureError or BlenderError.
+    """
+    written = []
+    names = [still.name for still in stills]
+    for path in paths:
+        if path.suffix == ".exr" and len(stills) == 1:
+            stills[0].write_exr(path)
+            written.append(path)
+        elif path.suffix == ".exr":
+            _write_multilayer(stills, path)
+            written.append(path)
+        else:
+            for still in reversed(stills):
+                written.append(path_of_picture(path, still.name, names))
+                still.write_png(written[-1])
+    return written
+
+
+def _write_multilayer(stills: Sequence[MergedStill], path: Path) -> None:
+    metadata: dict[str, object] = {}
+    attributes: dict[str, str] = {}
+    for still in stills:
+        metadata |= metadata_of(still.name, still.metadata)
+        attributes |= still.render.attributes
+    pictures = [
+        FilePicture(
+            still.name,
+            still.frame.combined,
+            still.frame.passes,
+            settings_of_plain(still.render.settings).picture_passes,
+        )
+        for still in stills
+    ]
+    write_multilayer_exr(path, pictures, metadata, stills[0].render.placement, attributes)
+
+
+def merge_stills(paths: Sequence[Path], incomplete: bool) -> list[MergedStill]:
+    """merge_parts for each picture of a render that has several. The parts of the first one lead to those of the
+    others, which lie beside them."""
+    found: dict[PictureName, dict[Path, None]] = {}
+    for path in paths:
+        source = read_summary(path).render.source
+        own, names = picture_of(source), pictures_of(source)
+        found.setdefault(own, {})[path] = None
+        for other in names[1:] if names and own == names[0] else ():
+            beside = path_of_picture(path, other, names)
+            if beside.is_file():
+                found.setdefault(other, {})[beside] = None
+            elif not incomplete:
+                raise CheckpointError(
+                    f"{beside}, the part of {described(other)}, is not there; put it beside {path}, or merge what "
+                    "there is with --incomplete"
+                )
+    return [merge_parts(list(parts), incomplete) for parts in found.values()]
 
 
 def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
@@ -99,7 +169,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     render = summaries[0].render
     combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
     warnings = list[str]()
-    merged = Frame(combined, {**frame_passes(passes.result(), render.exposure), **inspections})
+    merged = Frame(combined, {**frame_passes(passes.result(), settings.found_passes, render.exposure), **inspections})
     frame = finished_frame(merged, settings, Denoiser(library_places()), warnings)
     return MergedStill(
         frame,

@@ -15,7 +15,7 @@ from .stages.stage_set import StageSet
 def iterate(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Iterator[None]:
     """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
     photons, importons, camera_hits = stages.photons, stages.importons, stages.camera_hits
-    estimator, film, light = stages.density_estimator, stages.film, stages.light_passes
+    estimator, film, light, groups = stages.density_estimator, stages.film, stages.light_passes, stages.light_groups
     yield from trace_photons(context, photons, iteration)
     radii = store_photons(context, stages, learning, iteration)
     photons_taken = []
@@ -36,8 +36,10 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             film.add_passes(context, camera_hits.camera.buffer, importons, band, iteration, segment)
             film.add_caught_shadows(context, importons, stages.shadow_catcher, band, iteration, segment)
             light.add_direct_light(context, importons, stages.direct_light, film, band, iteration, segment)
+            groups.add_direct_light(context, importons, stages.direct_light, iteration)
             importons.scatter(context, stages.scatter_blocks, band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
+            groups.add_seen_light(context, importons, iteration)
             raster = camera_hits.raster(band) if segment == 0 else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield
@@ -49,6 +51,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             light.add_indirect_light(
                 context, importons, stages.final_gather, estimator.sums, film, band, iteration, radii
             )
+            groups.accumulate(context, stages.final_gather, estimator.sums, film, band, iteration, radii)
         if iteration.precedes_learning:
             photons_taken.append(estimator.sums.photons_taken(band.pixel_count)[:, 0])
             fewer = learning.fewer(iteration)

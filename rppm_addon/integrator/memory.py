@@ -4,7 +4,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ..scene.passes import aov_passes, passes_named
+from ..scene.passes import RenderPass, passes_named
 from ..scene.settings import DensityEstimation, RenderSettings
 from .common.stage_sizes import StageSizes, film_pixels
 from .common.viewport_demands import with_filtered
@@ -82,21 +82,19 @@ def expected_memory(
     photons: int,
     segments: int,
     rasterized: bool = False,
-    passes: Sequence[str] = RenderSettings.passes,
-    aovs: Sequence[str] = (),
+    passes: Sequence[RenderPass] = passes_named(RenderSettings.passes),
     measures_noise: bool = False,
     in_viewport: bool = False,
 ) -> Memory:
     """The buffers whose size follows from the settings, known before anything is rendered.
 
     rasterized: whether photons are splatted by rasterization, not gathered from a grid.
-    passes: names of those that are rendered; aovs: as the settings have them.
+    passes: those that are rendered.
     measures_noise: whether there is a noise threshold.
     in_viewport: whether a viewport shows the pictures, which it filters and moves.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
-    rendered = passes_named(passes) + aov_passes(aovs)
-    kept = with_filtered(rendered) if in_viewport else rendered
+    kept = with_filtered(tuple(passes)) if in_viewport else tuple(passes)
     sizes = StageSizes(width, height, photons, segments, kept, measures_noise=measures_noise, is_filtered=in_viewport)
     groups = expected_groups(sizes)
     if in_viewport:

@@ -55,6 +55,8 @@ class Light:
     """SUN: whether the graph is a world's, which the sun belongs to, and sees directions as a world does."""
     photon_weight: float = 1.0
     """Weight of this light when photons are allocated (paper section 4.3), on top of its power."""
+    light_group: str = ""
+    """Whose pass its light belongs to (RenderSettings.light_groups); "" is none."""
 
 
 @dataclass
@@ -75,3 +77,5 @@ class World:
     """(3,) float64 W/(m^2 sr); multiplies what the graph gives where there is one."""
     graph: NodeGraph | None = None
     mist: Mist = field(default_factory=Mist)
+    light_group: str = ""
+    """As of a light."""

@@ -107,3 +107,5 @@ class Instance:
     """Whether the camera sees nothing of it but the shadows on it."""
     attributes: dict[str, tuple[float, ...]] = field(default_factory=dict)
     """Values of attributes that the object or its instancer has as a whole, in place of those of the mesh."""
+    light_group: str = ""
+    """Whose pass the light belongs to that it emits (RenderSettings.light_groups); "" is none."""

@@ -68,6 +68,8 @@ class RenderPass:
     """The tooltip of a switch that the add-on adds."""
     is_aov: bool = False
     """Whether AOV Output nodes of materials give it (aov_passes)."""
+    light_group: str = ""
+    """Of whose light it is the picture (light_group_passes)."""
     level: int = 0
     """Of COVERAGE: with so many pairs of lower levels before its own."""
 
@@ -232,6 +234,18 @@ def aov_passes(aovs: Sequence[str]) -> tuple[RenderPass, ...]:
             raise SettingsError(f"the AOV {name} has the name of another pass; give it a name of its own")
         found[name] = RenderPass(name, channels, _AOV_KINDS[channels], Accumulation.SUM, is_aov=True)
     return tuple(found.values())
+
+
+def light_group_passes(groups: Sequence[str]) -> tuple[RenderPass, ...]:
+    """The passes of light groups, each by its name, which users choose. Raises SettingsError for names that come twice
+    or cannot stand in files."""
+    for group in groups:
+        if not group or "." in group or groups.count(group) > 1:
+            raise SettingsError(f'the light group "{group}" cannot be; give it a name of its own without a point')
+    return tuple(
+        RenderPass(f"{COMBINED}_{group}", "RGB", PassKind.COLOR, Accumulation.SUM, is_radiance=True, light_group=group)
+        for group in groups
+    )
 
 
 def with_divisors(names: Sequence[str]) -> tuple[str, ...]:

@@ -12,7 +12,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from .errors import SettingsError
-from .passes import DENOISING_ALBEDO, DENOISING_NORMAL, RenderPass, aov_passes, passes_named, with_divisors
+from .passes import (
+    DENOISING_ALBEDO,
+    DENOISING_NORMAL,
+    RenderPass,
+    aov_passes,
+    light_group_passes,
+    passes_named,
+    with_divisors,
+)
 from .setting_info import setting, settings_of
 
 CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
@@ -396,6 +404,12 @@ class RenderSettings:
         "Passes that AOV Output nodes of materials give: NAME.RGBA of colors, NAME.X of values",
         where="View Layer > Passes > Shader AOV (view_layer.aovs)",
     )
+    light_groups: tuple[str, ...] = setting(
+        (),
+        "Light Groups",
+        "Groups of lights, objects and the world whose light has a pass of its own, by name",
+        where="View Layer > Passes > Light Groups (view_layer.lightgroups)",
+    )
 
     def validate(self) -> None:
         """Raise SettingsError naming the first setting that cannot be used, and its range."""
@@ -406,7 +420,7 @@ class RenderSettings:
             raise SettingsError(
                 f"radius_maximum is {self.radius_maximum}, less than radius_minimum {self.radius_minimum}; raise it"
             )
-        taken = {entry.name for entry in passes_named(self.passes)}
+        taken = {entry.name for entry in (*passes_named(self.passes), *light_group_passes(self.light_groups))}
         for entry in aov_passes(self.aovs):
             if entry.name in taken:
                 raise SettingsError(f"the AOV {entry.name} has the name of another pass; give it a name of its own")
@@ -440,12 +454,16 @@ class RenderSettings:
     @property
     def picture_passes(self) -> tuple[RenderPass, ...]:
         """The passes that were asked for."""
-        return passes_named(self.passes) + aov_passes(self.aovs)
+        return passes_named(self.passes) + self._named_by_users
 
     @property
     def found_passes(self) -> tuple[RenderPass, ...]:
         """Those and the ones that denoising needs."""
-        return passes_named(self.film_passes) + aov_passes(self.aovs)
+        return passes_named(self.film_passes) + self._named_by_users
+
+    @property
+    def _named_by_users(self) -> tuple[RenderPass, ...]:
+        return aov_passes(self.aovs) + light_group_passes(self.light_groups)
 
     def photons_for(self, width: int, height: int) -> int:
         """Photons of an iteration that renders so many pixels. Where automatic, one a pixel within limits: those of

@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes of a film as those of a frame: exposed, and light that surfaces scatter without their color."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ..scene.cryptomatte import ranked
-from ..scene.passes import PASSES, SHADOW_CATCHER
+from ..scene.passes import SHADOW_CATCHER, RenderPass
 
 
-def frame_passes(passes: Mapping[str, np.ndarray], exposure: float) -> dict[str, np.ndarray]:
-    """The passes that a film, or the parts of one, keep, by name, as Frame.passes has them."""
+def frame_passes(
+    passes: Mapping[str, np.ndarray], entries: Sequence[RenderPass], exposure: float
+) -> dict[str, np.ndarray]:
+    """The passes that a film, or the parts of one, keep, by name, as Frame.passes has them; ``entries``: what they
+    are."""
     found = dict(passes)
-    for entry in PASSES:
+    for entry in entries:
         if entry.name not in passes:
             continue
         if entry.is_radiance:

@@ -38,7 +38,8 @@ def read_combined(film: Film, exposure: float) -> np.ndarray:
 
 def read_frame(film: Film, exposure: float, inspections: Mapping[str, np.ndarray] | None = None) -> Frame:
     """The film's current picture and passes; ``inspections`` are those that it does not keep."""
-    return Frame(read_combined(film, exposure), {**frame_passes(film.read_passes(), exposure), **(inspections or {})})
+    passes = frame_passes(film.read_passes(), film.found_passes, exposure)
+    return Frame(read_combined(film, exposure), {**passes, **(inspections or {})})
 
 
 class SlicedRender:

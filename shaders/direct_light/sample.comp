@@ -86,10 +86,10 @@ bool lit_from_behind(Closure closure) {
 }
 
 // Light that arrives along a direction if nothing is in the way; parts: shares of it.
-struct Arriving { vec3 radiance; vec3 direction; float distance; uint triangle; Parts parts; };
+struct Arriving { vec3 radiance; vec3 direction; float distance; uint light; uint triangle; Parts parts; };
 
 const Parts ALL_GLOSSY = Parts(vec3(1.0), vec3(0.0));
-const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, NO_TRIANGLE, Parts(vec3(0.0), vec3(0.0)));
+const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE, Parts(vec3(0.0), vec3(0.0)));
 
 vec3 share_of(vec3 part, vec3 whole) {
     return mix(part / max(whole, vec3(1e-35)), vec3(0.0), lessThanEqual(whole, vec3(0.0)));
@@ -131,14 +131,14 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
         vec3 radiance = reflected * passed.chosen * passed.weights;
         add_candidate(candidates, largest(radiance),
-                      Arriving(radiance, sampled.direction, passed.distance, NO_TRIANGLE, ALL_GLOSSY));
+                      Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE, ALL_GLOSSY));
         uint emissive;
         Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         reflected *= exp(-path_absorption(flags) * hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
-                      Arriving(radiance, sampled.direction, hit.distance, hit.triangle, ALL_GLOSSY));
+                      Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle, ALL_GLOSSY));
     }
     candidates.chosen.radiance *= candidates.weights;
     return candidates.chosen;
@@ -179,7 +179,7 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     vec3 scattered = evaluate_closure(closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
-                    sampled.triangle,
+                    choice.light, sampled.triangle,
                     Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered)));
 }
 
@@ -219,7 +219,7 @@ void main() {
     contributions[index] = vec4(parameters.sample_weight * arriving.radiance, gathered ? 1.0 : 0.0);
     light_triangles[index] = arriving.triangle;
     if (parameters.splits_light != 0u)
-        light_splits[index] = LightSplit(arriving.parts.glossy, 0.0, arriving.parts.transmission, 0.0);
+        light_splits[index] = LightSplit(arriving.parts.glossy, arriving.light, arriving.parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec3 origin = offset_from_surface(closure.position,
                                       dot(geometric, arriving.direction) > 0.0 ? geometric : -geometric);

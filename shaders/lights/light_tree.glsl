@@ -142,8 +142,9 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
     return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
 }
 
-// Radiance of all, and of one of them, chosen by the random number u, over its probability; how far off that is.
-struct PassedLights { vec3 radiance; vec3 chosen; float distance; float weights; float u; };
+// Radiance of all, and of one of them, chosen by the random number u, over its probability; which that is, and how far
+// off.
+struct PassedLights { vec3 radiance; vec3 chosen; uint light; float distance; float weights; float u; };
 
 void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray,
                 float scatter_pdf) {
@@ -153,11 +154,15 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
     vec3 radiance = passed_light(light, origin, direction, maximum_distance, distance, pdf);
     radiance *= scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
     passed.radiance += radiance;
+#ifdef TELL_OF_PASSED_LIGHT
+    TELL_OF_PASSED_LIGHT(number, radiance);
+#endif
     float weight = largest(radiance);
     if (!(weight > 0.0)) return;
     passed.weights += weight;
     if (!takes_candidate(weight, passed.weights, passed.u)) return;
     passed.chosen = radiance / weight;
+    passed.light = number;
     passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
@@ -165,7 +170,7 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
 // without calls have the code of a light as often as it stands here.
 PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf,
                            float u) {
-    PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0.0, 0.0, u);
+    PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint sun = maximum_distance >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
     uint node = parameters.light_tree_leaves > 0u ? 1u : 0u;  // 0: none left

@@ -21,6 +21,8 @@ layout(std430, binding = 5) readonly buffer TrianglesBefore { vec4 triangles_bef
 layout(std430, binding = 6) readonly buffer TrianglesAfter { vec4 triangles_after[]; };
 layout(std430, binding = 7) readonly buffer PassCounts;
 layout(std430, binding = 8) buffer MotionVectors { vec4 motion_vectors[]; };
+layout(std430, binding = 9) readonly buffer Camera;
+#include "gbuffer/panorama_place.glsl"
 
 vec3 between(vec3 v0, vec3 v1, vec3 v2, Hit hit) {
     return (1.0 - hit.b1 - hit.b2) * v0 + hit.b1 * v1 + hit.b2 * v2;
@@ -29,8 +31,19 @@ vec3 between(vec3 v0, vec3 v1, vec3 v2, Hit hit) {
 // Pixels from the lower left corner of the frame, as a camera sees a point.
 vec2 raster_at(vec3 point, mat4 world_to_camera, vec4 window) {
     vec3 at = (world_to_camera * vec4(point, 1.0)).xyz;
-    vec2 on_plane = parameters.orthographic != 0u ? at.xy : at.xy / -at.z;
-    return (on_plane - window.xz) / (window.yw - window.xz) * parameters.resolution;
+    vec2 place;
+    if (camera.projection == PROJECTION_ORTHOGRAPHIC) place = at.xy;
+    else if (camera.projection == PROJECTION_PERSPECTIVE) place = at.xy / -at.z;
+    else place = panorama_place(normalize(vec3(at.xy, -at.z)));
+    return (place - window.xz) / (window.yw - window.xz) * parameters.resolution;
+}
+
+// The shorter way, where a panorama shows all around.
+vec2 way(vec2 from, vec2 to) {
+    vec2 pixels = to - from;
+    float period = panorama_period() * parameters.resolution.x;
+    if (period != 0.0) pixels.x -= period * round(pixels.x / period);
+    return pixels;
 }
 
 vec4 vector_at(Hit hit) {
@@ -42,8 +55,9 @@ vec4 vector_at(Hit hit) {
     vec3 after = between(triangles_after[first].xyz, triangles_after[first + 1u].xyz,
                          triangles_after[first + 2u].xyz, hit);
     vec2 center = raster_at(here, parameters.world_to_camera, parameters.window);
-    vec4 vector = vec4(raster_at(before, parameters.world_to_camera_before, parameters.window_before) - center,
-                       center - raster_at(after, parameters.world_to_camera_after, parameters.window_after));
+    vec2 place_before = raster_at(before, parameters.world_to_camera_before, parameters.window_before);
+    vec2 place_after = raster_at(after, parameters.world_to_camera_after, parameters.window_after);
+    vec4 vector = vec4(way(center, place_before), way(place_after, center));
     // What comes from the plane of the camera itself.
     return is_finite(vector.xyz) && is_finite(vector.www) ? vector : vec4(0.0);
 }

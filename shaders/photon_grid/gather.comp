@@ -105,7 +105,7 @@ void main() {
         any = true;
         photons[number].contributed = 1u;
         collect_splat(collected, estimate.radiance, corner > CORNERS, stands_for);
-        if (parameters.light_sums != 0u) add_light(visit.x, importon, photons[number].flags, estimate);
+        if (parameters.light_sums != 0u) add_light(visit.x, importon, number, photons[number].flags, estimate);
     }
     if (any) write_collected(visit.x, (importon.gathers & GATHERED_BY_RAY) != 0u, collected);
     if (next < end || corner < corners) leave(uvec2(visit.x, looked_at));

@@ -3,7 +3,10 @@
 
 #include "common/path_history.glsl"
 #include "splat_sums/light_sums.glsl"
+#include "light_groups/group_sums.glsl"
 layout(std430, binding = 9) buffer LightSums;
+layout(std430, binding = 10) readonly buffer PhotonGroups;
+layout(std430, binding = 11) buffer GroupSums;
 
 void add_light_word(uint place, float quanta) {
     uvec2 added = whole_quanta(quanta);
@@ -19,11 +22,26 @@ void add_to_light_sum(uint pixel, uint sum, vec3 radiance) {
     add_light_word(place + 4u, radiance.b * parameters.quanta);
 }
 
+void add_group_word(uint place, float quanta) {
+    uvec2 added = whole_quanta(quanta);
+    if (added.x > 0u && atomicAdd(group_words[place], added.x) > 0xffffffffu - added.x) added.y += 1u;
+    if (added.y > 0u) atomicAdd(group_words[place + 1u], added.y);
+}
+
+void add_to_group_sum(uint pixel, uint group, bool by_ray, vec3 radiance) {
+    if (group == NO_LIGHT_GROUP) return;
+    uint place = first_group_word(pixel, group, by_ray, parameters.light_groups);
+    for (uint channel = 0u; channel < 3u; ++channel)
+        add_group_word(place + 2u * channel, radiance[channel] * parameters.quanta);
+}
+
 // What scatters the light of a photon toward the camera path: a diffuse part, and a lobe.
-void add_light(uint pixel, Importon importon, uint photon_flags, Estimate estimate) {
+void add_light(uint pixel, Importon importon, uint photon, uint photon_flags, Estimate estimate) {
     uint history = arrived_history(importon.history), first = first_scatter(history);
     uint scatter = lobe_scatter(unpack_kind(importon.lobe_kind), !estimate.front);
     bool diffuse_lobe = scatter == SCATTER_DIFFUSE, by_ray = (importon.gathers & GATHERED_BY_RAY) != 0u;
+    if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
+        add_to_group_sum(pixel, photon_groups[photon % parameters.photon_count], by_ray, estimate.radiance);
     vec3 diffuse = diffuse_lobe ? estimate.radiance : estimate.diffuse;
     vec3 lobe = max(estimate.radiance - diffuse, vec3(0.0));
     if ((parameters.light_sums & LIGHT_SUMS_SCATTERED) != 0u && !by_ray) {

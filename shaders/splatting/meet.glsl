@@ -18,5 +18,5 @@ void meet(uint importon, uint photon) {
     if (!density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, estimate, stands_for))
         return;
     add_splat(importon, photon, estimate.radiance, stands_for);
-    if (parameters.light_sums != 0u) add_light(importon, importons[importon], flags, estimate);
+    if (parameters.light_sums != 0u) add_light(importon, importons[importon], photon, flags, estimate);
 }

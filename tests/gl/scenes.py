@@ -4,7 +4,7 @@
 import numpy as np
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, Mesh, RenderSettings, Scene
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, Mesh, RenderSettings, Scene, World
 
 
 def polygons(name: str, positions: np.ndarray, faces: list[tuple[int, ...]], smooth: bool = False) -> Mesh:
@@ -84,3 +84,32 @@ def room(size: int = 32, **settings: object) -> Scene:
     light = Light("light", LightKind.AREA, placed(0, 0, 0.98), np.full(3, 12.0), size=(0.5, 0.5))
     camera = Camera(looking((0, -3.6, 0), (0, 0, 0)), (-0.4, 0.4, -0.4, 0.4), size, size)
     return Scene(camera, meshes, instances, materials, [light], settings=RenderSettings(**settings))
+
+
+def crowded_room(size: int = 24, **settings: object) -> Scene:
+    """The room with a glass, a mirror and a shining ball, rough metal, a varnished floor, a pane with a hole in it that
+    casts half a shadow, a translucent sheet, fog, and a world that comes in by the open front."""
+    scene = room(size, **settings)
+    scene.world = World(np.array([0.3, 0.4, 0.6]))
+    scene.materials += [
+        material("varnish", Lobe(LobeKind.PRINCIPLED, color=(0.5, 0.3, 0.2), roughness=0.05)),
+        material("metal", Lobe(LobeKind.PRINCIPLED, color=(0.9, 0.4, 0.0), roughness=0.5, metallic=1.0)),
+        material("rough glass", Lobe(LobeKind.GLASS, roughness=0.5)),
+        material("pane", Lobe(LobeKind.TRANSPARENT, 0.5), Lobe(LobeKind.DIFFUSE, 0.5, (0.0, 0.8, 0.8))),
+        material("sheet", Lobe(LobeKind.TRANSLUCENT, 0.5), Lobe(LobeKind.REFRACTION, 0.5, roughness=0.5)),
+        material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 0.5, 0.2)), Lobe(LobeKind.DIFFUSE, color=(0.2, 0.2, 0.2))),
+        material("amber", Lobe(LobeKind.GLASS), absorption=np.array([0.2, 1.0, 3.0])),
+    ]
+    varnish = len(scene.materials) - 7
+    scene.instances[0].materials[:] = [varnish]
+    scene.meshes.append(rectangle("pane", (-0.9, -0.7, -0.9), (0.2, -0.7, -0.9), (0.2, -0.7, 0), (-0.9, -0.7, 0)))
+    scene.instances += [
+        Instance(5, placed(0.1, 0.5, 0.1, 0.25), [varnish + 1]),
+        Instance(5, placed(-0.6, 0.5, 0.2, 0.25), [varnish + 2]),
+        Instance(6, np.eye(4), [varnish + 3]),
+        Instance(6, placed(0.75, 0.3, 0.9), [varnish + 4]),
+        Instance(5, placed(0.7, -0.2, 0.2, 0.1), [varnish + 5]),
+        Instance(5, placed(0.1, -0.5, -0.8, 0.15), [varnish + 6]),
+    ]
+    scene.lights.append(Light("sun", LightKind.SUN, looking((0, -3, 2), (0, 0, 0)), np.full(3, 0.5)))
+    return scene

@@ -8,7 +8,7 @@ from path_glass import panes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common import band
-from rppm_addon.scene import Instance, Light, LightKind, World
+from rppm_addon.scene import Instance, Light, LightKind
 from rppm_addon.scene.passes import SCATTERED_LIGHT
 from rppm_addon.scene.settings import DensityEstimation, DirectLight
 
@@ -20,34 +20,7 @@ ROUNDING = {"rtol": 2e-6, "atol": 2e-6}
 
 
 def everything(size: int = 24, **settings: object):
-    """The room with a glass, a mirror and a shining ball, rough metal, a varnished floor, a pane with a hole in it that
-    casts half a shadow, a translucent sheet, fog, and a world that comes in by the open front."""
-    scene = scenes.room(size, iterations=2, photons=4096, passes=LIGHT, **settings)
-    scene.world = World(np.array([0.3, 0.4, 0.6]))
-    scene.materials += [
-        material("varnish", Lobe(LobeKind.PRINCIPLED, color=(0.5, 0.3, 0.2), roughness=0.05)),
-        material("metal", Lobe(LobeKind.PRINCIPLED, color=(0.9, 0.4, 0.0), roughness=0.5, metallic=1.0)),
-        material("rough glass", Lobe(LobeKind.GLASS, roughness=0.5)),
-        material("pane", Lobe(LobeKind.TRANSPARENT, 0.5), Lobe(LobeKind.DIFFUSE, 0.5, (0.0, 0.8, 0.8))),
-        material("sheet", Lobe(LobeKind.TRANSLUCENT, 0.5), Lobe(LobeKind.REFRACTION, 0.5, roughness=0.5)),
-        material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 0.5, 0.2)), Lobe(LobeKind.DIFFUSE, color=(0.2, 0.2, 0.2))),
-        material("amber", Lobe(LobeKind.GLASS), absorption=np.array([0.2, 1.0, 3.0])),
-    ]
-    varnish = len(scene.materials) - 7
-    scene.instances[0].materials[:] = [varnish]
-    scene.meshes.append(
-        scenes.rectangle("pane", (-0.9, -0.7, -0.9), (0.2, -0.7, -0.9), (0.2, -0.7, 0), (-0.9, -0.7, 0))
-    )
-    scene.instances += [
-        Instance(5, scenes.placed(0.1, 0.5, 0.1, 0.25), [varnish + 1]),
-        Instance(5, scenes.placed(-0.6, 0.5, 0.2, 0.25), [varnish + 2]),
-        Instance(6, np.eye(4), [varnish + 3]),
-        Instance(6, scenes.placed(0.75, 0.3, 0.9), [varnish + 4]),
-        Instance(5, scenes.placed(0.7, -0.2, 0.2, 0.1), [varnish + 5]),
-        Instance(5, scenes.placed(0.1, -0.5, -0.8, 0.15), [varnish + 6]),
-    ]
-    scene.lights.append(Light("sun", LightKind.SUN, scenes.looking((0, -3, 2), (0, 0, 0)), np.full(3, 0.5)))
-    return scene
+    return scenes.crowded_room(size, iterations=2, photons=4096, passes=LIGHT, **settings)
 
 
 def recombined(passes: dict[str, np.ndarray]) -> np.ndarray:

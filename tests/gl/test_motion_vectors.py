@@ -15,6 +15,8 @@ from rppm_addon.scene import (
     Light,
     LightKind,
     Movement,
+    Panorama,
+    PanoramaKind,
     RenderSettings,
     Scene,
     Shutter,
@@ -62,6 +64,35 @@ def test_what_moves_and_what_bends(renderer):
     stretches = np.stack([*np.broadcast_arrays(0.0, -1.0, -0.5 * x / 0.25, 0.0)], axis=-1)
     expected = np.where(seen[..., None], np.where((x < 0.0)[None, :, None], moves, stretches[None]), 0.0)
     np.testing.assert_allclose(vectors, expected, atol=1e-5)
+
+
+def test_panoramas_take_the_shorter_way_over_their_edge(renderer):
+    """A camera in a tube turns by two pixels, then by three: all vectors are alike, at its edges too."""
+    camera = Camera(np.eye(4), (0.0, 1.0, 0.0, 1.0), 16, 8, panorama=Panorama(PanoramaKind.EQUIRECTANGULAR))
+    angles = 2.0 * np.pi * np.arange(32) / 32
+    ring = np.stack([np.sin(angles), np.zeros(32), np.cos(angles)], axis=-1)
+    tube = scenes.polygons(
+        "tube",
+        np.concatenate([ring - (0, 9, 0), ring + (0, 9, 0)]),
+        [(k, (k + 1) % 32, (k + 1) % 32 + 32, k + 32) for k in range(32)],
+    )
+    cameras = np.stack([rotated(-2.0), np.eye(4), rotated(3.0)])
+    neighbors = Shutter(np.ones(1), camera=CameraMovement(TIMES, cameras, np.stack([camera.window] * 3)))
+    scene = Scene(
+        camera, [tube], [Instance(0, np.eye(4), [0])], [scenes.diffuse(1, 1, 1)],
+        [Light("sun", LightKind.SUN, np.eye(4), np.ones(3))], neighbors=neighbors,
+        settings=RenderSettings(iterations=1, photons=64, filter_width=0.0, passes=("Vector",)),
+    )  # fmt: skip
+    vectors = renderer.render(scene).frame.passes["Vector"][2:6]
+    np.testing.assert_allclose(vectors, np.broadcast_to((2.0, 0.0, 3.0, 0.0), vectors.shape), atol=1e-3)
+
+
+def rotated(pixels: float) -> np.ndarray:
+    """A camera turned to the right by pixels of 16 all around."""
+    angle = 2.0 * np.pi * pixels / 16
+    matrix = np.eye(4)
+    matrix[[0, 0, 2, 2], [0, 2, 0, 2]] = np.cos(angle), -np.sin(angle), np.sin(angle), np.cos(angle)
+    return matrix
 
 
 def test_the_background_does_not_count_where_a_surface_was_seen(renderer):

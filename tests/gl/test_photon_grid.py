@@ -54,7 +54,8 @@ class Device:
         stored = StoredPhotons(
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
             listed.indirect_count,
-            buffers[2].buffer, len(photons), 1.0, 0.0, radii, float(np.abs(photons["position"]).max()),
+            buffers[2].buffer, buffers[2].buffer, len(photons), 1.0, 0.0, radii,
+            float(np.abs(photons["position"]).max()),
         )  # fmt: skip
         living = LivingPaths(self._context, self._library, "paths", "take fewer")
         living.fill(len(importons))

@@ -11,7 +11,7 @@ from rppm_addon.integrator.stages.film import Film
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.scene.passes import FILM_PASSES, PASSES, Accumulation, passes_named
+from rppm_addon.scene.passes import FILM_PASSES, PASSES, Accumulation, light_group_passes, passes_named
 from rppm_addon.session.merged_passes import MergedPasses
 
 
@@ -82,5 +82,7 @@ def test_passes_that_are_off_take_no_memory():
     four_pairs = passes_named(["CryptoMaterial00", "CryptoMaterial01"])
     pairs = {"cryptomatte of materials": 8 * 4 * pixels}
     assert Film.expected_bytes(StageSizes(width, height, passes=four_pairs)) == radiance | pairs
-    without, beside = (expected_memory(16, 16, 64, 2, passes=names).total_bytes for names in ((), ("Depth",)))
+    wanted = ((), passes_named(["Depth"]), light_group_passes(["key"]))
+    without, beside, grouped = (expected_memory(16, 16, 64, 2, passes=passes).total_bytes for passes in wanted)
     assert beside - without == 256 * (4 + 8)
+    assert grouped - without == 256 * (12 + 24 + 48 + 3 * 16 + 32) + 4 * 64

@@ -301,9 +301,18 @@ StorageBlock("Contributions", "vec4 contributions[];")
 StorageBlock("LightTriangles", "uint light_triangles[];")
 """What shadow rays add where nothing is in their way, and the emissive triangles that they go to."""
 
-LIGHT_SPLIT = Record("LightSplit", glossy="vec3", unused0="float", transmission="vec3", unused1="float")
-"""Of what a shadow ray adds, by channel: the parts that such lobes scatter; the rest is diffuse."""
+LIGHT_SPLIT = Record("LightSplit", glossy="vec3", light="uint", transmission="vec3", unused="float")
+"""Of what a shadow ray adds, by channel: the parts that such lobes scatter; the rest is diffuse. ``light`` is the
+number of the light that it goes to, if that is no triangle."""
 StorageBlock("LightSplits", "LightSplit light_splits[];")
+
+NO_LIGHT_GROUP = 0xFFFFFFFF
+"""In place of the number of a light group."""
+Constants("LightGroups", NO_LIGHT_GROUP=NO_LIGHT_GROUP)
+StorageBlock("LightGroupTable", "uint light_group_table[];")
+"""Numbers of the light groups of the lights, then of the instances."""
+StorageBlock("PhotonGroups", "uint photon_groups[];")
+"""Of the photons that left the lights, the numbers of their light groups."""
 
 IMPORTON = Record(
     "Importon",

@@ -63,6 +63,11 @@ class StageSizes:
         return CAUSTICS in self.passes
 
     @property
+    def light_groups(self) -> tuple[str, ...]:
+        """Those that have passes."""
+        return tuple(entry.light_group for entry in self.passes if entry.light_group)
+
+    @property
     def bands(self) -> list[Band]:
         """Of the film, from below; the first has the most rows."""
         return bands_of(self.width, self.height)
@@ -86,6 +91,16 @@ def aov_channels(sizes: StageSizes) -> int:
 def split_pixels(sizes: StageSizes) -> int:
     """Of a band, the most, where passes tell apart what makes its light; else 0."""
     return band_pixels(sizes) if sizes.has_scattered_light or sizes.has_caustics else 0
+
+
+def grouped_pixels(sizes: StageSizes) -> int:
+    """Of a band, the most, where light groups have passes; else 0."""
+    return band_pixels(sizes) if sizes.light_groups else 0
+
+
+def grouped_photons(sizes: StageSizes) -> int:
+    """Of an iteration, the most, where they are to tell the groups of their lights; else 0."""
+    return sizes.photons if sizes.light_groups else 0
 
 
 def photon_paths(sizes: StageSizes) -> int:

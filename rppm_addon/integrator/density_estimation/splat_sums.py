@@ -3,7 +3,9 @@
 
 import contextlib
 import enum
+import functools
 import math
+import operator
 from collections.abc import Iterator
 
 import moderngl
@@ -16,12 +18,19 @@ from ...gl.programs import ProgramLibrary
 from ...gl.storage_blocks import StorageBlock
 from ..common.stage_sizes import StageSizes, band_pixels
 
-SUM_PARAMETERS = {"quanta": "float", "roulette": "uint", "counting": "uint", "light_sums": "uint"}
+SUM_PARAMETERS = {
+    "quanta": "float",
+    "roulette": "uint",
+    "counting": "uint",
+    "light_sums": "uint",
+    "light_groups": "uint",
+}
 """Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl, collect.glsl or light.glsl."""
 
 StorageBlock("SplatSums", "uint sum_words[];")
 StorageBlock("PhotonCounts", "uint photon_counts[];")
 StorageBlock("LightSums", "uint light_words[];")
+StorageBlock("GroupSums", "uint group_words[];")
 
 _PHOTON_QUANTA = 1 << 24
 _SUM_WORDS = 12
@@ -35,13 +44,18 @@ class LightSum(enum.IntFlag):
     SCATTERED = 1
     """By what the first surface made of it."""
     CAUSTICS = 2
+    GROUPS = 4
+    """By the light group that it came from."""
 
     @classmethod
     def of(cls, sizes: StageSizes) -> "LightSum":
         """Those that the passes ask for."""
-        return (cls.SCATTERED if sizes.has_scattered_light else cls(0)) | (
-            cls.CAUSTICS if sizes.has_caustics else cls(0)
-        )
+        wanted = {
+            cls.SCATTERED: sizes.has_scattered_light,
+            cls.CAUSTICS: sizes.has_caustics,
+            cls.GROUPS: bool(sizes.light_groups),
+        }
+        return functools.reduce(operator.or_, (flag for flag, is_wanted in wanted.items() if is_wanted), cls(0))
 
 
 Constants(
@@ -58,6 +72,10 @@ def _light_words(sizes: StageSizes) -> int:
     wanted = LightSum.of(sizes)
     kept = {LightSum.SCATTERED: _SCATTERED_SUMS, LightSum.CAUSTICS: _CAUSTICS_SUMS}
     return _SUM_WORDS // 2 * sum(count for flag, count in kept.items() if flag in wanted) * band_pixels(sizes)
+
+
+def _group_words(sizes: StageSizes) -> int:
+    return _SUM_WORDS * len(sizes.light_groups) * band_pixels(sizes)
 
 
 def radiance_quantum(photon_flux: float, radius: float) -> float:
@@ -77,11 +95,13 @@ class SplatSums(BufferSet):
     _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes))
     _photon_counts = StorageBuffer("photon counts", "uvec2", band_pixels)
     _light_sums = StorageBuffer("gathered radiance of light passes", "uint", _light_words)
+    _group_sums = StorageBuffer("gathered radiance of light groups", "uint", _group_words)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self.kept = LightSum.of(sizes)
         """Of the light sums."""
+        self._groups = len(sizes.light_groups)
         self.count_in(1.0, 0, False)
 
     def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
@@ -94,6 +114,7 @@ class SplatSums(BufferSet):
             "roulette": roulette,
             "counting": counting,
             "light_sums": int(self.kept),
+            "light_groups": self._groups,
         }
         """Values of SUM_PARAMETERS."""
 
@@ -110,8 +131,9 @@ class SplatSums(BufferSet):
     def clear(self) -> None:
         """Forget the band before."""
         self._sums.clear()
-        if self.kept:
-            self._light_sums.clear()
+        for sums in (self._light_sums, self._group_sums):
+            if sums.size:
+                sums.clear()
         if self.counting:
             self._photon_counts.clear()
 
@@ -127,12 +149,18 @@ class SplatSums(BufferSet):
             "SplatSums": self._sums.buffer,
             "PhotonCounts": self._photon_counts.buffer,
             "LightSums": self._light_sums.buffer,
+            "GroupSums": self._group_sums.buffer,
         }
 
     @property
     def light_sums(self) -> moderngl.Buffer:
         """Words as shaders/splat_sums/light_sums.glsl says."""
         return self._light_sums.buffer
+
+    @property
+    def group_sums(self) -> moderngl.Buffer:
+        """Words as shaders/light_groups/group_sums.glsl says."""
+        return self._group_sums.buffer
 
     def read(self, count: int) -> np.ndarray:
         """(count, 2, 3) uint64 quanta of the band's first pixels: what their importons took, what their rays found."""

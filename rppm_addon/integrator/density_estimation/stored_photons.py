@@ -93,6 +93,8 @@ class StoredPhotons:
     indirect_count: int
     """So many of all of them importons leave to gathering rays."""
     world_directions: moderngl.Buffer
+    groups: moderngl.Buffer
+    """PhotonGroups, where there are any."""
     emitted_count: int
     photon_flux: float
     """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
@@ -119,7 +121,7 @@ class StoredPhotons:
     @property
     def blocks(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of programs that estimate densities."""
-        return {"Photons": self.photons, "WorldDirections": self.world_directions}
+        return {"Photons": self.photons, "WorldDirections": self.world_directions, "PhotonGroups": self.groups}
 
 
 @dataclass(frozen=True)

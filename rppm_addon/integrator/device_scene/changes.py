@@ -49,7 +49,10 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
         geometry=not same_members(before.instances, after.instances)
         or not same_members(before.meshes, after.meshes)
         or len(before.materials) != len(after.materials),
-        lights=world or light_objects or after.photon_count != before.photon_count,
+        lights=world
+        or light_objects
+        or after.photon_count != before.photon_count
+        or before.settings.light_groups != after.settings.light_groups,
         world=world,
         light_objects=light_objects,
         cubemap=after.settings.cubemap_resolution != before.settings.cubemap_resolution

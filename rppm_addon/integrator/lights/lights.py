@@ -16,7 +16,7 @@ from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..common.records import LIGHT, LIGHT_SOFT, LightShape
+from ..common.records import LIGHT, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
@@ -85,6 +85,8 @@ class Lights(BufferSet):
     light_maps = Part(LightMaps)
     guide = Part(Guide)
     _light_tree = Part(LightTree)
+    group_table = StorageBuffer("table of light groups", "uint")
+    """LightGroupTable, where there are any."""
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
@@ -101,6 +103,8 @@ class Lights(BufferSet):
         self.scene_radius = 0.0
         """Meters, a little more than the geometry's."""
         self.times_built = 0
+        self.world_group = NO_LIGHT_GROUP
+        """The world's light group by number."""
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -171,13 +175,15 @@ class Lights(BufferSet):
         entries: list[np.ndarray] = []
         powers: list[float] = []
         weights: list[float] = []
+        groups: list[str] = []
 
-        def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0) -> None:
+        def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0, group: str = "") -> None:
             if np.isfinite(power).all() and np.max(power) > 0:
                 names.append(name)
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(weight, 0.0))
+                groups.append(group)
 
         if not keep_light_objects:
             self.light_maps.build(scene.lights, scene.images, materials)
@@ -190,7 +196,7 @@ class Lights(BufferSet):
                 if nodes.shape is not None:
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
-            add(source_name(light.name), entry, power, light.photon_weight)
+            add(source_name(light.name), entry, power, light.photon_weight, light.light_group)
         self.emitters.build(scene, geometry, materials, resolve)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
@@ -199,11 +205,12 @@ class Lights(BufferSet):
             self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.WORLD, int(RayVisibility.ALL)
-        add(ENVIRONMENT, entry, 4 * math.pi**2 * radius**2 * self.environment.mean_radiance)
+        power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
+        add(ENVIRONMENT, entry, power, group=scene.world.light_group)
         if not entries:
             # As in an animation whose lights go out: the picture is black, as Cycles' is.
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
-            entries, powers, weights = [entry], [1.0], [1.0]
+            entries, powers, weights, groups = [entry], [1.0], [1.0], [""]
         if sum(weights) <= 0:
             raise SceneError("all lights have a photon weight of 0; raise that of one")
 
@@ -230,6 +237,7 @@ class Lights(BufferSet):
         self.target_count = len(targets)
         self.targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
+        self._list_groups(scene, [*groups, *(placed.instance.light_group for placed in geometry.placements)])
         self._light_tree.build(table, self.emitters.leaves)
         self._parameters = {
             "scene_center": geometry.center,
@@ -246,6 +254,15 @@ class Lights(BufferSet):
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
         }
+
+    def _list_groups(self, scene: Scene, names: list[str]) -> None:
+        """names: of the light groups of the lights and the instances."""
+        numbers = {name: number for number, name in enumerate(scene.settings.light_groups)}
+        self.world_group = numbers.get(scene.world.light_group, NO_LIGHT_GROUP)
+        if numbers:
+            self.group_table.upload(np.array([numbers.get(name, NO_LIGHT_GROUP) for name in names], np.uint32))
+        else:
+            self.group_table.release()
 
     def begin(self, photons: int) -> None:
         """Forget what photons were good for, as before the first iteration, and share so many among the lights."""

@@ -14,7 +14,7 @@ from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import LIGHT_SPLIT, RAY
-from ..common.stage_sizes import StageSizes, band_pixels, split_pixels
+from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels, split_pixels
 from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
@@ -36,22 +36,26 @@ Record(
 )
 
 
+def _told_pixels(sizes: StageSizes) -> int:
+    return max(split_pixels(sizes), grouped_pixels(sizes))
+
+
 class DirectLight(BufferSet):
     """A sampled light and a shadow ray, or several, for every camera path and segment."""
 
     remedy = "lower the resolution"
     _rays = StorageBuffer("shadow rays", RAY, band_pixels)
     contributions = StorageBuffer("direct light", "vec4", band_pixels)
-    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, split_pixels)
+    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _told_pixels)
     visibility = StorageBuffer("visibility", "uint", band_pixels)
-    _triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels)
+    triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels)
     living_rays = PathList("living shadow rays", band_pixels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._sample = library.compute("direct_light/sample.comp")
         self._add = library.compute("direct_light/add.comp")
-        self._splits_light = split_pixels(sizes) > 0
+        self._splits_light = _told_pixels(sizes) > 0
 
     def add(
         self,
@@ -82,7 +86,7 @@ class DirectLight(BufferSet):
                 context.lights.emitters.tint_contributions(
                     context.resolve,
                     self._rays.buffer,
-                    self._triangles.buffer,
+                    self.triangles.buffer,
                     self.contributions.buffer,
                     living,
                     iteration.number,
@@ -119,7 +123,7 @@ class DirectLight(BufferSet):
                 "ShadowRays": self._rays.buffer,
                 "Contributions": self.contributions.buffer,
                 "LightSplits": self.splits.buffer,
-                "LightTriangles": self._triangles.buffer,
+                "LightTriangles": self.triangles.buffer,
                 "Materials": context.materials.buffers["Materials"],
                 "Camera": blocks["Camera"],
                 "RadiusFactors": blocks["RadiusFactors"],

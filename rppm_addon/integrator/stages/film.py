@@ -41,6 +41,8 @@ Record("AovParameters", count="uint", first_value="uint", iteration="uint")
 StorageBlock("Film", "vec4 film[];")
 StorageBlock("PhotonLight", "vec4 photon_light[];")
 """Means of what photons bring, W/(m^2 sr), and of the squared luminance of all else."""
+StorageBlock("GroupValues", "float group_values[];")
+"""Of each pixel of a band, for each light group, three channels."""
 StorageBlock("PassValues", "float pass_values[];")
 """Those of a pass lie together, pass by pass (shaders/film/passes.glsl)."""
 Constants(
@@ -80,6 +82,14 @@ def _aov_values(sizes: StageSizes) -> int:
     return film_pixels(sizes) * aov_channels(sizes)
 
 
+def _group_channels(sizes: StageSizes) -> int:
+    return sum(len(entry.channels) for entry in sizes.passes if entry.light_group)
+
+
+def _group_values(sizes: StageSizes) -> list[int]:
+    return [band.pixel_count * _group_channels(sizes) for band in sizes.bands]
+
+
 def _pass_paths(sizes: StageSizes) -> int:
     return band_pixels(sizes) if _show_seen_light(sizes) else 0
 
@@ -108,6 +118,7 @@ class Film(BufferSet):
     _cryptomatte = Part(Cryptomatte)
     _motion_vectors = Part(MotionVectors)
     _aov_values = StorageBuffer("AOVs", "float", _aov_values)
+    _group_values = StorageBuffers("passes of light groups", "float", _group_values)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -122,6 +133,9 @@ class Film(BufferSet):
         self.width, self.height, self._bands = sizes.width, sizes.height, sizes.bands
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Of those wanted, the ones that passes.comp writes."""
+        self.found_passes = sizes.passes
+        """All that read_passes gives, and those that do not come of iterations."""
+        self._groups = tuple(entry for entry in sizes.passes if entry.light_group)
         self._aovs = tuple(entry for entry in sizes.passes if entry.is_aov)
         self._looks = bool(self.passes or self._aovs or self._motion_vectors.wanted)
         """Whether it is told of each path when it has found its first surface."""
@@ -142,7 +156,7 @@ class Film(BufferSet):
         self._cryptomatte.add(context, importons, band, iteration, segment)
         if not self._looks:
             return
-        self._motion_vectors.add(context, importons, self._counts.buffer, band, iteration, segment)
+        self._motion_vectors.add(context, camera, importons, self._counts.buffer, band, iteration, segment)
         importons.living.run(
             self._pass_program,
             {
@@ -202,6 +216,10 @@ class Film(BufferSet):
     def pass_blocks(self, band: Band) -> dict[str, moderngl.Buffer]:
         """Storage blocks of programs that include shaders/film/passes.glsl."""
         return {"PassValues": self._values[self._bands.index(band)].buffer, "PassPaths": self._paths.buffer}
+
+    def group_values(self, band: Band) -> moderngl.Buffer:
+        """GroupValues of a band."""
+        return self._group_values[self._bands.index(band)].buffer
 
     def place_parameters(self, band: Band, iteration: Iteration) -> dict[str, float]:
         """Their parameters."""
@@ -300,7 +318,20 @@ class Film(BufferSet):
             shape = (self.height, self.width, channels) if channels > 1 else (self.height, self.width)
             found[entry.name] = np.concatenate(parts).reshape(shape)
             first += channels
-        return found | self._motion_vectors.read() | self._cryptomatte.read() | self._read_aovs()
+        apart = self._motion_vectors.read() | self._cryptomatte.read()
+        return found | apart | self._read_aovs() | self._read_groups()
+
+    def _read_groups(self) -> dict[str, np.ndarray]:
+        if not self._groups:
+            return {}
+        shape = self.height, self.width, len(self._groups), 3
+        count = 3 * len(self._groups)
+        values = [
+            buffer.read(np.float32, count * band.pixel_count)
+            for band, buffer in zip(self._bands, self._group_values, strict=True)
+        ]
+        light = np.concatenate(values).reshape(shape)
+        return {entry.name: light[:, :, number].copy() for number, entry in enumerate(self._groups)}
 
     def _read_aovs(self) -> dict[str, np.ndarray]:
         channels = self._aov_channels
@@ -333,4 +364,8 @@ class Film(BufferSet):
         if self._aovs:
             planes = [np.atleast_3d(np.asarray(passes[entry.name], np.float32)) for entry in self._aovs]
             self._aov_values.upload(np.concatenate(planes, axis=-1))
+        if self._groups:
+            light = np.stack([np.asarray(passes[entry.name], np.float32) for entry in self._groups], axis=2)
+            for band, buffer in zip(self._bands, self._group_values, strict=True):
+                buffer.upload(light[band.first_row : band.first_row + band.rows])
         self._cryptomatte.restore(passes)

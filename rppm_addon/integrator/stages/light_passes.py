@@ -73,7 +73,7 @@ class LightPasses(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._kept = LightSum.of(sizes)
+        self._kept = LightSum.of(sizes) & ~LightSum.GROUPS
         self._programs: dict[str, ComputeProgram] = {}
         if self._kept:
             names = ("direct", "found", "gathered", "photons")

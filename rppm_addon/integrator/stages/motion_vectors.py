@@ -30,7 +30,6 @@ Record(
     first_pixel="uint",
     iteration="uint",
     segment="uint",
-    orthographic="uint",
 )
 
 
@@ -65,6 +64,7 @@ class MotionVectors(BufferSet):
     def add(
         self,
         context: StageContext,
+        camera_view: moderngl.Buffer,
         importons: Importons,
         pass_counts: moderngl.Buffer,
         band: Band,
@@ -72,7 +72,7 @@ class MotionVectors(BufferSet):
         segment: int,
     ) -> None:
         """Add the first surfaces that the camera paths of a band have found in a segment, before passes.comp counts
-        them in ``pass_counts``."""
+        them in ``pass_counts``; ``camera_view``: CAMERA_VIEW of the band."""
         if self._program is None:
             return
         self._follow(context)
@@ -92,6 +92,7 @@ class MotionVectors(BufferSet):
                 "TrianglesAfter": self._after.buffer,
                 "PassCounts": pass_counts,
                 "MotionVectors": self._vectors.buffer,
+                "Camera": camera_view,
             },
             {
                 **{f"world_to_camera{when}": np.linalg.inv(seen.matrix) for when, seen in cameras.items()},
@@ -100,7 +101,6 @@ class MotionVectors(BufferSet):
                 "first_pixel": band.first_pixel,
                 "iteration": iteration.number_in_film,
                 "segment": segment,
-                "orthographic": camera.orthographic,
             },
         )
 
@@ -116,7 +116,7 @@ class MotionVectors(BufferSet):
         ):
             return
         self._uploaded = self._cameras = None
-        if neighbors is None or context.scene.camera.panorama is not None:
+        if neighbors is None:
             return
         moving = MovingScene(dataclasses.replace(context.scene, shutter=neighbors))
         scenes = moving.at(0.0), moving.at(1.0)

@@ -30,6 +30,7 @@ from ..density_estimation.stored_photons import DirectPhotons, PhotonList, Store
 from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
 from .photon_emission import PhotonEmission
+from .photon_groups import PhotonGroups
 
 Record(
     "ScatterPhotonsParameters",
@@ -68,6 +69,7 @@ class Photons(BufferSet):
     _sums = StorageBuffer("flux sums", FLUX_SUMS, _flux_groups)
     _living = PathList("living photon paths", photon_paths, to_keep=True)
     first_hits = Part(FirstHits)
+    _groups = Part(PhotonGroups)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -102,6 +104,7 @@ class Photons(BufferSet):
             self._living.fill(self.photon_count)
             directions, differentials = self.world_directions.buffer, self._differentials.buffer
             self._emission.emit(context.lights, rays, paths, directions, differentials, self.photon_count, iteration)
+            self._groups.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
                 context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
             )
@@ -190,6 +193,7 @@ class Photons(BufferSet):
             listed.diffused_count,
             listed.indirect_count,
             self.world_directions.buffer,
+            self._groups.groups.buffer,
             self.photon_count,
             context.lights.photon_flux,
             iteration.direct_world_flux,

@@ -20,6 +20,7 @@ from .film import Film
 from .final_gather import FinalGather
 from .gbuffer import GBuffer
 from .importons import Importons
+from .light_groups import LightGroups
 from .light_passes import LightPasses
 from .noise_estimate import NoiseEstimate
 from .photons import Photons
@@ -34,7 +35,7 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "final gather": (FinalGather,),
     "shadow catcher": (ShadowCatcher,),
     "density estimation": (DensityEstimator,),
-    "passes": (Film, LightPasses, CausticRadii, NoiseEstimate),
+    "passes": (Film, LightPasses, LightGroups, CausticRadii, NoiseEstimate),
 }
 """How memory is reported: stages by group."""
 
@@ -56,6 +57,7 @@ class StageSet(BufferSet):
     shadow_catcher = Part(ShadowCatcher)
     film = Part(Film)
     light_passes = Part(LightPasses)
+    light_groups = Part(LightGroups)
     caustic_radii = Part(CausticRadii)
     noise_estimate = Part(NoiseEstimate)
 
@@ -78,6 +80,7 @@ class StageSet(BufferSet):
             self.importons.clear()
             self.density_estimator.sums.clear()
             self.light_passes.clear()
+            self.light_groups.clear()
             if context.gathers:
                 self.final_gather.clear()
 

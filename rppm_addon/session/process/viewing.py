@@ -60,7 +60,7 @@ def shown_picture(film: Film, scene: Scene) -> np.ndarray:
     value as gray."""
     if len(scene.settings.passes) != 1:
         return read_combined(film, scene.exposure)
-    values = frame_passes(film.read_passes(), scene.exposure)[scene.settings.passes[0]]
+    values = frame_passes(film.read_passes(), film.found_passes, scene.exposure)[scene.settings.passes[0]]
     planes = np.atleast_3d(values)
     shown = np.zeros((*planes.shape[:2], 4), np.float32)
     shown[..., : planes.shape[2]] = planes

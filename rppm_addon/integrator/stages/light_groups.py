@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light groups: the light of some lights, objects or the world as a picture of its own.
+
+Whatever adds to Combined adds the same to the group of the light that it comes from, so that all groups and what is in
+none add up to it.
+"""
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.context import Context
+from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from ...scene.settings import DirectLight as DirectLightMode
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels
+from ..density_estimation.radii import Radii
+from ..density_estimation.splat_sums import SplatSums
+from ..device_scene.stage_context import StageContext
+from ..lights.lights import LIGHT_PARAMETERS
+from .direct_light import DirectLight
+from .film import Film
+from .final_gather import FinalGather
+from .importons import Importons
+
+Record(
+    "LightGroupParameters",
+    groups="uint",
+    light_count="uint",
+    world_group="uint",
+    group="uint",
+    count="uint",
+    iteration="uint",
+    quantum="float",
+)
+Record("PassedLightParameters", **LIGHT_PARAMETERS, groups="uint")
+StorageBlock("GroupedLight", "float grouped_light[];")
+StorageBlock("SeenLight", "vec4 seen_light[];")
+
+_CHANNELS = 3
+_KINDS_OF_LIGHT = 2
+"""What pixels have got, and what gathering rays have found for them (shaders/light_groups/grouped.glsl)."""
+
+
+def _grouped_values(sizes: StageSizes) -> int:
+    return _CHANNELS * _KINDS_OF_LIGHT * len(sizes.light_groups) * band_pixels(sizes)
+
+
+class LightGroups(BufferSet):
+    """Finds the light of each group in a band and adds it to the film's passes; without groups there are neither
+    programs nor buffers."""
+
+    remedy = "lower the resolution or have fewer light groups"
+    _grouped = StorageBuffer("light of groups", "float", _grouped_values)
+    _seen = StorageBuffer("seen light of groups", "vec4", grouped_pixels)
+    _found = StorageBuffer("found light of a group", "vec4", grouped_pixels)
+    _taken = StorageBuffer("gathered light of a group", "vec4", grouped_pixels)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._groups = len(sizes.light_groups)
+        self._programs: dict[str, ComputeProgram] = {}
+        if self._groups:
+            names = ("direct", "passed", "seen", "found", "accumulate")
+            self._programs = {name: library.compute(f"light_groups/{name}.comp") for name in names}
+
+    def clear(self) -> None:
+        """Forget what the band before found."""
+        if self._groups:
+            self._grouped.clear()
+
+    def add_direct_light(
+        self, context: StageContext, importons: Importons, direct_light: DirectLight, iteration: Iteration
+    ) -> None:
+        """What DirectLight.add has added, and light objects that the paths pass, before they scatter on."""
+        if not (self._groups and iteration.enters_film):
+            return
+        lights = context.lights
+        with context.timers.stage("light groups"):
+            if context.settings.direct_light is DirectLightMode.RAYS:
+                direct_light.living_rays.run(
+                    self._programs["direct"],
+                    {
+                        "Visibility": direct_light.visibility.buffer,
+                        "Contributions": direct_light.contributions.buffer,
+                        "LightSplits": direct_light.splits.buffer,
+                        "LightTriangles": direct_light.triangles.buffer,
+                        "Attributes": context.geometry.attributes.buffer,
+                        "LightGroupTable": lights.group_table.buffer,
+                        "GroupedLight": self._grouped.buffer,
+                    },
+                    self._parameters(context),
+                )
+            lights.use_maps()
+            importons.living.run(
+                self._programs["passed"],
+                {
+                    **lights.tree_buffers,
+                    "Closures": importons.closures.buffer,
+                    "Rays": importons.rays.buffer,
+                    "CameraPaths": importons.paths.buffer,
+                    "Radiances": importons.radiances.buffer,
+                    "SeenLight": self._seen.buffer,
+                    "LightGroupTable": lights.group_table.buffer,
+                    "GroupedLight": self._grouped.buffer,
+                },
+                {**lights.parameters(iteration), "groups": self._groups},
+            )
+
+    def add_seen_light(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
+        """What else the paths have met, once they have scattered."""
+        if not (self._groups and iteration.enters_film):
+            return
+        with context.timers.stage("light groups"):
+            importons.living.run(
+                self._programs["seen"],
+                {
+                    "Closures": importons.closures.buffer,
+                    "Radiances": importons.radiances.buffer,
+                    "SeenLight": self._seen.buffer,
+                    "Attributes": context.geometry.attributes.buffer,
+                    "LightGroupTable": context.lights.group_table.buffer,
+                    "GroupedLight": self._grouped.buffer,
+                },
+                self._parameters(context),
+            )
+
+    def accumulate(
+        self,
+        context: StageContext,
+        final_gather: FinalGather,
+        sums: SplatSums,
+        film: Film,
+        band: Band,
+        iteration: Iteration,
+        radii: Radii,
+    ) -> None:
+        """Add the band's estimate of an iteration to the film's passes, with what photons and gathering rays bring."""
+        if not self._groups:
+            return
+        with context.timers.stage("light groups"):
+            self._taken.clear()
+            light = {"GroupedLight": self._grouped.buffer, "GroupSums": sums.group_sums}
+            for group in range(self._groups):
+                parameters = self._parameters(context) | {
+                    "group": group,
+                    "count": band.pixel_count,
+                    "iteration": iteration.number_in_film,
+                    "quantum": sums.quantum,
+                }
+                if context.gathers:
+                    self._taken.clear()
+                    found = {
+                        "GatheringVertices": final_gather.vertices.buffer,
+                        "FoundRadiances": self._found.buffer,
+                    }
+                    self._programs["found"].run(band.pixel_count, {**light, **found}, parameters)
+                    final_gather.share_found(self._found.buffer, self._taken.buffer, band, iteration, radii)
+                self._programs["accumulate"].run(
+                    band.pixel_count,
+                    {**light, "Radiances": self._taken.buffer, "GroupValues": film.group_values(band)},
+                    parameters,
+                )
+
+    def _parameters(self, context: StageContext) -> dict[str, float]:
+        return {
+            "groups": self._groups,
+            "light_count": len(context.lights.table),
+            "world_group": context.lights.world_group,
+            "group": 0,
+            "count": 0,
+            "iteration": 0,
+            "quantum": 0.0,
+        }

@@ -1,0 +1,25 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an iteration found of the light of a group enters the running mean of each pixel.
+
+layout(local_size_x = 64) in;
+
+#include <LightGroupParameters>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { LightGroupParameters parameters; };
+#include "light_groups/grouped.glsl"
+#include "light_groups/read_group_sum.glsl"
+layout(std430, binding = 0) readonly buffer Radiances;
+layout(std430, binding = 1) buffer GroupValues;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    vec3 light = grouped_light_of(index, parameters.group, false) + radiances[index].rgb
+               + read_group_sum(index, parameters.group, false) * parameters.quantum;
+    uint place = 3u * (parameters.groups * index + parameters.group);
+    for (uint channel = 0u; channel < 3u; ++channel) {
+        float mean = parameters.iteration == 1u ? 0.0 : group_values[place + channel];
+        group_values[place + channel] = mean + (light[channel] - mean) / float(parameters.iteration);
+    }
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light of an iteration by light group, W/(m^2 sr): for each pixel of the band, for each group, what the pixel has got
+// but for photons, and what its gathering ray found so. Needs the member groups of the parameters.
+#include <LightGroups>
+layout(std430, binding = 8) buffer GroupedLight;
+
+uint grouped_place(uint pixel, uint group, bool by_ray) {
+    return 6u * (parameters.groups * pixel + group) + (by_ray ? 3u : 0u);
+}
+
+vec3 grouped_light_of(uint pixel, uint group, bool by_ray) {
+    uint place = grouped_place(pixel, group, by_ray);
+    return vec3(grouped_light[place], grouped_light[place + 1u], grouped_light[place + 2u]);
+}
+
+void add_to_group(uint pixel, uint group, bool by_ray, vec3 light) {
+    if (group == NO_LIGHT_GROUP) return;
+    uint place = grouped_place(pixel, group, by_ray);
+    for (uint channel = 0u; channel < 3u; ++channel) grouped_light[place + channel] += light[channel];
+}

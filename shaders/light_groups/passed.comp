@@ -1,0 +1,43 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The light objects that camera paths pass, by their groups, before the paths scatter on. Beside, a path then meets
+// light of one group (seen.comp): what its radiance gets beyond what is left here.
+
+layout(local_size_x = 64) in;
+
+#include <PassedLightParameters>
+#include "common/living_paths.glsl"
+#include "common/low_discrepancy.glsl"
+#include "common/bsdf/closure.glsl"
+#include "common/camera_path.glsl"
+layout(std140, binding = 0) uniform Parameters { PassedLightParameters parameters; };
+#include "light_groups/grouped.glsl"
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) readonly buffer Rays;
+layout(std430, binding = 2) readonly buffer CameraPaths;
+layout(std430, binding = 3) readonly buffer Radiances;
+layout(std430, binding = 9) writeonly buffer SeenLight;
+layout(std430, binding = 10) readonly buffer LightGroupTable;
+
+uint path_index;
+vec3 path_throughput;
+void add_passed_light(uint light, vec3 radiance) {
+    add_to_group(path_index, light_group_table[light], false, path_throughput * radiance);
+}
+#define TELL_OF_PASSED_LIGHT add_passed_light
+#include "lights/light_tree.glsl"
+
+void main() {
+    path_index = living_path();
+    if (path_index == NO_PATH) return;
+    Ray ray = rays[path_index];
+    vec3 passed = vec3(0.0);
+    uint flags = camera_paths[path_index].flags;
+    if (ray.maximum_distance > 0.0 && (flags & (PATH_GATHERED | PATH_LIGHTS_FOUND)) == 0u) {
+        path_throughput = camera_paths[path_index].throughput;
+        float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
+        passed = path_throughput * visible_light(ray.origin, ray.direction, distance, camera_ray_kind(flags),
+                                                 camera_paths[path_index].scatter_pdf);
+    }
+    seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light_groups/group_sums.glsl"
+#include "splat_sums/sums.glsl"
+layout(std430, binding = 5) readonly buffer GroupSums;
+
+// What a pixel took of the photons of a group, in quanta.
+vec3 read_group_sum(uint pixel, uint group, bool by_ray) {
+    uint place = first_group_word(pixel, group, by_ray, parameters.groups);
+    vec3 low = vec3(group_words[place], group_words[place + 2u], group_words[place + 4u]);
+    vec3 high = vec3(group_words[place + 1u], group_words[place + 3u], group_words[place + 5u]);
+    return high * WORD + low;
+}

@@ -1,0 +1,25 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What camera paths met in a segment, but for light objects (passed.comp): the world, or a surface that shines.
+
+layout(local_size_x = 64) in;
+
+#include <LightGroupParameters>
+#include "common/living_paths.glsl"
+#include "common/bsdf/closure.glsl"
+layout(std140, binding = 0) uniform Parameters { LightGroupParameters parameters; };
+#include "light_groups/grouped.glsl"
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 3) readonly buffer Radiances;
+layout(std430, binding = 9) readonly buffer SeenLight;
+layout(std430, binding = 6) readonly buffer LightGroupTable;
+layout(std430, binding = 7) readonly buffer Attributes;
+#include "light_groups/table.glsl"
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    uint triangle = closures[index].triangle;
+    uint group = triangle == NO_TRIANGLE ? parameters.world_group : light_group(0u, triangle);
+    add_to_group(index, group, false, radiances[index].rgb - seen_light[index].rgb);
+}
