@@ -15,6 +15,7 @@ from .commands.compiling import compile_programs
 from .commands.farm.command import farm
 from .commands.interruption import INTERRUPTED
 from .commands.options import is_blend, load_blend_or_saved, split_values, write_json
+from .commands.picture_set import described
 from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
 from .commands.rendering import render
@@ -61,19 +62,22 @@ def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECO
 
 
 def _merge(options: argparse.Namespace, bar: ProgressBar) -> int:
-    from .commands.merging import merge_parts
+    from .commands.merging import merge_stills, write_stills
 
     for path in options.output:
         make_folder(path)
-    merged = merge_parts(options.parts, options.incomplete)
-    merged.write(options.output)
-    files = [str(path) for path in options.output]
+    stills = merge_stills(options.parts, options.incomplete)
+    files = [str(path) for path in write_stills(stills, options.output)]
     if options.json is not None:
-        write_json(options.json, {"files": files, **merged.report()})
-    print(
-        f"{merged.iterations} samples, {count_text(merged.photons)} photons of {len(merged.parts)} "
-        f"{'part' if len(merged.parts) == 1 else 'parts'}: {', '.join(files)}"
-    )
+        pictures = [{**dataclasses.asdict(still.name), **still.report()} for still in stills]
+        report = stills[0].report() if len(stills) == 1 else {"pictures": pictures}
+        write_json(options.json, {"files": files, **report})
+    for still in stills:
+        words = f"{still.iterations} samples, {count_text(still.photons)} photons of {len(still.parts)} "
+        words += "part" if len(still.parts) == 1 else "parts"
+        print(f"{words}: {', '.join(files)}" if len(stills) == 1 else f"{described(still.name)}: {words}")
+    if len(stills) > 1:
+        print(", ".join(files))
     return 0
 
 
@@ -86,7 +90,7 @@ def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
     settings, data_values = split_values(options.values)
     apply_settings(RenderSettings(), settings)
     make_folder(options.output)
-    request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
+    request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values, options.view_layers)
     scene = blend_file.export_blend_file(request, show_output=options.debug)
     scene.settings = apply_settings(scene.settings, settings)
     try:

@@ -10,15 +10,31 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .scene.errors import RppmError
-from .scene.passes import NOISY_IMAGE, PASSES, RenderPass
+from .scene.passes import COMBINED, NOISY_IMAGE, PASSES, RenderPass
 
 
 class PictureError(RppmError):
     """A picture file cannot be written or read."""
+
+
+@dataclass(frozen=True)
+class PictureName:
+    """Which of the pictures of a render."""
+
+    layer: str = ""
+    """View layer; "" is the only one of a saved scene."""
+    view: str = ""
+    """Of stereo and multiview, such as "left"; "" is the only one."""
+
+    @property
+    def prefix(self) -> str:
+        """Before the names of its passes in files."""
+        return f"{self.layer}." if self.layer else ""
 
 
 @dataclass(frozen=True)
@@ -68,23 +84,76 @@ def write_exr(
     """
     import OpenEXR  # late: the file format is not needed to import the engine
 
-    height, width = combined.shape[:2]
-    place = placement or Placement(width, height)
     channels = dict(zip("RGBA", _planes(combined)))
     layers = layers or {}
     for name, array in layers.items():
         planes = _planes(array)
         channels.update(zip(_channels_of(name, len(planes), passes), planes, strict=True))
-    header = {
+    header = _header(combined.shape, metadata, placement, attributes)
+    with renamed_when_whole(path) as temporary:
+        OpenEXR.File(header, channels).write(temporary)
+
+
+@dataclass(frozen=True)
+class FilePicture:
+    """One of several pictures of a file; arrays and passes as write_exr takes them."""
+
+    name: PictureName
+    combined: np.ndarray
+    layers: Mapping[str, np.ndarray]
+    passes: Sequence[RenderPass]
+
+
+def write_multilayer_exr(
+    path: str | Path,
+    pictures: Sequence[FilePicture],
+    metadata: Mapping[str, object] | None = None,
+    placement: Placement | None = None,
+    attributes: Mapping[str, str] | None = None,
+) -> None:
+    """Write several pictures of one frame into a float32 EXR as Blender does: a part for each pass of each view layer
+    and view, with channels such as ``ViewLayer.Depth.Z``. Else as write_exr."""
+    import OpenEXR
+
+    parts = []
+    for picture in pictures:
+        header = _header(picture.combined.shape, metadata, placement, attributes) | _OF_BLENDER
+        name = picture.name
+        if name.view:
+            header["view"] = name.view
+        for layer, array in {COMBINED: picture.combined, **picture.layers}.items():
+            planes = _planes(array)
+            names = [f"{layer}.{letter}" for letter in "RGBA"]
+            if layer != COMBINED:
+                names = _channels_of(layer, len(planes), picture.passes)
+            channels = {f"{name.prefix}{channel}": plane for channel, plane in zip(names, planes, strict=True)}
+            part = f"{name.prefix}{layer}" + (f"-{name.view}" if name.view else "")
+            parts.append(OpenEXR.Part(dict(header), channels, part))
+    with renamed_when_whole(path) as temporary:
+        OpenEXR.File(parts).write(temporary)
+
+
+_OF_BLENDER = {"BlenderMultiChannel": "Blender V2.55.1 and newer"}
+"""By which Blender knows files with layers of its own."""
+
+
+def _header(
+    shape: tuple[int, ...],
+    metadata: Mapping[str, object] | None,
+    placement: Placement | None,
+    attributes: Mapping[str, str] | None,
+) -> dict[str, Any]:
+    import OpenEXR
+
+    height, width = shape[:2]
+    return {
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
-        **place.windows(width, height),
+        **(placement or Placement(width, height)).windows(width, height),
         "colorInteropID": "lin_rec709_scene",
         **(attributes or {}),
         **{f"rppm.{name}": str(value) for name, value in (metadata or {}).items()},
     }
-    with renamed_when_whole(path) as temporary:
-        OpenEXR.File(header, channels).write(temporary)
 
 
 def _channels_of(layer: str, count: int, passes: Sequence[RenderPass]) -> list[str]:

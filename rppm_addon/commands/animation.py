@@ -13,8 +13,9 @@ from ..scene.errors import RppmError
 from .blend_file import BlendFile, BlendRequest, opened_blend_file
 from .frame_numbers import path_of_frame
 from .interruption import Interruption
-from .progress_bar import ProgressBar
-from .recorder import RenderRecorder, RenderRequest
+from .picture_set import recorded_pictures
+from .progress_bar import PartBar, ProgressBar
+from .recorder import RenderRequest
 
 
 @dataclass
@@ -31,18 +32,6 @@ class AnimationRequest:
     def outputs(self, frame: int) -> list[Path]:
         """The files of a frame."""
         return [path_of_frame(path, frame) for path in self.render.outputs]
-
-
-class _FrameBar:
-    """Shows one frame's progress as a part of all."""
-
-    def __init__(self, bar: ProgressBar, place: int, count: int, frame: int) -> None:
-        self._bar, self._place, self._count = bar, place, count
-        self._words = f"frame {frame} ({place + 1} of {count}), "
-
-    def show(self, fraction: float, words: str) -> None:
-        part = min(max(fraction, 0.0), 0.999)  # whole only with the last
-        self._bar.show((self._place + part) / self._count, self._words + words)
 
 
 class Animation:
@@ -92,17 +81,18 @@ class Animation:
             for place, frame in enumerate(frames):
                 if self._interruption.asked:
                     return
-                self._render(file, frame, _FrameBar(self._bar, place, len(frames), frame))
+                bar = PartBar(self._bar, place, len(frames), f"frame {frame} ({place + 1} of {len(frames)})")
+                self._render(file, frame, bar)
 
-    def _render(self, file: BlendFile, frame: int, bar: _FrameBar) -> None:
+    def _render(self, file: BlendFile, frame: int, bar: PartBar) -> None:
         request = dataclasses.replace(self._request.render, outputs=self._request.outputs(frame))
-        recorder = RenderRecorder(request, bar, lambda: self._interruption.asked, write_png_file=False)
+        pictures = recorded_pictures(request, bar, lambda: self._interruption.asked)
         try:
             file.set_frame(frame)
-            file.render(recorder)
-            if recorder.result.stopped:
+            file.render(pictures)
+            if pictures.stopped:
                 return
-            file.write(recorder)
+            file.write(pictures)
         except PictureError:
             raise
         except RppmError as error:
@@ -114,9 +104,9 @@ class Animation:
             self._tell(frame, {"error": str(error)})
             return
         self.rendered.append(frame)
-        self._tell(frame, {"export_seconds": file.report.export_seconds, **recorder.report()})
+        self._tell(frame, {"export_seconds": file.report.export_seconds, **pictures.report()})
         self._bar.clear()
-        file.output.write(f"Frame {frame}: {recorder.summary()}\n")
+        file.output.write(f"Frame {frame}: {pictures.summary()}\n")
         file.output.flush()
 
     def _tell(self, frame: int, what: dict[str, object]) -> None:

@@ -24,6 +24,14 @@ def parser() -> argparse.ArgumentParser:
     scene.add_argument("--resolution", type=_resolution, metavar="WxH", help="size of the whole frame in pixels")
     scene.add_argument("--frame", type=int, metavar="N", help="frame number of a .blend file")
     scene.add_argument(
+        "--view-layer",
+        dest="view_layers",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="view layer of a .blend file; may be repeated where several are rendered; default: those in use",
+    )
+    scene.add_argument(
         "--set",
         dest="values",
         action="append",

@@ -6,7 +6,7 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -14,12 +14,12 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from ..pictures import PictureError
+from ..pictures import PictureError, PictureName
 from ..scene import Scene
-from ..scene.errors import RppmError, SceneError
+from ..scene.errors import RppmError, SceneError, SettingsError
 from ..session.observers import RenderObserver, observing
 from .data_paths import set_data_path
-from .recorder import RenderRecorder
+from .picture_set import PictureSet
 
 ENGINE = "RPPM"
 
@@ -38,6 +38,8 @@ class BlendRequest:
     resolution: tuple[int, int] | None = None
     values: list[tuple[str, str]] = field(default_factory=list)
     """Data paths and what to set them to."""
+    view_layers: list[str] = field(default_factory=list)
+    """Names; none are those that are in use."""
 
     def as_plain(self) -> dict[str, Any]:
         """The request as JSON has it, for whoever is to open the same picture's scene later."""
@@ -46,6 +48,7 @@ class BlendRequest:
             "frame": self.frame,
             "resolution": self.resolution and list(self.resolution),
             "values": [list(value) for value in self.values],
+            "view_layers": list(self.view_layers),
         }
 
     @classmethod
@@ -56,6 +59,7 @@ class BlendRequest:
             plain["frame"],
             plain["resolution"] and tuple(plain["resolution"]),
             [tuple(value) for value in plain["values"]],
+            list(plain["view_layers"]),
         )
 
 
@@ -90,20 +94,23 @@ class BlendFile:
             scene.frame_set(frame)
         self.report.frame = frame
 
-    def render(self, recorder: RenderRecorder) -> None:
-        """Render with the engine RPPM. Raises RppmError when the recorder gets no result."""
-        _render(self._bpy, self._request, recorder, self.report)
-        if recorder.error is not None:
-            raise BlenderError(recorder.error)
-        if recorder.result is None:
+    def render(self, pictures: PictureSet) -> None:
+        """Render with the engine RPPM. Raises RppmError when there is an error, or no picture."""
+        pictures.names = _picture_names(self._bpy.context.scene)
+        _render(self._bpy, self._request, pictures, self.report)
+        if pictures.error is not None:
+            raise BlenderError(pictures.error)
+        if not pictures.finished:
             raise BlenderError(f"{self._request.path}: the engine gave no picture; run again with --debug to see why")
 
-    def write(self, recorder: RenderRecorder) -> None:
-        """Write what has been rendered: the recorder EXR, Blender PNG. Raises RppmError."""
-        recorder.write_files()
-        for path in recorder.request.outputs:
-            if path.suffix == ".png":
+    def write(self, pictures: PictureSet) -> None:
+        """Write what has been rendered: the recorders EXR, Blender PNG. Raises RppmError."""
+        pictures.write_files()
+        for path, frame in pictures.pngs:
+            if pictures.is_single:
                 _save_png(self._bpy, path)
+            else:
+                _save_picture(self._bpy, path, frame.combined)
 
 
 @contextlib.contextmanager
@@ -113,11 +120,11 @@ def opened_blend_file(request: BlendRequest, show_output: bool = False) -> Itera
         yield BlendFile(bpy, request, report, output)
 
 
-def render_blend_file(request: BlendRequest, recorder: RenderRecorder, show_output: bool = False) -> BlenderReport:
-    """Render one picture of a .blend and write it. Raises RppmError."""
+def render_blend_file(request: BlendRequest, pictures: PictureSet, show_output: bool = False) -> BlenderReport:
+    """Render a frame of a .blend and write its pictures. Raises RppmError."""
     with opened_blend_file(request, show_output) as file:
-        file.render(recorder)
-        file.write(recorder)
+        file.render(pictures)
+        file.write(pictures)
     return file.report
 
 
@@ -137,9 +144,12 @@ class _SceneTaker(RenderObserver):
 
 
 def export_blend_file(request: BlendRequest, show_output: bool = False) -> Scene:
-    """The scene that a render of the .blend would be given. Raises RppmError."""
+    """The scene that a render of the .blend would be given, of the first of its view layers. Raises RppmError."""
+    if len(request.view_layers) > 1:
+        raise SettingsError("a scene is of one view layer; name one --view-layer only")
     taker = _SceneTaker()
     with _opened(request, show_output) as (bpy, report, _):
+        _leave_one_picture(bpy.context.scene)
         _render(bpy, request, taker, report)
     if taker.error is not None:
         raise BlenderError(taker.error)
@@ -193,17 +203,45 @@ def _prepare(bpy: ModuleType, request: BlendRequest) -> None:
     scene.render.engine = ENGINE
     scene.render.use_compositing = False  # a compositor may write files of its own and hide the render
     scene.render.use_sequencer = False
-    scene.render.use_multiview = False
-    used = [layer for layer in scene.view_layers if layer.use] or list(scene.view_layers)
-    for layer in scene.view_layers:
-        layer.use = layer == used[0]
+    scene.render.use_single_layer = False
+    _choose_layers(scene, request.view_layers)
     for path, value in request.values:
         set_data_path((scene, bpy.data), path, value)
 
 
-def _render(
-    bpy: ModuleType, request: BlendRequest, observer: RenderRecorder | _SceneTaker, report: BlenderReport
-) -> None:
+def _choose_layers(scene: Any, names: Sequence[str]) -> None:
+    """Have the named view layers rendered, or else those in use, or else the first. Raises SettingsError."""
+    known = [layer.name for layer in scene.view_layers]
+    for name in names:
+        if name not in known:
+            raise SettingsError(f'there is no view layer "{name}"; there are {", ".join(known)}')
+    used = list(names) or [layer.name for layer in scene.view_layers if layer.use] or known[:1]
+    for layer in scene.view_layers:
+        layer.use = layer.name in used
+
+
+def _leave_one_picture(scene: Any) -> None:
+    """Have the first of the chosen view layers rendered, as one view."""
+    scene.render.use_multiview = False
+    _choose_layers(scene, [next(layer.name for layer in scene.view_layers if layer.use)])
+
+
+def _picture_names(scene: Any) -> list[PictureName]:
+    """Those that Blender renders, in its order; a single one needs no name."""
+    render = scene.render
+    views = [""]
+    if render.use_multiview:
+        both_eyes = render.views_format == "STEREO_3D"
+        views = [view.name for view in render.views if view.use and (not both_eyes or view.name in _EYES)]
+    names = [PictureName(layer.name, view) for layer in scene.view_layers if layer.use for view in views]
+    return names if len(names) > 1 else [PictureName()]
+
+
+_EYES = {"left", "right"}
+"""The views of Stereo 3D."""
+
+
+def _render(bpy: ModuleType, request: BlendRequest, observer: PictureSet | _SceneTaker, report: BlenderReport) -> None:
     scene = bpy.context.scene
     if scene.camera is None:
         raise SceneError(
@@ -223,6 +261,23 @@ def _render(
 
 def _save_png(bpy: ModuleType, path: Path) -> None:
     """Save the picture through the scene's own view transform, as Blender's render window shows it."""
+    _save_image(bpy, path, bpy.data.images["Render Result"])
+
+
+def _save_picture(bpy: ModuleType, path: Path, combined: np.ndarray) -> None:
+    """The same of one of several pictures (height, width, 4), of which Blender saves the first only."""
+    height, width = combined.shape[:2]
+    image = bpy.data.images.new("RPPM", width, height, alpha=True, float_buffer=True)
+    try:
+        image.colorspace_settings.name = "Linear Rec.709"
+        image.alpha_mode = "PREMUL"
+        image.pixels.foreach_set(np.ascontiguousarray(combined, np.float32).reshape(-1))
+        _save_image(bpy, path, image)
+    finally:
+        bpy.data.images.remove(image)
+
+
+def _save_image(bpy: ModuleType, path: Path, image: Any) -> None:
     scene = bpy.context.scene
     image_settings = scene.render.image_settings
     if hasattr(image_settings, "media_type"):  # Blender 5.0 and later
@@ -234,7 +289,7 @@ def _save_png(bpy: ModuleType, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{path.stem}.", dir=path.parent) as folder:
             temporary = Path(folder) / "picture.png"
-            bpy.data.images["Render Result"].save_render(str(temporary), scene=scene)
+            image.save_render(str(temporary), scene=scene)
             temporary.replace(path)
     except (OSError, RuntimeError) as error:
         raise PictureError(f"{path} cannot be written ({_one_line(error)}); choose another place with -o") from error
@@ -260,6 +315,7 @@ def save_view(request: BlendRequest, combined: np.ndarray, path: Path) -> None:
                 result.layers[0].passes["Combined"].rect.foreach_set(pixels.reshape(-1))
                 self.end_result(result)
 
+        _leave_one_picture(scene)
         _remove_contents(scene)  # nothing of it is looked at: nothing is to be evaluated
         bpy.utils.register_class(Shown)
         try:

@@ -62,6 +62,8 @@ def refuse_blend_options(options: argparse.Namespace, data_values: list[tuple[st
     """Raise SettingsError where options ask of a saved scene what only a .blend file can give."""
     if options.frame is not None:
         raise SettingsError("--frame needs a .blend file; a saved scene holds one frame")
+    if options.view_layers:
+        raise SettingsError("--view-layer needs a .blend file; a saved scene holds one view layer")
     if data_values:
         raise SettingsError(f"--set {data_values[0][0]} needs a .blend file; a saved scene takes rppm.NAME only")
 
@@ -83,7 +85,7 @@ def load_blend_or_saved(
     if is_blend(file):
         from . import blend_file
 
-        request = blend_file.BlendRequest(file, options.frame, options.resolution, data_values)
+        request = blend_file.BlendRequest(file, options.frame, options.resolution, data_values, options.view_layers)
         scene = blend_file.export_blend_file(request, show_output=options.debug)
     else:
         from ..scene import load_scene

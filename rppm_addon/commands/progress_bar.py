@@ -49,6 +49,19 @@ class ProgressBar:
             self._drawn = False
 
 
+class PartBar:
+    """Shows the progress of one of several renders as a part of all."""
+
+    def __init__(self, bar: "ProgressBar | PartBar", place: int, count: int, words: str) -> None:
+        """words: what it is of."""
+        self._bar, self._place, self._count, self._words = bar, place, count, words
+
+    def show(self, fraction: float, words: str) -> None:
+        """As ProgressBar has it."""
+        part = min(max(fraction, 0.0), 0.999)  # whole only with the last
+        self._bar.show((self._place + part) / self._count, f"{self._words}, {words}")
+
+
 class BarLogHandler(logging.StreamHandler):
     """Writes log records to the bar's stream without mixing them with the bar."""
 

@@ -15,7 +15,7 @@ from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver
 from ..session.still_keeper import StillKeeper, attributes_of, placement_of
 from .picture_files import write_png
-from .progress_bar import ProgressBar
+from .progress_bar import PartBar, ProgressBar
 
 if TYPE_CHECKING:
     from ..session.renderer import Frame, Progress, RenderResult
@@ -52,7 +52,7 @@ class RenderRecorder(RenderObserver):
     def __init__(
         self,
         request: RenderRequest,
-        bar: ProgressBar,
+        bar: ProgressBar | PartBar,
         should_stop: Callable[[], bool],
         write_png_file: bool,
         keeper: StillKeeper | None = None,
@@ -147,18 +147,41 @@ class RenderRecorder(RenderObserver):
     def write_files(self) -> None:
         """Write the outputs of a finished render, or its part. Raises PictureError."""
         result, scene = self.result, self.scene
-        statistics = result.statistics
-        metadata = picture_metadata(
-            statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_meters
-        )
         for path in self.request.outputs:
             if path.suffix == ".exr":
                 place, attributes = placement_of(scene.camera), attributes_of(scene)
-                write_frame(path, result.frame, scene.settings, place, metadata, attributes)
+                write_frame(path, result.frame, scene.settings, place, self.metadata, attributes)
             elif self._write_png_file:
                 write_png(path, standard_view(result.frame.combined))
+        self.write_part()
+
+    def write_part(self) -> None:
+        """Write the part of a finished render that is one. Raises PictureError."""
         if self._keeper is not None:
             self._keeper.finish()
+
+    @property
+    def finished_scene(self) -> Scene:
+        """Of a finished render."""
+        return self.scene
+
+    @property
+    def frame(self) -> "Frame":
+        """Of a finished render."""
+        return self.result.frame
+
+    @property
+    def stopped(self) -> bool:
+        """Whether a finished render was ended early."""
+        return self.result.stopped
+
+    @property
+    def metadata(self) -> dict[str, object]:
+        """Of the EXR of a finished render."""
+        statistics = self.result.statistics
+        return picture_metadata(
+            statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_meters
+        )
 
     def report(self) -> dict[str, object]:
         """What happened, for --json: plain values only."""
@@ -176,24 +199,37 @@ class RenderRecorder(RenderObserver):
             },
             "statistics": result.statistics.as_dict(),
             "snapshots": self.snapshots_written,
-            "snapshots_missed": list(self.request.snapshots[len(self.snapshots_written) :]),
+            "snapshots_missed": list(self.snapshots_missed),
             "scene_warnings": list(scene.warnings),
         }
 
+    @property
+    def snapshots_missed(self) -> Sequence[float]:
+        """Marks before which the render ended."""
+        return self.request.snapshots[len(self.snapshots_written) :]
+
     def summary(self) -> str:
         """The closing line."""
+        return f"{self.figures()}: {', '.join(str(path) for path in self.files)}"
+
+    def figures(self) -> str:
+        """What a finished render took, in a line."""
         statistics = self.result.statistics
         width, height = self.scene.camera.resolution
         return (
             f"{statistics.iterations} samples, {count_text(statistics.photons)} photons in {self.seconds:.1f} s "
-            f"at {width}x{height} on {statistics.device}: {', '.join(str(path) for path in self.files)}"
+            f"at {width}x{height} on {statistics.device}"
         )
 
     @property
     def files(self) -> list[Path]:
         """What has been written."""
-        part = [self._keeper.request.part] if self._keeper and self._keeper.part_written else []
-        return [*self.request.outputs, *part]
+        return [*self.request.outputs, *self.parts_written]
+
+    @property
+    def parts_written(self) -> list[Path]:
+        """The part, if there is one."""
+        return [self._keeper.request.part] if self._keeper and self._keeper.part_written else []
 
 
 def apply_settings(settings: RenderSettings, values: Mapping[str, object]) -> RenderSettings:

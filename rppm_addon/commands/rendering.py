@@ -21,6 +21,7 @@ from .options import (
     values_of_frames,
     write_json,
 )
+from .picture_set import PictureSet, recorded_pictures
 from .progress_bar import ProgressBar
 from .recorder import RenderRecorder, RenderRequest, apply_settings
 
@@ -37,7 +38,9 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
         from . import blend_file
 
         data_values += values_of_frames(settings)
-        blend_request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values)
+        blend_request = blend_file.BlendRequest(
+            options.file, options.frame, options.resolution, data_values, options.view_layers
+        )
     apply_settings(RenderSettings(), settings)  # a wrong value is better reported now than after Blender's start
     if options.frames is not None:
         return _render_frames(options, bar, blend_request, settings)
@@ -48,20 +51,22 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
     outputs = [] if options.samples_range else options.output
     request = RenderRequest(outputs, settings, seconds_of(options), options.snapshots)
     with Interruption() as interruption:
-        recorder = RenderRecorder(request, bar, lambda: interruption.asked, not from_blend, keeper)
+        recorder: RenderRecorder | PictureSet
         report: dict[str, object] = {"scene": str(options.file)}
         if blend_request:
+            recorder = recorded_pictures(request, bar, lambda: interruption.asked, keeper)
             blender_report = blend_file.render_blend_file(blend_request, recorder, show_output=options.debug)
             report["blender"] = dataclasses.asdict(blender_report)
         else:
             from .saved_scene import render_saved_scene
 
             refuse_blend_options(options, data_values)
+            recorder = RenderRecorder(request, bar, lambda: interruption.asked, True, keeper)
             render_saved_scene(options.file, recorder, options.resolution)
     bar.clear()
     if options.json is not None:
         write_json(options.json, report | recorder.report())
-    missed = request.snapshots[len(recorder.snapshots_written) :]
+    missed = recorder.snapshots_missed
     if missed:
         marks = ", ".join(f"{mark:g}" for mark in missed)
         sys.stderr.write(f"rppm: the render ended before the snapshots at {marks} s\n")

@@ -5,6 +5,7 @@ bpy.ops.render.render() takes no callbacks and gives nothing back. Whoever calls
 observer first; the engine asks for it and tells it what happens, in this order:
 
     observer = current_observer()            # a RenderObserver that does nothing when none is set
+    observer.on_picture(name)                # of which view layer and view it is
     if not observer.on_scene(scene):         # the scene is exported; no Renderer has been made
         return                               # the observer wanted the scene only
     observer.on_start(scene)                 # immediately before Renderer.render(scene, ...)
@@ -23,6 +24,7 @@ import contextvars
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ..pictures import PictureName
 from ..scene import Scene
 
 if TYPE_CHECKING:
@@ -38,6 +40,9 @@ class RenderObserver:
 
     continuation: "Continuation | None" = None
     """Where the render begins and who keeps it; in the background only (RenderJob.continuation)."""
+
+    def on_picture(self, name: PictureName) -> None:
+        """What follows is of this view layer and view: a render may have several, one after the other."""
 
     def on_scene(self, scene: Scene) -> bool:
         """The scene is complete and no renderer has been made for it yet.

@@ -7,9 +7,9 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ..pictures import PictureError, Placement
+from ..pictures import PictureError, PictureName, Placement
 from ..scene import cryptomatte
 from ..scene.camera import Camera
 from ..scene.errors import CheckpointError, SettingsError
@@ -174,13 +174,26 @@ def still_render(scene: Scene, source: Mapping[str, object]) -> "StillRender":
         float(scene.exposure),
         placement_of(scene.camera),
         dict(source),
-        attributes_of(scene),
+        attributes_of(scene, picture_of(source).prefix),
     )
 
 
-def attributes_of(scene: Scene) -> dict[str, str]:
-    """Text attributes of the EXR of a scene's picture, which others know by their names."""
-    return {**scene.stamps, **cryptomatte.metadata(scene)}
+def picture_of(source: Mapping[str, Any]) -> PictureName:
+    """Which picture of a render with several a still is, by what is known of the file that its scene comes from."""
+    return PictureName(*source.get("picture", ()))
+
+
+def pictures_of(source: Mapping[str, Any]) -> list[PictureName]:
+    """All pictures of such a render."""
+    return [PictureName(*name) for name in source.get("pictures", ())]
+
+
+def attributes_of(scene: Scene, prefix: str = "") -> dict[str, str]:
+    """Text attributes of the EXR of a scene's picture, which others know by their names.
+
+    prefix: what comes before the names of passes in the file.
+    """
+    return {**scene.stamps, **cryptomatte.metadata(scene, prefix)}
 
 
 def placement_of(camera: Camera) -> Placement:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cryptomatte, AOVs and what a picture tells of itself in the program's files, of parts as well."""
+"""Cryptomatte, AOVs, light groups and what a picture tells of itself in the program's files, of parts as well."""
 
 import numpy as np
 import pytest
@@ -16,8 +16,11 @@ from .conftest import rppm_here
 def scene_file(tmp_path):
     scene = floor_scene()
     scene.settings = scene.settings.with_values(
-        passes=("Depth", "CryptoObject00", "CryptoMaterial00", "Shadow Catcher"), aovs=("Mask.X", "Tint.RGBA")
+        passes=("Depth", "CryptoObject00", "CryptoMaterial00", "Shadow Catcher"),
+        aovs=("Mask.X", "Tint.RGBA"),
+        light_groups=("key", "rim"),
     )
+    scene.lights[0].light_group = "key"
     scene.materials[0].graph.aovs = [AovOutput("Mask", value=0.25), AovOutput("Tint", (0.1, 0.2, 0.3))]
     scene.stamps = {"Camera": "Above", "Frame": "007"}
     save_scene(scene, tmp_path / "scene.npz")
@@ -33,6 +36,8 @@ def check(picture, scene):
     tint = picture.layer("Tint")[:, :7]
     np.testing.assert_allclose(tint, np.broadcast_to((0.1, 0.2, 0.3, 1.0), tint.shape), rtol=1e-5)
     np.testing.assert_allclose(picture.layer("Mask")[:, :7], 0.25, rtol=1e-5)
+    np.testing.assert_allclose(picture.layer("Combined_key"), picture.combined[..., :3], rtol=1e-5, atol=1e-6)
+    assert not picture.layer("Combined_rim").any()
     assert picture.attributes.items() >= {**scene.stamps, **metadata(scene)}.items()
 
 

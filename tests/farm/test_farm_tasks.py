@@ -12,6 +12,7 @@ import pytest
 from rppm_addon.commands.farm.errors import FarmError
 from rppm_addon.commands.farm.ledger import Ledger
 from rppm_addon.commands.farm.tasks import Task, chunks, frame_tasks, still_tasks
+from rppm_addon.commands.farm.worker import put_in_place
 from rppm_addon.commands.picture_files import is_whole, write_png
 from rppm_addon.pictures import write_exr
 from rppm_addon.scene.errors import SettingsError
@@ -25,6 +26,16 @@ def write_picture(path):
         write_exr(path, pixels, {"Depth": pixels[..., 0]})
     else:
         write_png(path, (pixels * 255).astype(np.uint8))
+
+
+def test_files_of_further_layers_come_along(tmp_path):
+    attempt, out = tmp_path / "attempt", tmp_path / "out"
+    attempt.mkdir()
+    out.mkdir()
+    for name in ("0001.png", "0001_Fog.png", "0001.exr", ".0001.half.png", "other_Fog.png"):
+        (attempt / name).touch()
+    put_in_place(Task((), (out / "####.png", out / "####.exr"), (1, 2)), attempt)
+    assert {path.name for path in out.iterdir()} == {"0001.png", "0001_Fog.png", "0001.exr"}
 
 
 def test_frames_are_calls_of_rppm_render():

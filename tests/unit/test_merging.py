@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from checkpoints import pause, write_part
 
-from rppm_addon.commands.merging import merge_parts
+from rppm_addon.commands.merging import merge_parts, write_stills
 from rppm_addon.pictures import Placement
 from rppm_addon.scene.errors import CheckpointError
 
@@ -69,5 +69,5 @@ def test_parts_of_another_still(part, values, what):
 def test_pictures_have_the_place_of_the_parts(part, tmp_path):
     merged = merge_parts([part(0, 5)], incomplete=False)
     assert merged.render.placement == Placement(16, 10, 3, 2)
-    merged.write([tmp_path / "out.exr", tmp_path / "out.png"])
+    write_stills([merged], [tmp_path / "out.exr", tmp_path / "out.png"])
     assert (tmp_path / "out.png").stat().st_size > 0

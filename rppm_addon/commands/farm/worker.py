@@ -100,17 +100,21 @@ def _make_pictures(task: Task, folder: Path, wanted: Callable[[], bool], tell: C
                 if not wanted():
                     return "stopped"
                 if task.frames:  # of these the program writes whole ones only, of parts also what was interrupted
-                    _put_in_place(task, Path(attempt))
+                    put_in_place(task, Path(attempt))
         if task.frames or not program.failure:
-            _put_in_place(task, Path(attempt))
+            put_in_place(task, Path(attempt))
     return program.failure
 
 
-def _put_in_place(task: Task, attempt: Path) -> None:
-    """Move the pictures that are there to where they belong."""
-    for path in task.files:
-        if (attempt / path.name).is_file():
-            (attempt / path.name).replace(path)
+def put_in_place(task: Task, attempt: Path) -> None:
+    """Move the pictures that are there to where they belong, first those of further view layers and views, which have
+    files of their own beside the others'."""
+    expected = {path.name: path for path in task.files}
+    for made in sorted(attempt.glob("[!.]*"), key=lambda made: made.name in expected):
+        beside = (path for path in task.files if path.suffix == made.suffix and made.stem.startswith(f"{path.stem}_"))
+        place = expected.get(made.name) or next((path.with_name(made.name) for path in beside), None)
+        if place is not None and made.is_file():
+            made.replace(place)
 
 
 class _Program:
