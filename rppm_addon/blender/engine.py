@@ -3,10 +3,10 @@
 
 import bpy
 
-from ..scene.passes import COMBINED, NOISY_IMAGE, aov_passes
+from ..scene.passes import COMBINED, NOISY_IMAGE, aov_passes, light_group_passes
 from . import viewport
 from .baking import bake
-from .export.passes import aovs_of_layer, passes_of_layer
+from .export.passes import aovs_of_layer, light_groups_of_layer, passes_of_layer
 from .final import render_final
 
 
@@ -30,7 +30,8 @@ class RppmRenderEngine(bpy.types.RenderEngine):
         self.register_pass(scene, renderlayer, COMBINED, 4, "RGBA", "COLOR")
         noisy = (NOISY_IMAGE,) if scene.rppm.use_denoising else ()
         aovs = aov_passes(aovs_of_layer(renderlayer))
-        for entry in (*noisy, *passes_of_layer(renderlayer), *aovs):
+        groups = light_group_passes(light_groups_of_layer(renderlayer))
+        for entry in (*noisy, *passes_of_layer(renderlayer), *aovs, *groups):
             self.register_pass(scene, renderlayer, entry.name, len(entry.channels), entry.channels, entry.kind.value)
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:

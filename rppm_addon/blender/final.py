@@ -4,13 +4,14 @@
 import logging
 import re
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
-from ..pictures import PictureError
+from ..pictures import PictureError, PictureName
 from ..scene import Scene, cryptomatte
 from ..scene.errors import RppmError, SceneError
 from ..scene.passes import COMBINED
@@ -20,7 +21,7 @@ from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
 from ..session.still_keeper import StillKeeper, continued_still
 from . import background, broken_frames, renderer_process, renderer_thread
-from .export import ExportStopped, FrameExporter, export_scene, is_blurred, wants_neighbors
+from .export import ExportStopped, Eye, FrameExporter, export_scene, is_blurred, views_of, wants_neighbors
 from .export.camera.camera import frame_size
 from .following import follow
 from .reports import RenderKind, RenderReport, record, record_error
@@ -41,13 +42,18 @@ WARNINGS_SHOWN = 8
 
 
 def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
-    """Render the depsgraph's view layer into the engine's result.
+    """Render the depsgraph's view layer into the engine's result, in each of its views.
 
     Errors end in the engine's error text and report; nothing is raised.
     """
     observer = current_observer()
     try:
-        _render(engine, depsgraph, observer)
+        layer = depsgraph.view_layer_eval.name
+        views = views_of(engine, layer)
+        for number, view in enumerate(views):
+            if view:
+                engine.active_view_set(view)
+            _render(engine, depsgraph, observer, _View(PictureName(layer, view), number, len(views)))
     except ExportStopped:
         logger.info("the render was stopped during the export")
     except RppmError as error:
@@ -62,7 +68,19 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
         )
 
 
-def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> None:
+@dataclass(frozen=True)
+class _View:
+    """One of the views of a view layer."""
+
+    name: PictureName
+    number: int = 0
+    count: int = 1
+
+
+def _render(
+    engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver, view: _View
+) -> None:
+    observer.on_picture(view.name)
     scene = _export(engine, depsgraph, observer)
     told = list(scene.warnings)
     report_warnings(engine, told)
@@ -70,8 +88,8 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
         return
     engine.update_stats("", "Preparing the graphics device")
     # Whoever follows the render, as the rppm program does, keeps it as it likes.
-    checkpoint = checkpoint_of(engine, depsgraph) if type(observer) is RenderObserver else None
-    job = _FinalJob(engine, scene, depsgraph, observer, checkpoint)
+    checkpoint = checkpoint_of(engine, depsgraph, view.name.view) if type(observer) is RenderObserver else None
+    job = _FinalJob(engine, scene, depsgraph, observer, checkpoint, view)
     try:
         result = render_scene(engine, scene, job)
         job.finish_keeping()
@@ -81,7 +99,7 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
         raise
     job.end(cancel=False)
     if not engine.is_preview:
-        _stamp(engine, scene, depsgraph.view_layer_eval.name, result.statistics)
+        _stamp(engine, scene, view.name, result.statistics)
     # The statistics repeat the scene's warnings, which have been reported.
     found = dict.fromkeys((*result.statistics.warnings, *scene.warnings))
     report_warnings(engine, [text for text in found if text not in told])
@@ -90,9 +108,10 @@ def _render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     observer.on_finish(result, scene)
 
 
-def _stamp(engine: bpy.types.RenderEngine, scene: Scene, layer: str, statistics: "RenderStatistics") -> None:
+def _stamp(engine: bpy.types.RenderEngine, scene: Scene, name: PictureName, statistics: "RenderStatistics") -> None:
     """Tell files of the picture what Blender does not know of it."""
-    fields = cryptomatte.metadata(scene, f"{layer}.")
+    fields = cryptomatte.metadata(scene, name.prefix)
+    layer = ".".join(filter(None, (name.layer, name.view)))
     fields |= {
         f"rppm.{layer}.samples": str(statistics.iterations),
         f"rppm.{layer}.photons": str(statistics.photons),
@@ -100,8 +119,8 @@ def _stamp(engine: bpy.types.RenderEngine, scene: Scene, layer: str, statistics:
         f"rppm.{layer}.device": statistics.device,
     }
     result = engine.get_result()
-    for name, value in fields.items():
-        result.stamp_data_add_field(field=name, value=value)
+    for field, value in fields.items():
+        result.stamp_data_add_field(field=field, value=value)
 
 
 def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observer: RenderObserver) -> Scene:
@@ -121,13 +140,14 @@ def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
             depsgraph,
             lambda: engine.test_break() or observer.should_stop(),
             lambda text: engine.update_stats("", text),
+            Eye(engine),
         )
     )
 
 
-def checkpoint_of(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Path | None:
+def checkpoint_of(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, view: str = "") -> Path | None:
     """Where a final render is to be kept: in a place for the frame's number (#), which animations need, and a file for
-    each view layer."""
+    each view layer and view."""
     stored = getattr(depsgraph.scene, "rppm", None)
     text = "" if stored is None or engine.is_preview else bpy.path.abspath(stored.checkpoint_path)
     if not text or (engine.is_animation and "#" not in Path(text).name):
@@ -137,6 +157,8 @@ def checkpoint_of(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph
     name = re.sub("#+", lambda place: f"{frame:0{len(place[0])}d}", path.name.removesuffix(".exr"))
     if sum(layer.use for layer in depsgraph.scene.view_layers) > 1:
         name += f"_{bpy.path.clean_name(depsgraph.view_layer_eval.name)}"
+    if view:
+        name += f"_{bpy.path.clean_name(view)}"
     return path.with_name(f"{name}.exr")
 
 
@@ -214,12 +236,13 @@ class _FinalJob(RenderJob):
         source: bpy.types.Depsgraph,
         observer: RenderObserver,
         checkpoint: Path | None,
+        view: _View,
     ) -> None:
         """source: what the scene was exported from; checkpoint: where the user wants the render to be kept."""
         self._engine = engine
         self._scene = scene
-        self._layer = source.view_layer_eval.name
-        self._names = f"{source.scene.name}, {self._layer}"
+        self._view = view
+        self._names = ", ".join(filter(None, (source.scene.name, view.name.layer, view.name.view)))
         self._observer = observer
         self.checkpoint = checkpoint
         self._keeper: StillKeeper | None = None
@@ -247,7 +270,7 @@ class _FinalJob(RenderJob):
 
     def on_progress(self, progress: "Progress") -> bool:
         self._observer.on_progress(progress)
-        self._engine.update_progress(progress.fraction)
+        self._engine.update_progress((self._view.number + progress.fraction) / self._view.count)
         self._peak_bytes = max(self._peak_bytes, progress.memory_bytes)
         used, peak = progress.memory_bytes / MEGABYTE, self._peak_bytes / MEGABYTE
         self._engine.update_memory_stats(memory_used=used, memory_peak=peak)
@@ -277,7 +300,9 @@ class _FinalJob(RenderJob):
         started = time.monotonic()
         if self._result is None:
             width, height = self._scene.camera.resolution
-            self._result = self._engine.begin_result(0, 0, width, height, layer=self._layer)
+            self._result = self._engine.begin_result(
+                0, 0, width, height, layer=self._view.name.layer, view=self._view.name.view
+            )
         pictures = {COMBINED: frame.combined, **frame.passes}
         for render_pass in self._result.layers[0].passes:
             picture = pictures.get(render_pass.name)

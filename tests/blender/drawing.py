@@ -27,6 +27,13 @@ class RecordingLayout:
         assert icon in ICONS
         self.record.properties.append(name)
 
+    def prop_search(self, data, name, search_data, search_name, **_):
+        assert search_name in search_data.bl_rna.properties
+        self.prop(data, name)
+
+    def menu(self, menu, text="", icon="NONE"):
+        assert hasattr(bpy.types, menu) and icon in ICONS
+
     def label(self, text="", icon="NONE"):
         assert isinstance(text, str) and icon in ICONS
         self.record.labels.append(text)

@@ -55,15 +55,14 @@ volume_preview_step_rate volume_max_steps volume_biased
 
 WITHOUT_BEARING = {
     "Object": f"{_OBJECT_EVALUATED_BY_BLENDER} {_SHOWN_IN_WINDOWS_ONLY} {_OTHER_ENGINES} "
-    # Volumes are named where they are exported; rays leave surfaces of RPPM by an offset of its own; light groups are a
-    # pass that is not offered.
-    "visible_volume_scatter shadow_terminator_normal_offset shadow_terminator_geometry_offset lightgroup",
+    # Volumes are named where they are exported; rays leave surfaces of RPPM by an offset of its own.
+    "visible_volume_scatter shadow_terminator_normal_offset shadow_terminator_geometry_offset",
     "PointLight": _LIGHT,
     "SpotLight": _LIGHT,
     "SunLight": _LIGHT,
     "AreaLight": _LIGHT,
     "World": """
-        animation_data use_eevee_finite_volume light_settings lightgroup probe_resolution sun_threshold sun_angle
+        animation_data use_eevee_finite_volume light_settings probe_resolution sun_threshold sun_angle
         use_sun_shadow sun_shadow_maximum_resolution sun_shadow_filter_radius use_sun_shadow_jitter
         sun_shadow_jitter_overblur
     """,
@@ -77,7 +76,7 @@ WITHOUT_BEARING = {
         specular_intensity metallic line_color line_priority is_grease_pencil lineart
     """,
     "Camera": """
-        passepartout_alpha angle_x angle_y display_size stereo show_limits show_mist show_passepartout show_safe_areas
+        passepartout_alpha angle_x angle_y display_size show_limits show_mist show_passepartout show_safe_areas
         show_safe_center show_name show_sensor show_background_images lens_unit composition_guide_color
         show_composition_center show_composition_center_diagonal show_composition_thirds show_composition_golden
         show_composition_golden_tria_a show_composition_golden_tria_b show_composition_harmony_tri_a
@@ -88,8 +87,8 @@ WITHOUT_BEARING = {
     + " custom_filepath custom_shader custom_mode custom_bytecode custom_bytecode_hash cycles_custom",
     "CameraDOFSettings": "",
     "ViewLayer": """
-        pass_alpha_threshold eevee active_aov active_aov_index lightgroups active_lightgroup active_lightgroup_index
-        use_pass_cryptomatte_accurate use_solid use_sky use_ao use_strand use_volumes use_grease_pencil
+        pass_alpha_threshold eevee active_aov active_aov_index active_lightgroup active_lightgroup_index
+        use_pass_cryptomatte_accurate use_ao use_strand use_volumes use_grease_pencil
         active_layer_collection has_export_collections use_freestyle freestyle_settings
     """,
     "RenderSettings": """
@@ -98,8 +97,8 @@ WITHOUT_BEARING = {
         use_compositing use_sequencer use_file_extension file_extension use_lock_interface use_render_cache
         use_stamp_frame_range use_stamp_lens use_stamp_marker use_stamp_sequencer_strip use_stamp_render_time use_stamp
         use_stamp_labels metadata_input use_stamp_memory use_stamp_hostname stamp_font_size stamp_foreground
-        stamp_background sequencer_gl_preview use_sequencer_override_scene_strip use_single_layer views stereo_views
-        use_multiview views_format has_multiple_engines use_spherical_stereo simplify_subdivision
+        stamp_background sequencer_gl_preview use_sequencer_override_scene_strip use_single_layer stereo_views
+        views_format has_multiple_engines use_spherical_stereo simplify_subdivision
         simplify_child_particles simplify_subdivision_render simplify_child_particles_render simplify_volumes
         use_simplify_normals simplify_gpencil simplify_gpencil_onplay simplify_gpencil_antialiasing
         simplify_gpencil_view_fill simplify_gpencil_modifier simplify_gpencil_shader_fx simplify_gpencil_tint

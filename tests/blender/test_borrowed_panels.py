@@ -28,6 +28,7 @@ COUNTERPARTS = {
     "CYCLES_MATERIAL_PT_volume": "RPPM_PT_material_volume",
     "CYCLES_PT_context_material": "EEVEE_MATERIAL_PT_context_material",
     # object
+    "CYCLES_OBJECT_PT_lightgroup": "RPPM_PT_object_light_group",
     "CYCLES_OBJECT_PT_motion_blur": "RPPM_PT_object_motion_blur",
     "CYCLES_OBJECT_PT_visibility": "OBJECT_PT_visibility",
     "CYCLES_OBJECT_PT_visibility_ray_visibility": "RPPM_PT_ray_visibility",
@@ -62,7 +63,10 @@ COUNTERPARTS = {
     "CYCLES_VIEW3D_PT_simplify_greasepencil": "RPPM_PT_simplify_greasepencil",
     # output and view layer
     "CYCLES_PT_post_processing": "RENDER_PT_post_processing",
+    "CYCLES_RENDER_PT_filter": "RPPM_PT_filter",
     "CYCLES_RENDER_PT_passes": "RPPM_PT_passes",
+    "CYCLES_RENDER_PT_passes_lightgroups": "RPPM_PT_passes_light_groups",
+    "VIEWLAYER_PT_layer_passes_lightgroups": "RPPM_PT_passes_light_groups",
     "CYCLES_RENDER_PT_passes_data": "RPPM_PT_passes",
     # world
     "CYCLES_WORLD_PT_preview": "RPPM_PT_world_preview",
@@ -74,21 +78,18 @@ EXCLUDED = {
     "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are refused",
     "CYCLES_LIGHT_PT_settings": f"portals, bounces and unshadowed lights: {NOT_RENDERED}",
     "CYCLES_MATERIAL_PT_settings_volume": OF_CYCLES,
-    "CYCLES_OBJECT_PT_lightgroup": f"light groups: {NOT_RENDERED}",
     "CYCLES_OBJECT_PT_shading_caustics": "caustics need no switch",
     "CYCLES_OBJECT_PT_shading_gi_approximation": OF_CYCLES,
     "CYCLES_OBJECT_PT_visibility_culling": OF_CYCLES,
     "CYCLES_RENDER_PT_curves": f"hair: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_curves_viewport_display": f"hair: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_debug": OF_CYCLES,
-    "CYCLES_RENDER_PT_filter": f"kinds of objects in a view layer: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_light_paths_caustics": "caustics need no switch",
     "CYCLES_RENDER_PT_light_paths_clamping": "nothing is clamped",
     "CYCLES_RENDER_PT_light_paths_fast_gi": OF_CYCLES,
     "CYCLES_RENDER_PT_passes_aov": f"passes of materials: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_passes_crypto": f"Cryptomatte: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_passes_light": f"passes of light: {NOT_RENDERED}",
-    "CYCLES_RENDER_PT_passes_lightgroups": f"light groups: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_performance_final_render": "persistent data is not kept",
     "CYCLES_RENDER_PT_performance_threads": "the graphics device renders",
     "CYCLES_RENDER_PT_performance_viewport": "the viewport finds its resolution itself",
@@ -100,7 +101,6 @@ EXCLUDED = {
     "CYCLES_WORLD_PT_ray_visibility": NOT_RENDERED,
     "CYCLES_WORLD_PT_volume": NOT_RENDERED,
     "OBJECT_PT_shadow_terminator": OF_CYCLES,
-    "VIEWLAYER_PT_layer_passes_lightgroups": f"light groups: {NOT_RENDERED}",
 }
 """Panels of Cycles that RPPM has nothing for, and why."""
 OLDER = {

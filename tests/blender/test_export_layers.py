@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_object, export, new_material, set_world
+from blender_scenes import add_light, add_mesh, add_object, export, new_material, set_world
 from emission import world_map
 
 from rppm_addon.blender.export import SceneSync
@@ -102,3 +102,24 @@ def test_a_scene_that_lives_on_follows_its_layer(masked):
     assert [material.name for material in followed().materials] == ["Clay"]
     layer.material_override = None
     assert len(followed().materials) > 1
+
+
+def test_filters_leave_out_the_environment_and_surfaces(scene):
+    """As in Cycles: no light comes from what is left out; lamps remain, and the mist's settings."""
+    add_mesh(scene, "Quad")
+    add_light(scene, "POINT")
+    world = set_world(scene, (1.0, 1.0, 1.0))
+    world.mist_settings.start = 3.0
+    layer, sync = scene.view_layers[0], SceneSync(viewport=False)
+
+    def follow():
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return sync.update(depsgraph, export_camera(scene, depsgraph, Report()))
+
+    assert follow().world.graph is not None and len(follow().instances) == 1
+    layer.use_sky = layer.use_solid = False
+    for found in (follow(), export(scene)):
+        assert found.world.graph is None and not found.world.radiance.any() and found.world.mist.start == 3.0
+        assert not found.instances and len(found.lights) == 1
+    layer.use_solid = True
+    assert len(follow().instances) == 1

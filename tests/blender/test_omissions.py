@@ -86,6 +86,12 @@ def see_through(scene):
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
 
 
+def look_around_with_both_eyes(scene):
+    scene.render.use_multiview = True
+    scene.camera.data.type = "PANO"
+    scene.camera.data.stereo.use_spherical_stereo = True
+
+
 USES = {
     "Hair of particle systems": add_hair,
     "Light Linking": link_light("receiver_collection"),
@@ -101,6 +107,7 @@ USES = {
     "Culling (Simplify)": simplify("use_camera_cull", True),
     "Texture Limit (Simplify)": simplify("texture_limit_render", "512"),
     "Rolling Shutter": roll,
+    "Spherical Stereo": look_around_with_both_eyes,
     "Transparent Glass": see_through,
 }
 ALL = (*omissions.OF_OBJECTS, *omissions.OF_SCENES)

@@ -73,3 +73,35 @@ def test_with_motion_blur_there_are_none(renderer, moving):
     assert scene.neighbors is None and scene.shutter is not None
     scene.settings = scene.settings.with_values(iterations=1, photons=64)
     assert not renderer.render(scene).frame.passes["Vector"].any()
+
+
+PANORAMAS = {
+    "EQUIRECTANGULAR": {},
+    "CENTRAL_CYLINDRICAL": {},
+    "EQUIANGULAR_CUBEMAP_FACE": {},
+    "MIRRORBALL": {},
+    "FISHEYE_EQUIDISTANT": {"fisheye_fov": 3.0},
+    "FISHEYE_EQUISOLID": {"fisheye_lens": 10.5, "fisheye_fov": 3.0},
+    "FISHEYE_LENS_POLYNOMIAL": {"fisheye_fov": 2.4},
+}
+
+
+@pytest.mark.parametrize("kind", PANORAMAS)
+def test_vectors_of_panoramas_are_those_of_cycles(renderer, moving, tmp_path, kind):
+    data = moving.camera.data
+    if kind not in data.bl_rna.properties["panorama_type"].enum_items:
+        pytest.skip("not in this version of Blender")
+    data.animation_data_clear()
+    data.type, data.panorama_type = "PANO", kind
+    for name, value in PANORAMAS[kind].items():
+        setattr(data, name, value)
+    expected = cycles_vectors(moving, tmp_path)
+    scene = taken_scene()
+    assert scene.neighbors is not None and scene.warnings == []
+    scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64)
+    vectors = renderer.render(scene).frame.passes["Vector"]
+    shown = expected.any(axis=-1) & (np.abs(expected).max(axis=-1) < 20.0)  # not across the edge
+    same = np.isclose(vectors, expected, rtol=5e-3, atol=2e-3).all(axis=-1)
+    assert shown.sum() > 100
+    assert same[shown].mean() > 0.95, "more than edges differ"
+    assert (np.abs(expected[shown]).max(axis=0) > 0.2).all()

@@ -11,6 +11,7 @@ from ...scene.garbage import collector_paused
 from ...session.bake_passes import BakePass
 from .baking import BakePixels, bake_settings, camera_beside, look_at_texels, seen_from
 from .camera.camera import export_camera
+from .camera.eyes import Eye, views_of
 from .camera.view import export_view
 from .context import ExportContext
 from .frames import FrameExporter
@@ -30,6 +31,7 @@ __all__ = [
     "BakePixels",
     "ExportProgress",
     "ExportStopped",
+    "Eye",
     "FrameExporter",
     "SceneError",
     "SceneSync",
@@ -39,6 +41,7 @@ __all__ = [
     "export_settings",
     "export_view",
     "is_blurred",
+    "views_of",
     "wants_neighbors",
 ]
 
@@ -56,7 +59,7 @@ def export_scene(
     """
     context = _context_of(depsgraph, engine, should_stop)
     report, source = context.report, depsgraph.scene_eval
-    scene = Scene(camera=export_camera(source, depsgraph, report))
+    scene = Scene(camera=export_camera(source, depsgraph, report, eye=Eye(engine)))
     scene.settings = export_settings(source, depsgraph.view_layer)
     if engine is not None and engine.is_preview:
         scene.settings = preview_settings(scene.settings)
@@ -68,8 +71,6 @@ def export_scene(
     _tell_omissions(depsgraph, context.report)
     if blurred or neighbors:
         placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
-    if neighbors and scene.camera.panorama is not None:
-        report.warn("the pass Vector is left out: it is not rendered for panoramas")
     scene.lights = placed.lights + suns
     _fill(scene, depsgraph, context, objects, placed)
     return scene

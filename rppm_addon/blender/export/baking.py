@@ -69,6 +69,7 @@ def bake_settings(settings: RenderSettings, bake_pass: BakePass, pixels: BakePix
         settings,
         passes=bake_pass.passes,
         aovs=(),
+        light_groups=(),
         use_denoising=settings.use_denoising and bake_pass.is_denoised and pixels.is_picture,
         film_transparent=settings.film_transparent and bake_pass.has_alpha,
     )

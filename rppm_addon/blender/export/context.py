@@ -21,6 +21,12 @@ class ExportContext:
     material_override: bpy.types.Material | None = None
     """What all surfaces of the view layer have in place of their materials."""
     masks: LayerMasks = field(default_factory=LayerMasks)
+    use_environment: bool = True
+    """Whether the view layer has the world's light."""
+    use_surfaces: bool = True
+    """Whether it has surfaces."""
+    has_light_groups: bool = False
+    """Whether objects are asked for theirs."""
     owner_reads: int = 0
     """How often an attribute was read from the owners."""
 
@@ -37,3 +43,5 @@ class ExportContext:
         self.owners = (layer, scene, world_of(depsgraph))
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
+        self.use_environment, self.use_surfaces = layer.use_sky, layer.use_solid
+        self.has_light_groups = len(depsgraph.view_layer.lightgroups) > 0

@@ -8,6 +8,7 @@ import bpy
 
 from ...scene import Scene
 from .camera.camera import export_camera
+from .camera.eyes import Eye
 from .report import Report
 from .stamps import export_stamps
 from .sync import SceneSync
@@ -23,12 +24,12 @@ class FrameExporter:
         """should_stop and show of the render that is exported."""
 
     def export(
-        self, depsgraph: bpy.types.Depsgraph, should_stop: Callable[[], bool], show: Callable[[str], None]
+        self, depsgraph: bpy.types.Depsgraph, should_stop: Callable[[], bool], show: Callable[[str], None], eye: Eye
     ) -> Scene:
         """What a render of the depsgraph needs, as export_scene gives it; only what has changed since the render
         before is read. Raises the errors of export_scene.
 
-        show: takes what is being exported.
+        show: takes what is being exported. eye: of the view that is rendered.
         """
         # Blender makes a new depsgraph for another layer, but may tell as little of it as of one that has changed.
         layer = depsgraph.scene.session_uid, depsgraph.view_layer_eval.name
@@ -37,15 +38,15 @@ class FrameExporter:
         self._sync, self._layer = None, layer
         self._render = should_stop, show
         try:
-            scene = self._exported(depsgraph, sync or SceneSync(viewport=False, make_report=self._new_report))
+            scene = self._exported(depsgraph, sync or SceneSync(viewport=False, make_report=self._new_report), eye)
         finally:
             self._render = None  # it may hold the engine, which holds this
         return scene
 
-    def _exported(self, depsgraph: bpy.types.Depsgraph, sync: SceneSync) -> Scene:
+    def _exported(self, depsgraph: bpy.types.Depsgraph, sync: SceneSync, eye: Eye) -> Scene:
         report = self._new_report()
         report.progress("Exporting the scene")
-        camera = export_camera(depsgraph.scene_eval, depsgraph, report)
+        camera = export_camera(depsgraph.scene_eval, depsgraph, report, eye=eye)
         scene = sync.update(depsgraph, camera)
         self._sync = sync
         warnings = [*report.warnings, *scene.warnings] if report.warnings else scene.warnings

@@ -15,11 +15,28 @@ def world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
     return getattr(depsgraph.view_layer_eval, "world_override", None) or depsgraph.scene_eval.world
 
 
-def overrides_of(layer: bpy.types.ViewLayer) -> tuple[object, ...]:
-    """What tells whether a layer makes the same of its scene as before."""
+def overrides_of(depsgraph: bpy.types.Depsgraph) -> tuple[object, ...]:
+    """What tells whether a depsgraph's view layer makes the same of its scene as before."""
+    layer = depsgraph.view_layer_eval
     override, world = layer.material_override, getattr(layer, "world_override", None)
     blocks = [None if block is None else block.original.session_uid for block in (override, world)]
-    return (*blocks, *_masks(layer.layer_collection))
+    groups = _light_groups(depsgraph.view_layer, world_of(depsgraph))
+    return (*blocks, layer.use_sky, layer.use_solid, *_masks(layer.layer_collection), *groups)
+
+
+def light_group_of(owner: bpy.types.Object | bpy.types.World) -> str:
+    """The name of its light group. Blender neither tells when that changes nor evaluates it anew."""
+    return owner.original.lightgroup
+
+
+def _light_groups(layer: bpy.types.ViewLayer, world: bpy.types.World | None) -> Iterator[tuple[object, ...]]:
+    """What belongs to which."""
+    if len(layer.lightgroups) == 0:
+        return
+    yield tuple(layer.lightgroups.keys())
+    for owner in (*([world] if world is not None else []), *layer.objects):
+        if group := light_group_of(owner):
+            yield owner.original.session_uid, group
 
 
 def _masks(collection: bpy.types.LayerCollection) -> Iterator[_Mask]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...scene import CameraMovement, Deformation, Instance, Light, Mesh, Movement, Scene, Shutter
 from .camera.camera import camera_pose, export_camera
+from .camera.eyes import Eye
 from .context import ExportContext
 from .meshes.meshes import read_shape, read_velocities
 from .objects.matrices import usable_matrices
@@ -76,6 +77,7 @@ class MotionExporter:
         self._neighbors = neighbors
         self._depsgraph = depsgraph
         self._engine = engine
+        self._eye = Eye(engine)
         self._context = context
         self._flags: dict[tuple[int, int], tuple[int, bool]] = {}
         self._matrices: dict[Identity, dict[float, np.ndarray]] = {}
@@ -95,7 +97,7 @@ class MotionExporter:
         seconds = length * render.fps_base / render.fps
         middle = frame if self._neighbors else frame + _MIDDLES[render.motion_blur_position] * length
         curve = shutter_curve(render.motion_blur_shutter_curve)
-        camera = source.camera.original  # markers may switch to another one in between
+        camera = self._eye.camera_of(source).original  # markers may switch to another one in between
         times = self._all_times()
         try:
             if middle != frame:
@@ -133,7 +135,7 @@ class MotionExporter:
         images.frame = of_frame
         objects.meshes.forget(read_edits(self._depsgraph).shapes)
         source, report = self._depsgraph.scene_eval, self._context.report
-        scene.camera = export_camera(source, self._depsgraph, report, camera)
+        scene.camera = export_camera(source, self._depsgraph, report, camera, self._eye)
         return objects.export(self._depsgraph, identify=True)
 
     def _all_times(self) -> list[float]:
@@ -207,7 +209,7 @@ class MotionExporter:
         evaluated = camera.evaluated_get(self._depsgraph)
         steps, _ = self._flags_of(evaluated)
         if steps and time in step_times(steps):
-            pose = camera_pose(evaluated, self._depsgraph.scene_eval.render)
+            pose = camera_pose(evaluated, self._depsgraph.scene_eval.render, self._eye)
             if pose is not None:
                 self._cameras[time] = pose
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...scene.passes import ALWAYS_TAKEN, PASSES, RenderPass
+from ...scene.passes import ALWAYS_TAKEN, PASSES, RenderPass, light_group_passes
 
 
 def switch_of(layer: bpy.types.ViewLayer, entry: RenderPass) -> tuple[bpy.types.bpy_struct | None, str]:
@@ -15,9 +15,15 @@ def switch_of(layer: bpy.types.ViewLayer, entry: RenderPass) -> tuple[bpy.types.
 def aovs_of_layer(layer: bpy.types.ViewLayer) -> tuple[str, ...]:
     """The AOVs of a view layer, as settings have them; those that have the name of another pass are left out: Blender
     shows that beside them."""
-    taken = ALWAYS_TAKEN | {entry.name for entry in passes_of_layer(layer)}
+    others = (*passes_of_layer(layer), *light_group_passes(light_groups_of_layer(layer)))
+    taken = ALWAYS_TAKEN | {entry.name for entry in others}
     valid = {aov.name: aov.type for aov in layer.aovs if aov.is_valid and aov.name not in taken}
     return tuple(f"{name}.{'X' if kind == 'VALUE' else 'RGBA'}" for name, kind in valid.items())
+
+
+def light_groups_of_layer(layer: bpy.types.ViewLayer) -> tuple[str, ...]:
+    """The names of a view layer's light groups."""
+    return tuple(layer.lightgroups.keys())
 
 
 def passes_of_layer(layer: bpy.types.ViewLayer) -> tuple[RenderPass, ...]:

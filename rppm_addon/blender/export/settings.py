@@ -10,7 +10,7 @@ from ...scene import RenderSettings
 from ...scene.passes import COMBINED
 from ...scene.setting_info import settings_of
 from ..properties import VIEWPORT_APART, viewport_property
-from .passes import aovs_of_layer, passes_of_layer
+from .passes import aovs_of_layer, light_groups_of_layer, passes_of_layer
 
 
 def export_settings(
@@ -31,6 +31,7 @@ def export_settings(
     elif layer is not None:
         settings.passes = tuple(entry.name for entry in passes_of_layer(layer))
         settings.aovs = aovs_of_layer(layer)
+        settings.light_groups = light_groups_of_layer(layer)
     stored = getattr(scene, "rppm", None)
     if stored is not None:
         names = [info.property_of(name) for name, info in settings_of(RenderSettings).items() if not info.where]

@@ -197,7 +197,7 @@ class SceneSync:
         """What has changed, of which shapes are forgotten and materials exported again; and whether those ask for
         other attributes of meshes."""
         edits = read_edits(depsgraph)
-        overrides = overrides_of(depsgraph.view_layer_eval)
+        overrides = overrides_of(depsgraph)
         if edits.images or overrides != self._overrides or 0 < self._most_images < len(self._images.images):
             self._begin()
             self._overrides = overrides

@@ -13,7 +13,6 @@ UNFIT = {
     "NODE_DATA_PT_light": "as DATA_PT_light",
     "NODE_DATA_PT_spot": "as DATA_PT_light",
     "DATA_PT_falloff_curve": "light falls off with the square of the distance; nodes change that",
-    "DATA_PT_camera_stereoscopy": "one eye is rendered",
     "DATA_PT_volume_render": "volumes are not rendered",
     "MATERIAL_PT_freestyle_line": "as RENDER_PT_freestyle",
     "OBJECT_PT_shading": "is empty without Cycles' panels in it",
@@ -22,7 +21,6 @@ UNFIT = {
     "RENDER_PT_simplify_greasepencil": "as RENDER_PT_simplify",
     "RENDER_PT_simplify_render": "as RENDER_PT_simplify",
     "RENDER_PT_simplify_viewport": "as RENDER_PT_simplify",
-    "RENDER_PT_stereoscopy": "one eye is rendered",
     "VIEWLAYER_PT_layer_passes": "is empty without the panels of other engines",
 }
 """Panels for all engines that promise something that RPPM does not do, and what."""

@@ -89,6 +89,41 @@ class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
             mask.prop(thing, "is_shadow_catcher")
 
 
+def _draw_light_group(column: bpy.types.UILayout, owner: bpy.types.ID, layer: bpy.types.ViewLayer) -> None:
+    """The group of an object or a world, and a button that gives the view layer such a group."""
+    row = column.row(align=True)
+    row.prop_search(owner, "lightgroup", layer, "lightgroups", text="Light Group", results_are_suggestions=True)
+    button = row.row(align=True)
+    button.enabled = bool(owner.lightgroup) and owner.lightgroup not in layer.lightgroups
+    button.operator("scene.view_layer_add_lightgroup", icon="ADD", text="").name = owner.lightgroup
+
+
+class RPPM_PT_object_light_group(RppmPanel, bpy.types.Panel):
+    bl_label = "Light Group"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.object is not None and context.object.type in _VISIBLE_TYPES
+
+    def draw(self, context: bpy.types.Context) -> None:
+        _draw_light_group(self.column(), context.object, context.view_layer)
+
+
+class RPPM_PT_world_light_group(RppmPanel, bpy.types.Panel):
+    bl_label = "Light Group"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "world"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.world is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        _draw_light_group(self.column(), context.world, context.view_layer)
+
+
 _VISIBLE_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "LIGHT"}
 """Objects that are rendered."""
 
@@ -101,4 +136,6 @@ CLASSES = (
     RPPM_PT_world_preview,
     RPPM_PT_world_surface,
     RPPM_PT_ray_visibility,
+    RPPM_PT_object_light_group,
+    RPPM_PT_world_light_group,
 )

@@ -2,7 +2,11 @@
 """Panels of the view layer tab."""
 
 import bpy
-from bl_ui.properties_view_layer import ViewLayerAOVPanelHelper, ViewLayerCryptomattePanelHelper
+from bl_ui.properties_view_layer import (
+    ViewLayerAOVPanelHelper,
+    ViewLayerCryptomattePanelHelper,
+    ViewLayerLightgroupsPanelHelper,
+)
 
 from ...scene.passes import PASSES, Accumulation
 from ..export.passes import switch_of
@@ -33,6 +37,28 @@ class RPPM_PT_passes_aov(RppmPanel, ViewLayerAOVPanelHelper, bpy.types.Panel):
     bl_parent_id = "RPPM_PT_passes"
 
 
+class RPPM_PT_passes_light_groups(RppmPanel, ViewLayerLightgroupsPanelHelper, bpy.types.Panel):
+    bl_label = "Light Groups"
+    bl_context = "view_layer"
+    bl_parent_id = "RPPM_PT_passes"
+
+
+class RPPM_PT_filter(RppmPanel, bpy.types.Panel):
+    bl_label = "Filter"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "view_layer"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layer = context.view_layer
+        include = self.column().column(heading="Include")
+        include.prop(layer, "use_sky", text="Environment")
+        include.prop(layer, "use_solid", text="Surfaces")
+        if hasattr(layer, "use_motion_blur"):  # Blender 5
+            use = self.layout.column(heading="Use")
+            use.active = context.scene.render.use_motion_blur
+            use.prop(layer, "use_motion_blur", text="Motion Blur")
+
+
 class RPPM_PT_override(RppmPanel, bpy.types.Panel):
     bl_label = "Override"
     bl_options = {"DEFAULT_CLOSED"}
@@ -51,4 +77,11 @@ class RPPM_PT_override(RppmPanel, bpy.types.Panel):
         column.prop(layer, "samples")
 
 
-CLASSES = (RPPM_PT_passes, RPPM_PT_passes_cryptomatte, RPPM_PT_passes_aov, RPPM_PT_override)
+CLASSES = (
+    RPPM_PT_passes,
+    RPPM_PT_passes_cryptomatte,
+    RPPM_PT_passes_aov,
+    RPPM_PT_passes_light_groups,
+    RPPM_PT_filter,
+    RPPM_PT_override,
+)

@@ -8,17 +8,25 @@ from ....scene import Camera
 from ....scene.errors import SceneError
 from ..objects.matrices import rigid
 from ..report import Report
+from .eyes import Eye
 from .lens import export_aperture, export_panorama
+
+_SINGLE = Eye()
 
 
 def export_camera(
-    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, report: Report, used: bpy.types.Object | None = None
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    report: Report,
+    used: bpy.types.Object | None = None,
+    eye: Eye = _SINGLE,
 ) -> Camera:
     """The scene's active camera, or the one that is used in its place, as evaluated in the depsgraph.
 
+    eye: of the view that is rendered.
     Raises SceneError when there is no camera that can be used.
     """
-    used = used or scene.camera
+    used = used or eye.camera_of(scene)
     if used is None:
         raise SceneError("the scene has no camera; add one, or make one active with Scene properties > Camera")
     camera_object = used.evaluated_get(depsgraph)
@@ -34,7 +42,7 @@ def export_camera(
             "set its lens type to Perspective, Orthographic or Panoramic"
         )
     try:
-        matrix, mirrored = rigid(np.array(camera_object.matrix_world, np.float64))
+        matrix, mirrored = rigid(eye.matrix_of(camera_object))
     except ValueError:
         raise SceneError(
             f'the matrix of camera "{camera_object.name}" cannot be inverted; '
@@ -47,7 +55,7 @@ def export_camera(
     panoramic = camera.type == "PANO"
     return Camera(
         matrix=matrix,
-        window=window(camera, across, upward),
+        window=window(camera, across, upward, eye.shift_of(camera_object)),
         width=width,
         height=height,
         orthographic=camera.type == "ORTHO",
@@ -60,14 +68,14 @@ def export_camera(
 
 
 def camera_pose(
-    camera_object: bpy.types.Object, render: bpy.types.RenderSettings
+    camera_object: bpy.types.Object, render: bpy.types.RenderSettings, eye: Eye
 ) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
     """Matrix and window of an evaluated camera object that export_camera takes; None where its matrix is singular."""
     try:
-        matrix, _ = rigid(np.array(camera_object.matrix_world, np.float64))
+        matrix, _ = rigid(eye.matrix_of(camera_object))
     except ValueError:
         return None
-    return matrix, window(camera_object.data, *frame_shape(render, *frame_size(render)))
+    return matrix, window(camera_object.data, *frame_shape(render, *frame_size(render)), eye.shift_of(camera_object))
 
 
 def frame_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
@@ -83,13 +91,14 @@ def frame_shape(render: bpy.types.RenderSettings, width: int, height: int) -> tu
 
 
 def window(
-    camera: bpy.types.Camera, across: float, upward: float, flat: bool = False
+    camera: bpy.types.Camera, across: float, upward: float, shift_x: float | None = None, flat: bool = False
 ) -> tuple[float, float, float, float]:
     """left, right, bottom, top: tangents for a perspective camera, meters for an orthographic one, shares of a
-    panorama's frame, which is ``across`` by ``upward`` pixel widths. flat: of a panorama, those of the perspective
-    view that Blender draws of it."""
+    panorama's frame, which is ``across`` by ``upward`` pixel widths. shift_x: in place of the camera's own. flat: of a
+    panorama, those of the perspective view that Blender draws of it."""
+    shift_x = camera.shift_x if shift_x is None else shift_x
     if camera.type == "PANO" and not flat:
-        return camera.shift_x, camera.shift_x + 1.0, camera.shift_y, camera.shift_y + 1.0
+        return shift_x, shift_x + 1.0, camera.shift_y, camera.shift_y + 1.0
     fit = camera.sensor_fit
     if fit == "AUTO":
         fit = "HORIZONTAL" if across >= upward else "VERTICAL"
@@ -102,7 +111,7 @@ def window(
         size = sensor / camera.lens
     half_width, half_height = 0.5 * size * across / fitted, 0.5 * size * upward / fitted
     # Shifts are in units of the fitted side.
-    x, y = camera.shift_x * size, camera.shift_y * size
+    x, y = shift_x * size, camera.shift_y * size
     return x - half_width, x + half_width, y - half_height, y + half_height
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from ....materials.emitted import Emits, emits, light_variation
 from ....scene import Light, LightKind, NodeGraph
 from ..context import ExportContext
+from ..layers import light_group_of
 from ..nodes.graphs import GraphExporter
 from ..report import Report
 from ..visibility import visibility_of
@@ -35,6 +36,7 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
         visibility=visibility_of(light_object),
         graph=graph,
         photon_weight=data.rppm.photon_weight if hasattr(data, "rppm") else 1.0,
+        light_group=light_group_of(light_object),
     )
     normalize = getattr(data, "normalize", True)
     if light.kind in {LightKind.POINT, LightKind.SPOT}:

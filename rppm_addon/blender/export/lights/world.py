@@ -11,6 +11,7 @@ from ....materials.sky.sun import sun_disc
 from ....scene import Light, LightKind, Link, Mist, NodeGraph, ShaderNode, World
 from ....scene.sky import Sky
 from ..context import ExportContext
+from ..layers import light_group_of
 from ..nodes.graphs import GraphExporter
 from ..nodes.links import node_tree
 
@@ -22,9 +23,11 @@ def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple
     """The environment, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
         return World(), []
-    environment, suns = _environment(world, context)
+    environment, suns = _environment(world, context) if context.use_environment else (World(), [])
     mist = world.mist_settings
     environment.mist = Mist(mist.start, mist.depth, _EXPONENTS[mist.falloff])
+    for light in (environment, *suns):
+        light.light_group = light_group_of(world)
     return environment, suns
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ....scene import Instance, Light, RayVisibility
 from ..context import ExportContext
+from ..layers import light_group_of
 from ..lights.lights import export_light
 from ..meshes.attributes import attribute_of
 from ..meshes.mesh_table import MeshTable
@@ -66,6 +67,7 @@ class InstanceReader:
             holdout,
             source.is_shadow_catcher,
             self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
+            self._light_group(source),
         )
 
     def light(self, source: bpy.types.Object, matrix: np.ndarray) -> Light | None:
@@ -95,7 +97,16 @@ class InstanceReader:
             "holdout": holdout,
             "shadow_catcher": source.is_shadow_catcher,
             "attributes": self.attribute_values(source, materials, instancer),
+            "light_group": self._light_group(source),
         }
+
+    def _light_group(self, source: bpy.types.Object) -> str:
+        return light_group_of(source) if self._context.has_light_groups else ""
+
+    @property
+    def use_surfaces(self) -> bool:
+        """Whether the view layer has anything but lights."""
+        return self._context.use_surfaces
 
     @property
     def has_masks(self) -> bool:

@@ -119,10 +119,13 @@ class ObjectPass:
             if number % 256 == 0:
                 self._report.progress(f"Exporting objects ({number})")
             # Only valid inside the loop: Blender reuses the memory for the next instance.
+            source = instance.object
+            if not (self._reader.use_surfaces or source.type == "LIGHT"):
+                continue
             if instance.is_instance:
-                self._export_multiplied(instance, instance.object, matrices[number])
+                self._export_multiplied(instance, source, matrices[number])
             elif instance.show_self:
-                self._export_alone(instance, instance.object, matrices[number])
+                self._export_alone(instance, source, matrices[number])
         self._convert()
         self._keep_usable()
         self._tell_missing()
@@ -230,6 +233,7 @@ class ObjectPass:
             holdout,
             shading["shadow_catcher"],
             shading["attributes"],
+            shading["light_group"],
         )
         if kind.asks_instancer:
             placed.attributes = self._reader.attribute_values(source, placed.materials, parent)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What stereo and multiview make of a render's camera."""
+
+import bpy
+import numpy as np
+
+
+class Eye:
+    """Where cameras stand, and how far they are shifted, for the view that an engine is rendering."""
+
+    def __init__(self, engine: bpy.types.RenderEngine | None = None) -> None:
+        """engine: None, or one whose render has a single view, takes cameras as they are."""
+        has_views = engine is not None and not engine.is_preview and engine.render.use_multiview
+        self._engine = engine if has_views else None
+
+    def camera_of(self, scene: bpy.types.Scene) -> bpy.types.Object | None:
+        """The camera that the view is seen by: with multiview each may have its own."""
+        return scene.camera if self._engine is None else self._engine.camera_override or scene.camera
+
+    def matrix_of(self, camera: bpy.types.Object) -> np.ndarray:
+        """(4, 4) float64, camera to world."""
+        matrix = camera.matrix_world if self._engine is None else self._engine.camera_model_matrix(camera)
+        return np.array(matrix, np.float64)
+
+    def shift_of(self, camera: bpy.types.Object) -> float:
+        """To the right, as Blender has it."""
+        return camera.data.shift_x if self._engine is None else self._engine.camera_shift_x(camera)
+
+
+def views_of(engine: bpy.types.RenderEngine, layer: str) -> list[str]:
+    """The names of the views that a view layer is rendered in; "" is the only one without multiview."""
+    if engine.is_preview or not engine.render.use_multiview:
+        return [""]
+    result = engine.begin_result(0, 0, 1, 1, layer=layer)
+    names = list(result.views.keys())
+    engine.end_result(result, cancel=True)
+    return names

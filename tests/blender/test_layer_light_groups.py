@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light groups of view layers: what is exported of them, and their passes in Blender's files and compositor."""
+
+import bpy
+import numpy as np
+import OpenEXR
+import pytest
+from blender_scenes import add_mesh, add_object, export, set_world
+from drawing import context_of, drawn
+
+from rppm_addon.blender.export import SceneSync
+from rppm_addon.blender.export.camera.camera import export_camera
+from rppm_addon.blender.export.report import Report
+
+
+@pytest.fixture
+def grouped(lit):
+    """``lit`` with the groups key, of its lights, and world, of the world, and an object in a group that there is
+    not."""
+    for name in ("key", "world"):
+        lit.view_layers[0].lightgroups.add(name=name)
+    for member in lit.objects:
+        if member.type == "LIGHT":
+            member.lightgroup = "key"
+    set_world(lit, (0.5, 0.5, 0.5)).lightgroup = "world"
+    bpy.data.objects["Quad"].lightgroup = "nobody"
+    return lit
+
+
+def test_groups_are_exported(grouped):
+    scene = export(grouped)
+    assert scene.settings.light_groups == ("key", "world")
+    assert {light.light_group for light in scene.lights} == {"key"}
+    assert scene.world.light_group == "world"
+    assert [instance.light_group for instance in scene.instances] == ["nobody"]
+
+
+def test_instances_have_the_group_of_their_object(grouped):
+    source = bpy.data.collections.new("Source")
+    inner = add_mesh(grouped, "Inner", lightgroup="key")
+    grouped.collection.objects.unlink(inner)
+    source.objects.link(inner)
+    empty = add_object(grouped, "Empty", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", source
+    groups = {instance.object_name: instance.light_group for instance in export(grouped).instances}
+    assert groups == {"Quad": "nobody", "Inner": "key"}
+
+
+def test_a_scene_that_lives_on_follows_its_groups(grouped):
+    """Of which Blender tells nothing."""
+    sync = SceneSync(viewport=False)
+
+    def follow():
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return sync.update(depsgraph, export_camera(grouped, depsgraph, Report()))
+
+    assert {light.light_group for light in follow().lights} == {"key"}
+    next(member for member in grouped.objects if member.type == "LIGHT").lightgroup = "world"
+    assert {light.light_group for light in follow().lights} == {"world"}
+    grouped.view_layers[0].lightgroups.add(name="rim")
+    assert follow().settings.light_groups == ("key", "world", "rim")
+
+
+def test_files_have_the_passes(grouped, tmp_path):
+    settings = grouped.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    grouped.render.filepath = str(tmp_path / "picture.exr")
+    bpy.ops.render.render(write_still=True)
+    with OpenEXR.File(grouped.render.filepath, separate_channels=True) as file:
+        planes = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
+    for channel in "RGB":
+        key, world = (planes[f"ViewLayer.Combined_{group}.{channel}"] for group in ("key", "world"))
+        np.testing.assert_allclose(key + world, planes[f"ViewLayer.Combined.{channel}"], rtol=1e-5, atol=1e-6)
+        assert key.max() > 0.0 and world.max() > 0.0
+
+
+def test_panels_show_them(grouped):
+    context = context_of(grouped, object=bpy.data.objects["Quad"], world=grouped.world)
+    for name in ("RPPM_PT_object_light_group", "RPPM_PT_world_light_group"):
+        assert drawn(getattr(bpy.types, name), context).properties == ["lightgroup"], name
+    view_layer = drawn(bpy.types.RPPM_PT_passes_light_groups, context)
+    assert view_layer.properties == ["lightgroups"]

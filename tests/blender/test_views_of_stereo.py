@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Views of stereo and multiview: what each is exported with, and where its picture goes."""
+
+import bpy
+import numpy as np
+import pytest
+
+from rppm_addon.pictures import PictureName
+from rppm_addon.session.checkpoint_file import read_summary
+from rppm_addon.session.observers import RenderObserver, observing
+
+DISTANCE = 0.2
+
+
+class Taker(RenderObserver):
+    """Takes the scene of each picture and has none of them rendered."""
+
+    def __init__(self):
+        self.names, self.scenes = [], []
+
+    def on_picture(self, name):
+        self.names.append(name)
+
+    def on_scene(self, scene):
+        self.scenes.append(scene)
+        return False
+
+
+@pytest.fixture
+def stereo(lit):
+    """``lit`` seen in perspective by both eyes around the camera."""
+    data = lit.camera.data
+    data.type, data.stereo.interocular_distance, data.stereo.pivot = "PERSP", DISTANCE, "CENTER"
+    lit.render.use_multiview = True
+    return lit
+
+
+def taken():
+    taker = Taker()
+    with observing(taker):
+        bpy.ops.render.render()
+    assert taker.names == [PictureName("ViewLayer", eye) for eye in ("left", "right")]
+    return taker.scenes
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+def test_each_view_has_the_camera_that_blender_gives(stereo, persistent):
+    stereo.render.use_persistent_data = persistent
+    left, right = (scene.camera for scene in taken())
+    np.testing.assert_allclose(left.matrix[:3, 3], (-0.5 * DISTANCE, 0.0, 5.0), atol=1e-6)
+    np.testing.assert_allclose(right.matrix[:3, 3], (0.5 * DISTANCE, 0.0, 5.0), atol=1e-6)
+    assert left.window[0] + left.window[1] == pytest.approx(-right.window[0] - right.window[1])
+    assert left.window[0] + left.window[1] > 0.0  # toward the middle
+
+
+def test_views_move_as_the_camera_does(stereo):
+    camera = stereo.camera
+    for frame, x in ((1, 0.0), (3, 2.0)):
+        camera.location.x = x
+        camera.keyframe_insert("location", frame=frame)
+    stereo.render.use_motion_blur, stereo.render.motion_blur_position = True, "CENTER"
+    stereo.frame_set(2)
+    for scene, aside in zip(taken(), (-0.5 * DISTANCE, 0.5 * DISTANCE), strict=True):
+        movement = scene.shutter.camera
+        assert scene.camera.matrix[0, 3] == pytest.approx(1.0 + aside, abs=1e-5)
+        np.testing.assert_allclose(movement.matrices[:, 0, 3].mean(), 1.0 + aside, atol=1e-3)
+        assert np.ptp(movement.matrices[:, 0, 3]) > 0.1
+
+
+def test_checkpoints_are_of_each_view(stereo, tmp_path):
+    stereo.rppm.samples, stereo.rppm.checkpoint_path = 1, str(tmp_path / "kept.exr")
+    bpy.ops.render.render()
+    for eye in ("left", "right"):
+        assert read_summary(tmp_path / f"kept_{eye}.exr").iteration == 1
+
+
+def test_one_view_is_left_alone(stereo):
+    stereo.render.views["right"].use = False
+    taker = Taker()
+    with observing(taker):
+        bpy.ops.render.render()
+    assert taker.names == [PictureName("ViewLayer", "left")]
