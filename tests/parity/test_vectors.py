@@ -87,7 +87,7 @@ PANORAMAS = {
 
 
 @pytest.mark.parametrize("kind", PANORAMAS)
-def test_vectors_of_panoramas_are_those_of_cycles(renderer, moving, tmp_path, kind):
+def test_vectors_of_panoramas_are_those_of_cycles(renderer, moving, kind):
     data = moving.camera.data
     if kind not in data.bl_rna.properties["panorama_type"].enum_items:
         pytest.skip("not in this version of Blender")
@@ -95,7 +95,7 @@ def test_vectors_of_panoramas_are_those_of_cycles(renderer, moving, tmp_path, ki
     data.type, data.panorama_type = "PANO", kind
     for name, value in PANORAMAS[kind].items():
         setattr(data, name, value)
-    expected = cycles_vectors(moving, tmp_path)
+    expected = cycles_vectors()
     scene = taken_scene()
     assert scene.neighbors is not None and scene.warnings == []
     scene.settings = scene.settings.with_values(filter_width=0.0, iterations=1, photons=64)
