@@ -72,8 +72,8 @@ def mirrors(targets: str) -> list[str]:
     return list(dict.fromkeys(field[0] for field in fields if field[1:] == [CODENAME, "main"]))
 
 
-def download(folder: Path) -> list[Path]:
-    """Fetch the packages of Mesa and of its libdrm into an empty folder. Raises UnavailableError."""
+def _configure(folder: Path) -> str:
+    """Have apt work in an empty folder, with backports; returns the argument that tells it. Raises UnavailableError."""
     wanted = "$(REPO_URI) $(RELEASE) $(COMPONENT)"
     addresses = mirrors(_run(["apt-get", "indextargets", "--format", wanted, "Created-By: Packages"]))
     if not addresses:
@@ -86,13 +86,36 @@ def download(folder: Path) -> list[Path]:
         (folder / name).mkdir(parents=True)
     configured = f"--config-file={folder / 'apt.conf'}"
     _run(["apt-get", configured, "update"], check=False)  # of several mirrors one may have no backports
+    return configured
+
+
+def _fetch(folder: Path, configured: str, names: Sequence[str]) -> list[Path]:
+    _run(["apt-get", configured, "download", *(f"{name}/{BACKPORTS}" for name in names)], folder / "packages")
+    return sorted((folder / "packages").glob("*.deb"))
+
+
+def download(folder: Path) -> list[Path]:
+    """Fetch the packages of Mesa and of its libdrm into an empty folder. Raises UnavailableError."""
+    configured = _configure(folder)
     try:
         needed = _run(["apt-cache", configured, "depends", "--important", f"mesa-libgallium/{BACKPORTS}"]).split()
     except UnavailableError as error:
         raise UnavailableError(f"{BACKPORTS} cannot be reached, or have no Mesa") from error
     names = ["mesa-libgallium", "libegl-mesa0", "libgbm1", *(name for name in needed if name.startswith("libdrm"))]
-    _run(["apt-get", configured, "download", *(f"{name}/{BACKPORTS}" for name in names)], folder / "packages")
-    return sorted((folder / "packages").glob("*.deb"))
+    return _fetch(folder, configured, names)
+
+
+def unpack_shims(folder: Path) -> None:
+    """Put Mesa's drm-shim into a folder, unless it is there. Raises UnavailableError."""
+    if folder.exists():
+        return
+    if system_release() != RELEASE:
+        raise UnavailableError("drm-shim comes with Debian 12's backports, and this is another system")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder.parent) as temporary:
+        for package in _fetch(Path(temporary), _configure(Path(temporary)), ["mesa-drm-shim"]):
+            _run(["dpkg-deb", "--extract", str(package), f"{temporary}/unpacked"])
+        Path(temporary, "unpacked").replace(folder)
 
 
 def unpack(folder: Path) -> str:
@@ -148,5 +171,15 @@ def main(folder: Path = FOLDER) -> int:
     return 0
 
 
+def main_shims(folder: Path) -> int:
+    """Unpack drm-shim; returns the exit status."""
+    try:
+        unpack_shims(folder)
+    except (UnavailableError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main_shims(Path(sys.argv[2])) if sys.argv[1:2] == ["--shims"] else main())

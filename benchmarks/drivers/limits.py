@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What programs may need of a processor: spills nothing and leaves room for enough waves, or no more than is kept."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .statistics import Statistics
+
+FILE = Path(__file__).resolve().parent / "limits.json"
+_LEAST = 0.25
+"""Of a processor's waves: fewer hide no latency of memory."""
+_SLACK = 1.1
+"""Other versions of a program that spills anyway spill a little more or less."""
+
+
+def is_light(code: Statistics, most_waves: int) -> bool:
+    """Whether code of a program needs no word of its own."""
+    return code.spills == 0 and code.waves >= _LEAST * most_waves
+
+
+@dataclass
+class Limits:
+    """Those of heavy programs by the names of program and driver, for a version of Mesa."""
+
+    mesa: str
+    heavy: dict[str, dict[str, Statistics]] = field(default_factory=dict)
+
+    @classmethod
+    def load(cls, file: Path = FILE) -> "Limits":
+        """Those that are kept."""
+        found = json.loads(file.read_text(encoding="utf-8"))
+        heavy = {
+            program: {driver: Statistics(**code) for driver, code in drivers.items()}
+            for program, drivers in found["heavy"].items()
+        }
+        return cls(found["mesa"], heavy)
+
+    def store(self, file: Path = FILE) -> None:
+        """Keep them."""
+        lines = [
+            f"  {json.dumps(program)}: {{\n"
+            + ",\n".join(f"   {json.dumps(driver)}: {json.dumps(vars(code))}" for driver, code in drivers.items())
+            + "\n  }"
+            for program, drivers in sorted(self.heavy.items())
+        ]
+        text = f'{{\n "mesa": {json.dumps(self.mesa)},\n "heavy": {{\n' + ",\n".join(lines) + "\n }\n}\n"
+        file.write_text(text, encoding="utf-8")
+
+    def complaint(self, program: str, driver: str, code: Statistics, most_waves: int) -> str:
+        """What is worse than it may be; empty where nothing is."""
+        if is_light(code, most_waves):
+            return ""
+        kept = self.heavy.get(program, {}).get(driver)
+        if kept is None:
+            return f"{code.waves} of {most_waves} waves, {code.spills} spills, {code.registers} registers: it was light"
+        if code.waves < kept.waves:
+            return f"{code.waves} of {most_waves} waves ({code.registers} registers), {kept.waves} so far"
+        if code.spills > math.ceil(_SLACK * kept.spills):
+            return f"{code.spills} spills, {kept.spills} so far"
+        return ""
+
+    def keep(self, driver: str, found: Mapping[str, Statistics], most_waves: int) -> None:
+        """Take what a driver makes of all programs in place of what was kept of it."""
+        for drivers in self.heavy.values():
+            drivers.pop(driver, None)
+        for program, code in found.items():
+            if not is_light(code, most_waves):
+                self.heavy.setdefault(program, {})[driver] = code
+        self.heavy = {program: drivers for program, drivers in self.heavy.items() if drivers}

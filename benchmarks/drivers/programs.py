@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All programs of RPPM: every stage file with the defines that its lint lines name, and with every kind of node."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from rppm_addon.gl.sources import Source
+from tests.support.every_node import programs as node_programs
+from tests.support.shader_declarations import Variant, variants
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program by its name and the stages that are linked together, each by the suffix of its file."""
+
+    name: str
+    stages: dict[str, Source]
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """What the driver gets."""
+        return {stage: source.text for stage, source in self.stages.items()}
+
+    @property
+    def digest(self) -> str:
+        """The same for the same texts."""
+        return hashlib.sha256(json.dumps(self.texts, sort_keys=True).encode()).hexdigest()
+
+    def name_lines(self, message: str) -> str:
+        """A driver's message with our files' names; of a draw, as if it spoke of the fragment shader."""
+        return (self.stages.get("frag") or self.stages["comp"]).name_lines(message)
+
+
+def all_programs() -> list[Program]:
+    """Compute programs and draws: a fragment shader is drawn with the only vertex shader in its folder."""
+    checked = variants()
+    graphs = {text: source.removesuffix(".glsl") for source, text in node_programs().items()}
+    vertices = {PurePosixPath(variant.name).parent: variant for variant in checked if variant.name.endswith(".vert")}
+    return list(_programs(checked, graphs, vertices))
+
+
+def _programs(
+    checked: list[Variant], graphs: dict[str, str], vertices: dict[PurePosixPath, Variant]
+) -> Iterator[Program]:
+    for variant in checked:
+        path = PurePosixPath(variant.name)
+        words = [variant.name, *sorted(variant.defines), *([graphs[variant.generated]] if variant.generated else [])]
+        if path.suffix == ".comp":
+            yield Program(" ".join(words), {"comp": variant.expand()})
+        elif path.suffix == ".frag":
+            yield Program(" ".join(words), {"vert": vertices[path.parent].expand(), "frag": variant.expand()})

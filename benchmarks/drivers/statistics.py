@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What drivers print about the code that they have made of a program."""
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Of a program, that is of the worst of its stages."""
+
+    registers: int
+    """Of a thread; 0 where the driver does not tell."""
+    spills: int
+    """Registers kept in memory, or, where the driver counts these, the reads and writes of such."""
+    waves: int
+    """That a processor of the device has room for at a time; of Intel, the threads of one."""
+
+
+def worst(stages: Iterable[Statistics]) -> Statistics | None:
+    """Of the stages of a program, or of none."""
+    found = list(stages)
+    if not found:
+        return None
+    return Statistics(
+        max(stage.registers for stage in found), sum(stage.spills for stage in found), min(s.waves for s in found)
+    )
+
+
+def _reader(pattern: str, convert: Callable[..., Statistics]) -> Callable[[str], list[Statistics]]:
+    compiled = re.compile(pattern)
+    return lambda text: [convert(*map(int, match.groups())) for match in compiled.finditer(text)]
+
+
+def _maxwell(local: int, registers: int) -> Statistics:
+    """Of 65,536 registers of a multiprocessor, 256 at a time, for 64 warps of 32 at most."""
+    return Statistics(registers, local // 4, min(64, 65536 // (-(-32 * registers // 256) * 256)))
+
+
+radeonsi = _reader(
+    r"VGPRS: (\d+) .*?Max Waves: (\d+) Spilled SGPRs: (\d+) Spilled VGPRs: (\d+)",
+    lambda registers, waves, scalars, vectors: Statistics(registers, scalars + vectors, waves),
+)
+nouveau = _reader(r"local: (\d+), shared: \d+, gpr: (\d+)", _maxwell)
+iris = _reader(
+    r"SIMD(\d+) shader: .*?(\d+):(\d+) spills:fills",
+    lambda width, spills, fills: Statistics(0, spills + fills, width),
+)
