@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -72,14 +72,17 @@ def mirrors(targets: str) -> list[str]:
     return list(dict.fromkeys(field[0] for field in fields if field[1:] == [CODENAME, "main"]))
 
 
-def _configure(folder: Path) -> str:
-    """Have apt work in an empty folder, with backports; returns the argument that tells it. Raises UnavailableError."""
+def _configure(folder: Path, kind: str = "deb") -> str:
+    """Have apt work in an empty folder, with backports; returns the argument that tells it. Raises UnavailableError.
+
+    kind: ``deb`` for packages, ``deb-src`` for sources.
+    """
     wanted = "$(REPO_URI) $(RELEASE) $(COMPONENT)"
     addresses = mirrors(_run(["apt-get", "indextargets", "--format", wanted, "Created-By: Packages"]))
     if not addresses:
         raise UnavailableError(f"the system's package sources have no {CODENAME} main")
     signed = f"[signed-by={KEYRING}] " if KEYRING.exists() else ""
-    lines = [f"deb {signed}{address} {BACKPORTS} main\n" for address in addresses]
+    lines = [f"{kind} {signed}{address} {BACKPORTS} main\n" for address in addresses]
     (folder / "sources.list").write_text("".join(lines), encoding="utf-8")
     (folder / "apt.conf").write_text(_CONFIGURATION.format(folder=folder), encoding="utf-8")
     for name in ("lists/partial", "cache/archives/partial", "packages"):
@@ -105,17 +108,40 @@ def download(folder: Path) -> list[Path]:
     return _fetch(folder, configured, names)
 
 
-def unpack_shims(folder: Path) -> None:
-    """Put Mesa's drm-shim into a folder, unless it is there. Raises UnavailableError."""
+def fetch_shims(folder: Path) -> Path:
+    """Unpack Mesa's drm-shim within an empty folder, and say where. Raises UnavailableError."""
+    for package in _fetch(folder, _configure(folder), ["mesa-drm-shim"]):
+        _run(["dpkg-deb", "--extract", str(package), str(folder / "unpacked")])
+    return folder / "unpacked"
+
+
+def fetch_source(folder: Path) -> Path:
+    """Unpack Mesa's sources within an empty folder, and say where. Raises UnavailableError."""
+    configured = _configure(folder, "deb-src")
+    _run(["apt-get", configured, "source", "--tar-only", "--download-only", f"mesa/{BACKPORTS}"], folder / "packages")
+    (folder / "unpacked").mkdir()
+    for archive in (folder / "packages").glob("*.orig.tar.xz"):
+        _run(["tar", "--extract", "--file", str(archive), "--strip-components=1"], folder / "unpacked")
+    return folder / "unpacked"
+
+
+EXTRAS: dict[str, Callable[[Path], Path]] = {"--shims": fetch_shims, "--source": fetch_source}
+
+
+def unpack_extra(fetch: Callable[[Path], Path], folder: Path) -> int:
+    """Have what is fetched in a folder, unless it is there; returns the exit status."""
     if folder.exists():
-        return
-    if system_release() != RELEASE:
-        raise UnavailableError("drm-shim comes with Debian 12's backports, and this is another system")
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder.parent) as temporary:
-        for package in _fetch(Path(temporary), _configure(Path(temporary)), ["mesa-drm-shim"]):
-            _run(["dpkg-deb", "--extract", str(package), f"{temporary}/unpacked"])
-        Path(temporary, "unpacked").replace(folder)
+        return 0
+    try:
+        if system_release() != RELEASE:
+            raise UnavailableError("it comes with Debian 12's backports, and this is another system")
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder.parent) as temporary:
+            fetch(Path(temporary)).replace(folder)
+    except (UnavailableError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
 
 
 def unpack(folder: Path) -> str:
@@ -171,15 +197,6 @@ def main(folder: Path = FOLDER) -> int:
     return 0
 
 
-def main_shims(folder: Path) -> int:
-    """Unpack drm-shim; returns the exit status."""
-    try:
-        unpack_shims(folder)
-    except (UnavailableError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main_shims(Path(sys.argv[2])) if sys.argv[1:2] == ["--shims"] else main())
+    extra = EXTRAS.get(sys.argv[1]) if len(sys.argv) == 3 else None
+    sys.exit(unpack_extra(extra, Path(sys.argv[2])) if extra else main())

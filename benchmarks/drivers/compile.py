@@ -9,6 +9,7 @@ import ctypes
 import json
 import sys
 import time
+from pathlib import Path
 
 import moderngl
 
@@ -77,8 +78,7 @@ def main(programs: str, results: str) -> None:
     messages: list[str] = []
     callback = listen(messages)
     rows = []
-    with open(programs, encoding="utf-8") as file:
-        wanted = json.load(file)
+    wanted = json.loads(Path(programs).read_text(encoding="utf-8"))
     for number, stages in enumerate(wanted):
         print(f"{MARK}{number}", file=sys.stderr, flush=True)
         messages.clear()
@@ -97,8 +97,7 @@ def main(programs: str, results: str) -> None:
         "limits": {name: gl.info[name] for name in _LIMITS if name in gl.info},
         "programs": rows,
     }
-    with open(results, "w", encoding="utf-8") as file:
-        json.dump(found, file)
+    Path(results).write_text(json.dumps(found), encoding="utf-8")
 
 
 if __name__ == "__main__":

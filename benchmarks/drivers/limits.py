@@ -23,9 +23,10 @@ def is_light(code: Statistics, most_waves: int) -> bool:
 
 @dataclass
 class Limits:
-    """Those of heavy programs by the names of program and driver, for a version of Mesa."""
+    """Those of heavy programs by the names of program and driver."""
 
-    mesa: str
+    versions: dict[str, str] = field(default_factory=dict)
+    """Of each driver: another makes other code, with which they say nothing."""
     heavy: dict[str, dict[str, Statistics]] = field(default_factory=dict)
 
     @classmethod
@@ -36,7 +37,7 @@ class Limits:
             program: {driver: Statistics(**code) for driver, code in drivers.items()}
             for program, drivers in found["heavy"].items()
         }
-        return cls(found["mesa"], heavy)
+        return cls(found["versions"], heavy)
 
     def store(self, file: Path = FILE) -> None:
         """Keep them."""
@@ -46,7 +47,8 @@ class Limits:
             + "\n  }"
             for program, drivers in sorted(self.heavy.items())
         ]
-        text = f'{{\n "mesa": {json.dumps(self.mesa)},\n "heavy": {{\n' + ",\n".join(lines) + "\n }\n}\n"
+        heavy = ",\n".join(lines)
+        text = f'{{\n "versions": {json.dumps(self.versions, indent=2)},\n "heavy": {{\n{heavy}\n }}\n}}\n'
         file.write_text(text, encoding="utf-8")
 
     def complaint(self, program: str, driver: str, code: Statistics, most_waves: int) -> str:
@@ -62,8 +64,9 @@ class Limits:
             return f"{code.spills} spills, {kept.spills} so far"
         return ""
 
-    def keep(self, driver: str, found: Mapping[str, Statistics], most_waves: int) -> None:
+    def keep(self, driver: str, version: str, found: Mapping[str, Statistics], most_waves: int) -> None:
         """Take what a driver makes of all programs in place of what was kept of it."""
+        self.versions[driver] = version
         for drivers in self.heavy.values():
             drivers.pop(driver, None)
         for program, code in found.items():

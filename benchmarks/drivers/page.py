@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 
 from .. import ROOT
 from .lab import Driver, Outcome
-from .limits import Limits
 from .programs import Program
 
 PAGE = ROOT / "docs" / "benchmarks" / "drivers.md"
@@ -13,14 +12,12 @@ BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
 _MOST_ROWS = 24
 
 
-def write_page(
-    limits: Limits, drivers: Sequence[Driver], programs: Sequence[Program], outcomes: Mapping[str, Outcome]
-) -> None:
+def write_page(drivers: Sequence[Driver], programs: Sequence[Program], outcomes: Mapping[str, Outcome]) -> None:
     """Write the tables anew between the page's marks."""
     text = PAGE.read_text(encoding="utf-8")
     before, after = text.partition(BEGIN)[0], text.partition(END)[2]
     tables = [
-        f"Mesa {limits.mesa}, {len(programs)} programs.\n\n",
+        f"{len(programs)} programs.\n\n",
         *_driver_table(drivers, programs, outcomes),
         "\n",
         *_program_table(drivers, programs, outcomes),
@@ -28,19 +25,18 @@ def write_page(
     PAGE.write_text(before + BEGIN + "\n" + "".join(tables) + "\n" + END + after, encoding="utf-8")
 
 
-def _driver_table(
-    drivers: Sequence[Driver], programs: Sequence[Program], outcomes: Mapping[str, Outcome]
-) -> list[str]:
+def _driver_table(drivers: Sequence[Driver], programs: Sequence[Program], outcomes: Mapping[str, Outcome]) -> list[str]:
     lines = [
-        "| driver | stands for | processor s | longest program | storage blocks a stage | largest block, MiB |\n",
-        "|---|---|---:|---|---:|---:|\n",
+        "| driver | stands for | Mesa | processor s | longest program | blocks a stage | largest block, MiB |\n",
+        "|---|---|---|---:|---|---:|---:|\n",
     ]
     for driver in drivers:
         outcome = outcomes[driver.name]
         rows = {program.name: outcome.rows[program.digest] for program in programs}
         longest = max(rows, key=lambda name: rows[name].seconds)
         lines.append(
-            f"| {driver.name} | {driver.words} | {sum(row.seconds for row in rows.values()):.1f} "
+            f"| {driver.name} | {driver.words} | {outcome.version.rpartition(' ')[2].partition('-')[0]} "
+            f"| {sum(row.seconds for row in rows.values()):.1f} "
             f"| {longest}, {rows[longest].seconds:.1f} s | {outcome.limits['GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS']} "
             f"| {(outcome.limits['GL_MAX_SHADER_STORAGE_BLOCK_SIZE'] + 1) >> 20} |\n"
         )
@@ -54,6 +50,7 @@ def _program_table(
         codes = ((driver, outcomes[driver.name].rows[program.digest].statistics) for driver in drivers)
         return sum(code.waves / driver.waves for driver, code in codes if code)
 
+    drivers = [driver for driver in drivers if driver.read]
     worst = sorted(programs, key=room)[:_MOST_ROWS]
     lines = [
         f"| program | {' | '.join(f'{driver.name} (of {driver.waves})' for driver in drivers)} |\n",

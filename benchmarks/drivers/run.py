@@ -14,10 +14,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 
-from rppm_addon.gl import project_mesa
 from rppm_addon.processors import usable_cores
 
-from .lab import DRIVERS, Driver, LabError, Outcome, Row, compile_all, shim_folder, unpack_shims
+from .lab import DRIVERS, Driver, LabError, Outcome, Row, compile_all, lab_folder, prepare, version_of
 from .limits import Limits
 from .page import PAGE, write_page
 from .programs import Program, all_programs
@@ -27,15 +26,9 @@ QUICK = ("vega10 aco", "navi31 aco", "gm204 nouveau")
 """Drivers of three makes of compilers that need nothing but a download of 75 kB."""
 
 
-def mesa_version() -> str:
-    """Of the project's Mesa; empty without one."""
-    names = (path.name for path in project_mesa.libraries(project_mesa.FOLDER))
-    return next((name.removesuffix(".so").partition("-")[2] for name in names if name.startswith("libgallium-")), "")
-
-
 def _kept_file(driver: Driver) -> Path:
-    key = f"{mesa_version()} {driver.shim} {sorted(driver.environment.items())}"
-    return shim_folder() / "results" / f"{hashlib.sha256(key.encode()).hexdigest()}.json"
+    key = f"{version_of(driver)} {driver.shim} {sorted(driver.environment.items())}"
+    return lab_folder() / "results" / f"{hashlib.sha256(key.encode()).hexdigest()}.json"
 
 
 def _load(file: Path) -> Outcome | None:
@@ -66,30 +59,45 @@ def outcome_of(driver: Driver, programs: list[Program], anew: bool) -> tuple[Out
     return kept, len(new)
 
 
-def _check(driver: Driver, programs: list[Program], outcome: Outcome, limits: Limits) -> list[str]:
+def _check(driver: Driver, programs: list[Program], outcome: Outcome, limits: Limits | None) -> list[str]:
+    """What is wrong; without limits, what is wrong whatever they are."""
     complaints = []
     for program in programs:
         row = outcome.rows[program.digest]
         if row.error:
             complaints.append(f"{program.name}: {program.name_lines(row.error)[:500]}")
-        elif row.statistics is not None:
+        elif limits and row.statistics is not None:
             complaint = limits.complaint(program.name, driver.name, row.statistics, driver.waves)
             complaints += [f"{program.name}: {complaint}"] if complaint else []
     return [f"{driver.name}: {complaint}" for complaint in complaints]
 
 
-def main() -> int:
-    """Do it; returns the exit status."""
+def _keep(limits: Limits, drivers: list[Driver], programs: list[Program], outcomes: dict[str, Outcome]) -> None:
+    for driver in drivers:
+        outcome = outcomes[driver.name]
+        codes = {program.name: outcome.rows[program.digest].statistics for program in programs}
+        light = {name: code for name, code in codes.items() if code}
+        limits.keep(driver.name, outcome.version, light, driver.waves)
+    limits.store()
+    write_page(drivers, programs, outcomes)
+
+
+def _parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help=f"only {', '.join(QUICK)}, and none where none can be had")
     parser.add_argument("--only", nargs="*", metavar="DRIVER", help=", ".join(driver.name for driver in DRIVERS))
     parser.add_argument("--anew", action="store_true", help="compile what has not changed as well")
     parser.add_argument("--keep", action="store_true", help=f"write limits.json and {PAGE.name}")
-    options = parser.parse_args()
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Do it; returns the exit status."""
+    options = _parse()
     wanted = options.only or (QUICK if options.quick else [driver.name for driver in DRIVERS])
     chosen = [driver for driver in DRIVERS if driver.name in wanted]
     try:
-        unpack_shims()
+        prepare(chosen)
     except LabError as error:
         print(f"drivers: nothing is compiled: {error}", file=sys.stderr)
         return 0 if options.quick else 1
@@ -106,22 +114,17 @@ def main() -> int:
                 continue
             outcomes[driver.name] = outcome
             seconds = sum(outcome.rows[program.digest].seconds for program in programs)
-            found = _check(driver, programs, outcome, limits) if not options.keep else []
+            is_known = limits.versions.get(driver.name) == outcome.version
+            found = _check(driver, programs, outcome, limits if is_known and not options.keep else None)
             complaints += found
             print(
                 f"{driver.name:16} {len(programs)} programs, {compiled} of them compiled now: {seconds:.1f} s of "
-                f"processor time for all, {len(found) or 'no'} problems ({outcome.device}, {outcome.version})",
+                f"processor time for all, {len(found) or 'no'} problems ({outcome.device}, {outcome.version})"
+                + ("" if is_known or options.keep else "; limits.json is of another version"),
                 flush=True,
             )
-    if limits.mesa != mesa_version():
-        print(f"limits.json is of Mesa {limits.mesa}, this one is {mesa_version()}: make drivers DRIVERS=--keep")
-    if options.keep and not complaints:
-        limits.mesa = mesa_version()
-        for driver in chosen:
-            codes = {program.name: outcomes[driver.name].rows[program.digest].statistics for program in programs}
-            limits.keep(driver.name, {name: code for name, code in codes.items() if code}, driver.waves)
-        limits.store()
-        write_page(limits, chosen, programs, outcomes)
+    if options.keep:
+        _keep(limits, [driver for driver in chosen if driver.name in outcomes], programs, outcomes)
     print("\n".join(complaints))
     return 1 if complaints else 0
 

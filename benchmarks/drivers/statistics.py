@@ -15,7 +15,7 @@ class Statistics:
     spills: int
     """Registers kept in memory, or, where the driver counts these, the reads and writes of such."""
     waves: int
-    """That a processor of the device has room for at a time; of Intel, the threads of one."""
+    """That a processor of the device has room for at a time; of Intel, how many of our threads make one."""
 
 
 def worst(stages: Iterable[Statistics]) -> Statistics | None:
@@ -24,7 +24,9 @@ def worst(stages: Iterable[Statistics]) -> Statistics | None:
     if not found:
         return None
     return Statistics(
-        max(stage.registers for stage in found), sum(stage.spills for stage in found), min(s.waves for s in found)
+        max(stage.registers for stage in found),
+        max(stage.spills for stage in found),
+        min(stage.waves for stage in found),
     )
 
 
@@ -46,4 +48,8 @@ nouveau = _reader(r"local: (\d+), shared: \d+, gpr: (\d+)", _maxwell)
 iris = _reader(
     r"SIMD(\d+) shader: .*?(\d+):(\d+) spills:fills",
     lambda width, spills, fills: Statistics(0, spills + fills, width),
+)
+asahi = _reader(
+    r"(\d+) gprs, .*?(\d+) threads, .*?(\d+):(\d+) spills:fills",
+    lambda registers, threads, spills, fills: Statistics(registers, spills + fills, threads),
 )

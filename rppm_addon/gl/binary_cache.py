@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Linked programs kept on disk, where the driver offers program binaries."""
 
+import contextlib
 import ctypes
 import hashlib
+import hmac
 import logging
 import os
+import stat
 import struct
 import sys
 import tempfile
@@ -16,6 +19,7 @@ log = logging.getLogger(__name__)
 
 _PROGRAM_BINARY_LENGTH = 0x8741
 _LINK_STATUS = 0x8B82
+_DIGEST_SIZE, _KIND_SIZE = 32, 4
 
 
 def cache_folder() -> Path:
@@ -27,10 +31,32 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rppm" / "programs"
 
 
+def pack_entry(key: bytes, kind: int, binary: bytes) -> bytes:
+    """What is written of a program: a digest over key and rest, the driver's kind of binary, and the binary."""
+    body = struct.pack("<I", kind) + binary
+    return hashlib.sha256(key + body).digest() + body
+
+
+def unpack_entry(key: bytes, entry: bytes) -> tuple[int, bytes] | None:
+    """Kind and binary of what was written for this key; None where it is another's, or is not whole."""
+    digest, body = entry[:_DIGEST_SIZE], entry[_DIGEST_SIZE:]
+    if len(body) <= _KIND_SIZE or not hmac.compare_digest(digest, hashlib.sha256(key + body).digest()):
+        return None
+    return struct.unpack("<I", body[:_KIND_SIZE])[0], body[_KIND_SIZE:]
+
+
+def _is_trusted(status: os.stat_result) -> bool:
+    """Whether only the user, or root, has written what drivers will run."""
+    if sys.platform == "win32":  # where folders below the user's are the user's
+        return True
+    return status.st_uid in (os.getuid(), 0) and not status.st_mode & stat.S_IWOTH
+
+
 class BinaryCache:
     """Program binaries keyed by device, driver and source text.
 
-    A binary that the driver refuses (after an update, say) is compiled again: nothing is lost.
+    A binary that the driver refuses (after an update, say) is compiled again: nothing is lost. So is one that lies
+    where another's should, is not whole, or may be of another user: drivers believe what they are given.
     """
 
     def __init__(self, context: Context) -> None:
@@ -54,8 +80,17 @@ class BinaryCache:
         self.available = None not in (self._parameter, self._get, self._set)
         self._device = f"{context.information.name}\n{context.information.driver}\n"
 
+        folder = cache_folder()
+        with contextlib.suppress(FileNotFoundError):
+            if self.available and not _is_trusted(folder.stat()):
+                log.warning("%s is another user's, or all may write to it: programs are not kept there", folder)
+                self.available = False
+
+    def _key(self, text: str) -> bytes:
+        return hashlib.sha256((self._device + text).encode()).digest()
+
     def _path(self, text: str) -> Path:
-        return cache_folder() / (hashlib.sha256((self._device + text).encode()).hexdigest() + ".bin")
+        return cache_folder() / f"{self._key(text).hex()}.bin"
 
     def holds(self, text: str) -> bool:
         """Whether there is a binary of this source."""
@@ -66,12 +101,15 @@ class BinaryCache:
         if not self.available:
             return False
         try:
-            stored = self._path(text).read_bytes()
+            with self._path(text).open("rb") as file:
+                entry = unpack_entry(self._key(text), file.read()) if _is_trusted(os.fstat(file.fileno())) else None
         except OSError:
             return False
-        if len(stored) <= 4:
+        if entry is None:
+            log.warning("%s is not what was kept there: the program is compiled again", self._path(text))
             return False
-        self._set(program, struct.unpack("<I", stored[:4])[0], stored[4:], len(stored) - 4)
+        kind, binary = entry
+        self._set(program, kind, binary, len(binary))
         status = ctypes.c_int(0)
         self._parameter(program, _LINK_STATUS, ctypes.byref(status))
         return bool(status.value)
@@ -87,11 +125,20 @@ class BinaryCache:
         data = (ctypes.c_char * length.value)()
         kind, written = ctypes.c_uint(0), ctypes.c_int(0)
         self._get(program, length.value, ctypes.byref(written), ctypes.byref(kind), data)
-        path = self._path(text)
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-                file.write(struct.pack("<I", kind.value) + data.raw[: written.value])
-            Path(file.name).replace(path)
+            _write(self._path(text), pack_entry(self._key(text), kind.value, data.raw[: written.value]))
         except OSError as error:
             log.info("program binary not kept: %s", error)
+
+
+def _write(path: Path, entry: bytes) -> None:
+    """Whole or not at all, for no other user to change."""
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        try:
+            file.write(entry)
+            file.close()  # with what a full disk has to say of the rest
+            Path(file.name).replace(path)
+        except BaseException:
+            Path(file.name).unlink(missing_ok=True)
+            raise

@@ -16,7 +16,8 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar, overload
 
 import moderngl
 
-from .buffers import REMEDY, SMALLEST, GrowingBuffer
+from .buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
+from ..scene.errors import DeviceError
 from .context import Context
 from .programs import ProgramLibrary
 from .records import Record, stride
@@ -60,6 +61,12 @@ class Declared(Generic[Made]):
         """By name, the bytes that follow from the sizes."""
         raise NotImplementedError
 
+    def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
+        """Raise DeviceError, before anything is made, where a buffer would be larger than the device allows one to
+        be."""
+        for name, size in self.expected_bytes(sizes).items():
+            refuse_large_block(context, name, size, remedy)
+
 
 class StorageBuffer(Declared[GrowingBuffer]):
     """A buffer of ``count`` items behind a header: ``item`` and ``header`` are records, or kinds such as "vec4".
@@ -91,6 +98,10 @@ class StorageBuffer(Declared[GrowingBuffer]):
         count = self._count_for(sizes)
         return {self._name: max(self._header_size + self._item_size * count, SMALLEST)} if count else {}
 
+    def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
+        """Declared.refuse_large."""
+        super().refuse_large(context, sizes, self._remedy or remedy)
+
     def _count_for(self, sizes: object) -> int:
         return self._count(sizes) if callable(self._count) else self._count or 0
 
@@ -119,6 +130,11 @@ class StorageBuffers(Declared[BufferList]):
         """Declared.expected_bytes."""
         return sum_by_name(part.expected_bytes(sizes) for part in self._parts(sizes))
 
+    def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
+        """Declared.refuse_large."""
+        for part in self._parts(sizes):
+            part.refuse_large(context, sizes, remedy)
+
     def _parts(self, sizes: object) -> list[StorageBuffer]:
         return [StorageBuffer(self._name, self._item, count) for count in self._counts(sizes)]
 
@@ -136,6 +152,10 @@ class Part(Declared[Set]):
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """Declared.expected_bytes."""
         return self._kind.expected_bytes(sizes)
+
+    def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
+        """Declared.refuse_large."""
+        self._kind.refuse_large(context, sizes)
 
 
 class BufferSet:
@@ -169,6 +189,19 @@ class BufferSet:
     def expected_bytes(cls, sizes: object) -> dict[str, int]:
         """By name, the bytes that follow from the sizes, known before anything is allocated."""
         return sum_by_name(declared.expected_bytes(sizes) for declared in _declarations(cls).values())
+
+    @classmethod
+    def refuse_large(cls, context: Context, sizes: object) -> None:
+        """Raise DeviceError, before anything is made, where a buffer would be larger than the device allows one to be,
+        or all together than what it has left."""
+        for declared in _declarations(cls).values():
+            declared.refuse_large(context, sizes, cls.remedy)
+        needed, available = sum(cls.expected_bytes(sizes).values()), context.available_memory
+        if available is not None and needed > available:
+            raise DeviceError(
+                f"{needed / 2**20:.0f} MiB are needed but the device {context.information.name} has "
+                f"{available / 2**20:.0f} MiB left; {cls.remedy}"
+            )
 
     def release(self) -> None:
         """Give all of it back."""

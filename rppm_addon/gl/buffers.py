@@ -13,6 +13,16 @@ SMALLEST = 64
 REMEDY = "simplify the scene"
 
 
+def refuse_large_block(context: Context, name: str, size: int, remedy: str) -> None:
+    """Raise DeviceError, with the numbers and the remedy, for more bytes than the device allows in one buffer."""
+    limit = context.storage_block_limit
+    if size > limit:
+        raise DeviceError(
+            f"{name} needs {size / 2**20:.0f} MiB but the device {context.information.name} "
+            f"allows {limit / 2**20:.0f} MiB in one buffer; {remedy}"
+        )
+
+
 class GrowingBuffer:
     """A named storage buffer that is kept between frames and made anew only to grow.
 
@@ -57,12 +67,7 @@ class GrowingBuffer:
         """
         if size <= self.size:
             return False
-        limit = self._context.storage_block_limit
-        if size > limit:
-            raise DeviceError(
-                f"{self.name} needs {size / 2**20:.0f} MiB but the device {self._context.information.name} "
-                f"allows {limit / 2**20:.0f} MiB in one buffer; {self.remedy}"
-            )
+        refuse_large_block(self._context, self.name, size, self.remedy)
         available = self._context.available_memory
         if available is not None and size > available + self.size:
             raise DeviceError(

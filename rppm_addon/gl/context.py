@@ -16,15 +16,14 @@ from typing import Any
 from ..scene.errors import DeviceError
 from .devices import device_names
 from .project_mesa import load_project_mesa
+from .requirements import NEEDS, refuse_small_devices
 
 log = logging.getLogger(__name__)
 
 REQUIRED_VERSION = 430
 _LIMITS = (
     "GL_MAX_SHADER_STORAGE_BLOCK_SIZE",
-    "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS",
-    "GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS",
-    "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS",
+    *NEEDS,
     "GL_MAX_COMPUTE_WORK_GROUP_COUNT",
     "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS",
     "GL_MAX_TEXTURE_SIZE",
@@ -69,7 +68,8 @@ class Context:
         """Open a context.
 
         ``device`` is an EGL device number as text; None takes the environment variable
-        RPPM_DEVICE, then the driver's default. Raises DeviceError saying what to install.
+        RPPM_DEVICE, then the driver's default. Raises DeviceError saying what to install, or what the device
+        has too little of.
         """
         import moderngl
 
@@ -102,6 +102,11 @@ class Context:
             driver_folder=str(mesa or ""),
             devices=device_names(),
         )
+        try:
+            refuse_small_devices(information.name, information.limits)
+        except DeviceError:
+            gl.release()
+            raise
         context = cls(gl, information, device)
         if not context.has_program_binaries:
             information.missing.append("program binaries (programs are compiled at every start)")

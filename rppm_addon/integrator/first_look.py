@@ -12,9 +12,11 @@ from ..gl.records import Record
 from ..gl.storage_blocks import StorageBlock
 from ..materials.plain_surface import PlainSurface, plain_surface
 from ..materials.tables import default_material
+from ..scene.errors import DeviceError
 from ..scene.meshes import Instance, RayVisibility
 from ..scene.scene import Scene
 from ..scene.sharing import same_members
+from .common.band import MOST_RASTER_PIXELS
 from .common.camera_view import camera_view
 from .surfaces.geometry import Geometry
 
@@ -62,11 +64,13 @@ class FirstLook:
     def draw(self, scene: Scene) -> np.ndarray:
         """(height, width, 4) float32 scene-linear Rec.709, premultiplied alpha, row 0 at the bottom.
 
-        A lens is a pinhole. Raises DeviceError when the device cannot hold the scene, and SceneError for a camera
-        that sees nothing.
+        A lens is a pinhole. Raises DeviceError when the device cannot hold the scene or draw so many pixels, and
+        SceneError for a camera that sees nothing.
         """
-        self.take(scene)
         width, height = scene.camera.resolution
+        if max(width, height) > MOST_RASTER_PIXELS:
+            raise DeviceError(f"{width} x {height} pixels are more than devices draw; make the viewport smaller")
+        self.take(scene)
         self._camera.upload(camera_view(scene.camera, 0, height, (0.0, 0.0)))
         gl = self._context.moderngl
         color, depth = gl.texture((width, height), 4, dtype="f4"), gl.depth_texture((width, height))

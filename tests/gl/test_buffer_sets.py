@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import moderngl
 import pytest
 
-from rppm_addon.gl.buffer_sets import BufferSet, Part, StorageBuffer
+from rppm_addon.gl.buffer_sets import BufferSet, Part, StorageBuffer, StorageBuffers
 from rppm_addon.gl.buffers import SMALLEST
+from rppm_addon.gl.context import Context
+from rppm_addon.integrator.common.living_paths import PathList
 from rppm_addon.integrator.common.records import RAY
 from rppm_addon.scene.errors import DeviceError
 
@@ -81,3 +83,28 @@ def test_the_remedy_is_the_set_s(context, library):
         Inner(context, library, Sizes(context.storage_block_limit // RAY.size + 1))
     with pytest.raises(AttributeError, match=r"BufferSet.__init__"):
         _ = object.__new__(Inner).rocks
+
+
+class ListedAndMore(BufferSet):
+    remedy = "carry fewer"
+    parts = StorageBuffers("stones", "vec4", lambda sizes: [sizes.rocks, sizes.rocks])
+    listed = PathList("sticks", lambda sizes: sizes.sticks, to_keep=True)
+    inner = Part(Inner)
+
+
+def test_what_is_too_large_is_refused_before_anything_is_made(context, monkeypatch):
+    limit = context.storage_block_limit
+    ListedAndMore.refuse_large(context, Sizes(1, 1))
+    most = limit // RAY.size
+    ListedAndMore.refuse_large(context, Sizes(most, 1))  # stones are smaller than rays, and each part counts alone
+    for sizes, name in (
+        (Sizes(most + 1), "rocks"),
+        (Sizes(limit // 16 + 1), "stones"),
+        (Sizes(1, limit // 4), "sticks"),
+        (Sizes(1 << 62), "stones"),
+    ):
+        with pytest.raises(DeviceError, match=f"^{name} needs .* in one buffer; carry fewer$"):
+            ListedAndMore.refuse_large(context, sizes)
+    monkeypatch.setattr(Context, "available_memory", 1 << 20)
+    with pytest.raises(DeviceError, match=r"^\d+ MiB are needed but the device .* has 1 MiB left; carry fewer$"):
+        ListedAndMore.refuse_large(context, Sizes(1 << 15))

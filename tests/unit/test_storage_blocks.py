@@ -3,14 +3,17 @@
 
 import collections
 import re
+from pathlib import Path
 
 import pytest
 from support.shader_declarations import variants
 
 from rppm_addon.gl import sources
 from rppm_addon.gl.records import Record
+from rppm_addon.gl.requirements import NEEDS, refuse_small_devices
 from rppm_addon.gl.sources import SHADER_FOLDER, ShaderError, expand
 from rppm_addon.gl.storage_blocks import StorageBlock
+from rppm_addon.scene.errors import DeviceError
 
 MOST_BLOCKS = 16
 """In one stage: what every driver tried so far offers, and bindings 0 to 15."""
@@ -76,7 +79,34 @@ def test_every_block_is_in_use():
     assert not {name for name in StorageBlock.registry if not re.search(rf"\bbuffer\s+{name};", text)}
 
 
-def test_no_stage_needs_more_than_drivers_offer():
+STAGES = {"comp": "COMPUTE", "frag": "FRAGMENT", "vert": "VERTEX"}
+
+
+def test_needs_are_those_of_the_shaders():
+    needed = collections.Counter()
     for variant in variants():
-        blocks = variant.expand().blocks
-        assert len(blocks) <= MOST_BLOCKS and max(blocks.values(), default=0) < MOST_BLOCKS, variant.name
+        source = variant.expand()
+        stage = f"GL_MAX_{STAGES[Path(variant.name).suffix[1:]]}_SHADER_STORAGE_BLOCKS"
+        needed[stage] = max(needed[stage], len(source.blocks))
+        bindings = "GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"
+        needed[bindings] = max(needed[bindings], 1 + max(source.blocks.values(), default=-1))
+        if variant.name.endswith(".comp"):
+            assert source.local_size <= 1024, variant.name
+        assert "uniform image" not in source.text
+        assert all(int(unit) < 16 for unit in re.findall(r"binding = (\d+)\) uniform \w*sampler", source.text))
+    drawn = needed["GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS"] + needed["GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS"]
+    together = max(needed["GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS"], drawn)
+    needed["GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS"] = together
+    assert {limit: least for limit, (least, _) in NEEDS.items()} == needed
+    assert max(needed.values()) <= MOST_BLOCKS
+
+
+@pytest.mark.parametrize("limit", NEEDS)
+def test_a_device_that_offers_less_is_refused_in_one_line(limit):
+    offered = {name: least for name, (least, _) in NEEDS.items()}
+    refuse_small_devices("Old Card", offered)
+    refuse_small_devices("Silent Card", {})
+    offered[limit] -= 1
+    with pytest.raises(DeviceError, match=rf"Old Card offers {offered[limit]} .*RPPM needs {NEEDS[limit][0]}") as raised:
+        refuse_small_devices("Old Card", offered)
+    assert "\n" not in str(raised.value)

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 MAXIMUM_BAND_PIXELS = 1 << 18
 """Pixels of a band: bounds the memory of camera paths and the length of one dispatch."""
 
+MOST_RASTER_PIXELS = 1 << 14
+"""Along a side of what every device of OpenGL 4.3 draws into."""
+
 
 @dataclass(frozen=True)
 class Band:
@@ -28,5 +31,5 @@ class Band:
 
 def bands_of(width: int, height: int) -> list[Band]:
     """The bands of a width x height region, from below."""
-    rows = max(1, min(height, MAXIMUM_BAND_PIXELS // width))
+    rows = max(1, min(height, MAXIMUM_BAND_PIXELS // width, MOST_RASTER_PIXELS))
     return [Band(width, first, min(rows, height - first)) for first in range(0, height, rows)]

@@ -7,7 +7,7 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Count, Declared
-from ...gl.buffers import SMALLEST, GrowingBuffer
+from ...gl.buffers import SMALLEST, GrowingBuffer, refuse_large_block
 from ...gl.context import Context
 from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
@@ -139,3 +139,8 @@ class PathList(Declared[LivingPaths]):
         """Declared.expected_bytes."""
         lists = 2 if self._to_keep else 1
         return {} if self._count is None else {self._name: lists * max(LivingPaths.size(self._count(sizes)), SMALLEST)}
+
+    def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
+        """Declared.refuse_large; of two lists each may be as large."""
+        if self._count is not None:
+            refuse_large_block(context, self._name, LivingPaths.size(self._count(sizes)), self._remedy or remedy)

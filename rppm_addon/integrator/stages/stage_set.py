@@ -49,6 +49,7 @@ def _camera_hits(sizes: StageSizes) -> type[CameraHits]:
 class StageSet(BufferSet):
     """One object a stage. Scenes that agree in what ``fits`` compares take over each other's buffers."""
 
+    remedy = "lower the resolution or the photons per iteration"
     photons = Part(Photons)
     importons = Part(Importons)
     density_estimator = Part(DensityEstimator)
@@ -66,6 +67,7 @@ class StageSet(BufferSet):
     ) -> None:
         """Raises DeviceError when the device has no room for them."""
         self._sizes = StageSizes.of(scene, demands)
+        self.refuse_large(context, self._sizes)
         super().__init__(context, library, self._sizes)
         self.bands = self._sizes.bands
         self.camera_hits: CameraHits = self.own(_camera_hits(self._sizes)(context, library, self._sizes))
