@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched coverage test-gui lint pairs references parity bench bench-tools bench-export bench-peers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched coverage test-gui lint pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -90,6 +90,9 @@ bench-export: setup ## Measure what a frame costs in which everything moves (BEN
 
 bench-peers: bench-tools ## Compare with Cycles, LuxCore and Mitsuba at equal time, to out/peers/ (BENCH=--quick, --plain, --publish)
 	.venv/bin/python -m benchmarks.peers.run $(BENCH)
+
+drivers: setup ## Compile all programs on drivers of GPUs that are not there (DRIVERS=--quick: three of them, what changed)
+	.venv/bin/python -m benchmarks.drivers.run $(DRIVERS)
 
 clean: ## Remove what was made: out/, caches (.venv and .mesa stay)
 	rm -rf out .gl .pytest_cache .hypothesis .ruff_cache .mypy_cache .import_linter_cache build *.egg-info

@@ -20,6 +20,8 @@ log = logging.getLogger(__name__)
 _PROGRAM_BINARY_LENGTH = 0x8741
 _LINK_STATUS = 0x8B82
 _DIGEST_SIZE, _KIND_SIZE = 32, 4
+_FORMAT = "digest, kind, binary\n"
+"""Of an entry: those of another are other entries."""
 
 
 def cache_folder() -> Path:
@@ -87,7 +89,7 @@ class BinaryCache:
                 self.available = False
 
     def _key(self, text: str) -> bytes:
-        return hashlib.sha256((self._device + text).encode()).digest()
+        return hashlib.sha256((_FORMAT + self._device + text).encode()).digest()
 
     def _path(self, text: str) -> Path:
         return cache_folder() / f"{self._key(text).hex()}.bin"

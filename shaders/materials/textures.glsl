@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lookups in the common texel buffer.
 
+#include "common/half.glsl"
 #include <ImageEntry>
 layout(std430, binding = 7) readonly buffer Images { ImageEntry images[]; };
 layout(std430, binding = 8) readonly buffer Texels { uint texels[]; };
@@ -35,7 +36,7 @@ vec4 image_texel(ImageEntry image, ivec2 at, int extension) {
     vec4 color;
     if (image.format >= FORMAT_HALF) {
         index = image.first_texel + 2u * index;
-        color = vec4(unpackHalf2x16(texels[index]), unpackHalf2x16(texels[index + 1u]));
+        color = vec4(two_halves(texels[index]), two_halves(texels[index + 1u]));
     } else color = unpackUnorm4x8(texels[image.first_texel + index]);
     return outside ? vec4(0.0) : color;
 }

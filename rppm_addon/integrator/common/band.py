@@ -29,7 +29,12 @@ class Band:
         return self.rows * self.columns
 
 
+def rows_of_bands(width: int, height: int) -> int:
+    """Of a band of a width x height region, but for the last, which may have fewer."""
+    return max(1, min(height, MAXIMUM_BAND_PIXELS // width, MOST_RASTER_PIXELS))
+
+
 def bands_of(width: int, height: int) -> list[Band]:
     """The bands of a width x height region, from below."""
-    rows = max(1, min(height, MAXIMUM_BAND_PIXELS // width, MOST_RASTER_PIXELS))
+    rows = rows_of_bands(width, height)
     return [Band(width, first, min(rows, height - first)) for first in range(0, height, rows)]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
-from .band import Band, bands_of
+from .band import Band, bands_of, rows_of_bands
 from .camera_view import is_rasterized
 from .viewport_demands import NO_DEMANDS, ViewportDemands, with_filtered
 
@@ -80,7 +80,7 @@ def film_pixels(sizes: StageSizes) -> int:
 
 def band_pixels(sizes: StageSizes) -> int:
     """Of a band of rows, the most."""
-    return sizes.bands[0].pixel_count
+    return sizes.width * rows_of_bands(sizes.width, sizes.height)
 
 
 def aov_channels(sizes: StageSizes) -> int:

@@ -69,7 +69,7 @@ class Splatting(BufferSet):
         self._indirect_program = library.draw("splatting/quads.vert", "splatting/indirect.frag")
         self._core_program = library.compute("splatting/core.comp")
         self._resolution = _resolution(sizes)
-        self._direct_view = self.own(gl.empty_framebuffer((sizes.width, sizes.bands[0].rows)))
+        self._direct_view = self.own(gl.empty_framebuffer((min(sizes.width, MOST_RASTER_PIXELS), sizes.bands[0].rows)))
         self._cube_size = (3 * self._resolution, 2 * self._resolution)
         self._cube_view = self.own(gl.empty_framebuffer(self._cube_size))
 

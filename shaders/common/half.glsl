@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Half floats by integers alone: nouveau drops programs that call unpackHalf2x16, and tells OpenGL nothing of it.
+
+float half_to_float(uint bits) {
+    uint exponent = bitfieldExtract(bits, 10, 5), mantissa = bits & 0x3ffu;
+    uint rebased = exponent == 31u ? 255u : exponent + 112u;
+    float magnitude = exponent == 0u ? float(mantissa) * 5.9604644775390625e-8 : uintBitsToFloat(rebased << 23 | mantissa << 13);
+    return (bits & 0x8000u) != 0u ? -magnitude : magnitude;
+}
+
+// The first in the lower half.
+vec2 two_halves(uint bits) { return vec2(half_to_float(bits & 0xffffu), half_to_float(bits >> 16)); }
