@@ -80,7 +80,7 @@ def main(programs: str, results: str) -> None:
     rows = []
     wanted = json.loads(Path(programs).read_text(encoding="utf-8"))
     for number, stages in enumerate(wanted):
-        print(f"{MARK}{number}", file=sys.stderr, flush=True)
+        print(f"\n{MARK}{number}", file=sys.stderr, flush=True)
         messages.clear()
         error = ""
         start = time.process_time()
@@ -89,7 +89,6 @@ def main(programs: str, results: str) -> None:
         except moderngl.Error as raised:
             error = str(raised)
         rows.append({"seconds": time.process_time() - start, "messages": list(messages), "error": error})
-    print(MARK, file=sys.stderr, flush=True)
     del callback
     found = {
         "device": gl.info["GL_RENDERER"],

@@ -225,9 +225,10 @@ def _newest_command(driver: Driver, folder: Path) -> tuple[list[str], dict[str, 
 
 def _outcome(driver: Driver, programs: Sequence[Program], found: dict, printed: str) -> Outcome:
     outcome = Outcome(found["device"], found["version"], found["limits"])
-    parts = re.split(rf"^{MARK}\d*$", printed, flags=re.MULTILINE)[1:]
-    for program, row, part in zip(programs, found["programs"], parts, strict=False):  # a last part follows
-        said = "\n".join([part, *row["messages"]])
+    _, *marked = re.split(rf"{MARK}(\d+)\n", printed)
+    parts = dict(zip(map(int, marked[::2]), marked[1::2]))
+    for number, (program, row) in enumerate(zip(programs, found["programs"], strict=True)):
+        said = "\n".join([parts.get(number, ""), *row["messages"]])
         code = worst(driver.read(said)) if driver.read else None
         failures = [line for line in said.splitlines() if _SILENT_FAILURE.search(line)]
         made = code is not None or driver.read is None

@@ -16,8 +16,8 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar, overload
 
 import moderngl
 
-from .buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
 from ..scene.errors import DeviceError
+from .buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
 from .context import Context
 from .programs import ProgramLibrary
 from .records import Record, stride

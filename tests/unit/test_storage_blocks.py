@@ -107,6 +107,8 @@ def test_a_device_that_offers_less_is_refused_in_one_line(limit):
     refuse_small_devices("Old Card", offered)
     refuse_small_devices("Silent Card", {})
     offered[limit] -= 1
-    with pytest.raises(DeviceError, match=rf"Old Card offers {offered[limit]} .*RPPM needs {NEEDS[limit][0]}") as raised:
+    with pytest.raises(
+        DeviceError, match=rf"Old Card offers {offered[limit]} .*RPPM needs {NEEDS[limit][0]}"
+    ) as raised:
         refuse_small_devices("Old Card", offered)
     assert "\n" not in str(raised.value)

@@ -10,6 +10,7 @@ from ...gl.context import Context
 from ...gl.programs import DrawProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
+from ..common.band import MOST_RASTER_PIXELS
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import ESTIMATE_PARAMETERS, CameraRaster, StoredPhotons, TakingImportons
