@@ -69,7 +69,7 @@ import numpy as np
 
 from rppm_addon.pictures import read_exr
 
-first, second = (read_exr(path).layer("Combined")[..., :3].astype(np.float64) for path in sys.argv[1:])
+first, second = (read_exr(path).combined[..., :3].astype(np.float64) for path in sys.argv[1:])
 rows, columns = (side // 8 * 8 for side in first.shape[:2])
 blocks = [p[:rows, :columns].reshape(rows // 8, 8, columns // 8, 8, 3).mean((1, 3)) for p in (first, second)]
 difference = np.abs(blocks[0] - blocks[1]) / (np.abs(blocks[0]) + 0.01)
