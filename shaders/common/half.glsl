@@ -4,7 +4,8 @@
 float half_to_float(uint bits) {
     uint exponent = bitfieldExtract(bits, 10, 5), mantissa = bits & 0x3ffu;
     uint rebased = exponent == 31u ? 255u : exponent + 112u;
-    float magnitude = exponent == 0u ? float(mantissa) * 5.9604644775390625e-8 : uintBitsToFloat(rebased << 23 | mantissa << 13);
+    float normal = uintBitsToFloat(rebased << 23 | mantissa << 13);
+    float magnitude = exponent == 0u ? float(mantissa) * 5.9604644775390625e-8 : normal;
     return (bits & 0x8000u) != 0u ? -magnitude : magnitude;
 }
 
