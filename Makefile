@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched coverage test-gui lint pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched coverage test-gui lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -65,6 +65,12 @@ lint: setup ## Check Python, types, imports, license lines and shaders
 	.venv/bin/lint-imports --no-cache
 	.venv/bin/reuse lint --lines
 	.venv/bin/python tools/check_shaders.py
+
+docs: setup ## Build the documents as a site, build/site/index.html, and check their links
+	@.venv/bin/python -c 'import material' 2>/dev/null || .venv/bin/python -m pip install --quiet \
+		--disable-pip-version-check --root-user-action=ignore -e '.[docs]'
+	NO_MKDOCS_2_WARNING=1 .venv/bin/python -m mkdocs build --quiet --config-file tools/site/mkdocs.yml
+	@echo build/site/index.html
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)

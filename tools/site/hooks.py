@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Takes pages beside docs/ into the site, and links to them; links to other files become names."""
+
+import re
+from pathlib import Path
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+
+ROOT = Path(__file__).parents[2]
+BESIDE = ("CONTRIBUTING.md", "CHANGELOG.md")
+_OF_CHECKOUT = re.compile(r"\[([^\]]+)\]\((?!docs/|http|#)[^)]+\)")
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages."""
+    for name in BESIDE:
+        text = _OF_CHECKOUT.sub(r"`\1`", (ROOT / name).read_text(encoding="utf-8")).replace("](docs/", "](")
+        files.append(File.generated(config, name, content=text))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Links out of docs/ to them stay in the site."""
+    for name in BESIDE:
+        markdown = markdown.replace(f"](../{name}", f"]({name}")
+    return markdown
