@@ -147,7 +147,7 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
         ),
         "bake_type": EnumProperty(
             name="Bake Type",
-            description="What to bake",
+            description="What the texels of a baked texture or the colors of vertices are to hold",
             items=[(kind, label, "") for kind, label in BAKE_TYPES.items()],
             default="COMBINED",
         ),
