@@ -65,3 +65,11 @@ def test_names_of_the_glossary_are_in_the_code():
     names = {name for row in rows if len(row) > 2 for name in re.findall(r"`([^`]+)`", row[1])}
     assert len(names) > 50
     assert [name for name in sorted(names) if name.strip("*") not in code] == []
+
+
+def test_the_site_has_all_documents():
+    """In its navigation; `make docs` checks the rest."""
+    navigation = (ROOT / "tools" / "site" / "mkdocs.yml").read_text(encoding="utf-8")
+    listed = re.findall(r"^\s*- (\S+\.md)$", navigation, re.MULTILINE)
+    there = [path.relative_to(ROOT / "docs").as_posix() for path in sorted((ROOT / "docs").rglob("*.md"))]
+    assert sorted(listed) == sorted([*there, "CONTRIBUTING.md", "CHANGELOG.md"])
