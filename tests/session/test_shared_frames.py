@@ -102,3 +102,22 @@ def test_no_torn_frame_is_read():
         stop.set()
         thread.join()
         writer.release()
+
+
+@pytest.mark.parametrize("capacity", [0, -4, -(1 << 40), 1 << 50, 4.0, "64", None, True])
+def test_slots_that_cannot_be(pair, capacity):
+    with pytest.raises(ProtocolError):
+        FrameReader(pair[0]._slots.block.name, capacity)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"slot": -1}, {"slot": SLOTS}, {"slot": 0.5}, {"width": -8}, {"width": 1 << 40}, {"height": 0},
+        {"width": 8.0}, {"width": -8, "height": -4}, {"generation": None}, {"sequence": "1"}, {"sequence": -1},
+    ],
+)  # fmt: skip
+def test_frames_that_cannot_be(pair, change):
+    writer, reader = pair
+    with pytest.raises(ProtocolError):
+        reader.read(**(writer.write(1, picture(1.0)) | change))

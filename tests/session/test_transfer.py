@@ -3,6 +3,8 @@
 
 import dataclasses
 import json
+import os
+import sys
 
 import numpy as np
 import pytest
@@ -207,11 +209,31 @@ def test_arrays_of_every_kind():
                 unpack(description)
 
 
+_LAYOUTS = [
+    ["<f4", [1], -8], ["<f4", [1], -(1 << 44)], ["<f4", [1], 1 << 80], ["<f4", [1, -1], 0], ["<f4", [-1, -4], 0],
+    ["<f4", [1, 1 << 20], 0], ["<f4", [1, 4], 1 << 30], ["<f4", [1 << 33, 1 << 33], 0], ["<f4", [1 << 40, 0], 0],
+    ["<f4", [], 0], ["<f4", [1] * 9, 0], ["<f4", [1, 1.0], 0], ["<f4", [1, True], 0], ["<f4", [1], 0.0],
+    ["<f4", 1, 0], ["O", [1, 1], 0], ["V0", [1 << 40], 0], ["<U0", [1 << 40], 0], ["f4,O", [1], 0], ["(9,9)f4", [1], 0],
+    ["<m8", [1], 0], [5, [1], 0], ["<f4", [1]], ["<f4", [1], 0, 0], {}, None, "abc",
+]  # fmt: skip
+"""Of runs of arrays, as a process may send them that is broken or means ill."""
+
+
+@pytest.mark.parametrize("values", [1 << 6, 1 << 15], ids=["in the message", "in shared memory"])
+@pytest.mark.parametrize("entry", _LAYOUTS, ids=repr)
+def test_arrays_that_are_not_there(entry, values):
+    description, block = pack([np.zeros(values)])
+    with pytest.raises(ProtocolError):
+        unpack(json.loads(json.dumps(description | {"layout": [entry]})))
+    if block is not None:
+        block.close()
+
+
 @pytest.mark.parametrize(
     "change",
     [
-        {"block": "/etc/passwd"}, {"block": "/proc/1/fd/0:1"}, {"block": 5}, {"size": 1 << 40}, {"size": None},
-        {"layout": [["<f4", [1, 1 << 20], 0]]}, {"layout": [["O", [1, 1], 0]]}, {"layout": [["<f4", [1, 4], 1 << 30]]},
+        {"block": "/etc/passwd"}, {"block": "/proc/1/fd/0:1"}, {"block": 5}, {"block": None}, {"size": 1 << 40},
+        {"size": None}, {"size": -1}, {"size": 0}, {"size": 1e5}, {"size": True}, {"layout": 5}, {"layout": [[]]},
     ],
 )  # fmt: skip
 def test_arrays_that_nobody_packed(change):
@@ -219,6 +241,27 @@ def test_arrays_that_nobody_packed(change):
     with pytest.raises(ProtocolError):
         unpack(description | change)
     block.close()
+
+
+@pytest.mark.parametrize("text", ["", "AAAA", "?" * 8, 5, "\u0661"])
+def test_bytes_that_nobody_wrote(text):
+    with pytest.raises(ProtocolError):
+        unpack({"layout": [["<f4", [1], 0]], "size": 64, "bytes": text})
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows' blocks keep their size")
+def test_memory_that_could_be_cut_off_is_not_read():
+    """To read what the other process has cut off would end this one by a signal."""
+    block = SharedBlock.create(1 << 16)
+    with pytest.raises(PermissionError):
+        os.ftruncate(block._file, 0)
+    block.close()
+    file = os.memfd_create("rppm")
+    os.ftruncate(file, 1 << 16)
+    name = f"/proc/{os.getpid()}/fd/{file}:{os.fstat(file).st_ino}"
+    with pytest.raises(ValueError, match="smaller"):
+        SharedBlock.open(name, 1 << 16)
+    os.close(file)
 
 
 def test_shared_memory_that_does_not_suffice():

@@ -2,6 +2,8 @@
 """Arrays that go along with a message: many bytes in shared memory, few in the message itself."""
 
 import base64
+import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,6 +18,11 @@ LARGE = 1 << 20
 """Bytes from which on an array is not copied more often than it must be."""
 _MOST_INLINE = 1 << 15
 """Bytes that the message itself takes: a moved camera needs no shared memory."""
+_NUMBERS = re.compile(r"[<>|][biuf][1248]")
+"""Types of arrays: numbers without any that would be taken for addresses."""
+_MOST_ARRAYS = 1 << 20
+_MOST_AXES = 8
+"""What no scene comes near: arrays without bytes would otherwise be as many as somebody likes."""
 
 
 def pack(arrays: Sequence[np.ndarray]) -> tuple[dict, SharedBlock | None]:
@@ -44,21 +51,50 @@ def pack(arrays: Sequence[np.ndarray]) -> tuple[dict, SharedBlock | None]:
 def unpack(description: dict) -> list[np.ndarray]:
     """The arrays, as copies of the receiver's own, but for LARGE ones: these stay in the block's memory.
 
-    Raises ProtocolError for a description that pack has not made.
+    Whatever the other process says is checked before memory is read. Raises ProtocolError for a description that pack
+    has not made.
     """
     block = None
     try:
-        size = description["size"]
+        size = natural(description["size"], "a size")
+        runs = [_checked(entry, size) for entry in description["layout"]]
+        if sum(shape[0] for _, shape, _ in runs) > _MOST_ARRAYS:
+            raise ProtocolError(f"more than {_MOST_ARRAYS} arrays came in one message")
         if "block" in description:
             block = SharedBlock.open(description["block"], size)
-        memory = base64.b64decode(description["bytes"]) if block is None else block.memory
-        runs = [_run(memory, *layout) for layout in description["layout"]]
-        return [run[place, ...] for run in runs for place in range(len(run))]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+            memory: Any = block.memory
+        else:
+            memory = base64.b64decode(description["bytes"], validate=True)
+            if len(memory) != size:
+                raise ProtocolError(f"{len(memory)} bytes came in place of {size}")
+        return [row for run in runs for row in _rows(memory, *run)]
+    except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
         raise ProtocolError(f"arrays cannot be read ({error})") from error
     finally:
         if block is not None:
             block.close()
+
+
+def natural(value: object, what: str) -> int:
+    """A number of the other process that must be an integer from 0 on. Raises ProtocolError."""
+    if type(value) is not int or value < 0:
+        raise ProtocolError(f"{value!r} cannot be {what}")
+    return value
+
+
+def _checked(entry: Any, size: int) -> tuple[np.dtype, tuple[int, ...], int]:
+    """Type, shape and offset of a run that lies in so many bytes. Raises ProtocolError for another."""
+    kind, shape, offset = entry
+    if not isinstance(kind, str) or _NUMBERS.fullmatch(kind) is None:
+        raise ProtocolError(f"an array of {kind!r}")
+    if not isinstance(shape, list | tuple) or not 1 <= len(shape) <= _MOST_AXES:
+        raise ProtocolError(f"an array of the shape {shape!r}")
+    shape = tuple(natural(length, "a length") for length in shape)
+    dtype, start = np.dtype(kind), natural(offset, "an offset")
+    end = start + math.prod(shape) * dtype.itemsize
+    if end > size:
+        raise ProtocolError(f"an array ends at byte {end} of {size}")
+    return dtype, shape, start
 
 
 def _runs(arrays: Sequence[np.ndarray]) -> list[list[np.ndarray]]:
@@ -73,13 +109,14 @@ def _runs(arrays: Sequence[np.ndarray]) -> list[list[np.ndarray]]:
     return runs
 
 
-def _run(memory: Any, kind: str, shape: list[int], offset: int) -> np.ndarray:
-    """A run of arrays, as the rows of one."""
-    dtype = np.dtype(kind)
-    if dtype.hasobject:  # bytes are not to be taken for addresses
-        raise ValueError(f"an array of {dtype}")
-    run: np.ndarray = np.ndarray(shape, dtype, memory, offset)
-    if run.nbytes < LARGE:
-        return run.copy()
-    # Unlike the array above, what frombuffer makes keeps the memory from being closed.
-    return np.frombuffer(memory, np.uint8, run.nbytes, offset).view(dtype).reshape(shape)
+def _rows(memory: Any, dtype: np.dtype, shape: tuple[int, ...], offset: int) -> list[np.ndarray]:
+    """The arrays of a run, which are the rows of one; where it lies was checked."""
+    count = math.prod(shape)
+    if count == 0:  # numpy finds nothing in nothing
+        run = np.empty(shape, dtype)
+    else:
+        # Unlike an ndarray of the memory, what frombuffer makes keeps it from being closed.
+        run = np.frombuffer(memory, dtype, count, offset).reshape(shape)
+        if run.nbytes < LARGE:
+            run = run.copy()
+    return [run[place, ...] for place in range(len(run))]

@@ -11,10 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arrays import natural
 from .protocol import ProtocolError
 from .shared_memory import SharedBlock
 
 SLOTS = 3
+_MOST_PIXELS = 1 << 30
 _ANNOUNCED = ("generation", "sequence", "width", "height")
 _HEADER = np.dtype([(name, np.int64) for name in ("guard", *_ANNOUNCED)])
 _HEADER_BYTES = 64
@@ -103,6 +105,8 @@ class FrameReader:
 
         Raises FileNotFoundError when it has others meanwhile, and ProtocolError when these are none.
         """
+        if not 0 < natural(capacity, "a capacity") <= _MOST_PIXELS:
+            raise ProtocolError(f"slots of {capacity} pixels cannot be")
         try:
             opened = SharedBlock.open(block, SLOTS * slot_bytes(capacity))
         except FileNotFoundError:
@@ -116,11 +120,13 @@ class FrameReader:
 
         Raises ProtocolError for a frame that does not fit its slot.
         """
-        if not (0 <= slot < SLOTS and width > 0 and height > 0 and width * height <= self._slots.capacity):
+        announced = (generation, sequence, width, height)
+        for name, value in zip(("slot", *_ANNOUNCED), (slot, *announced), strict=True):
+            natural(value, f"a {name}")
+        if not (slot < SLOTS and 0 < width * height <= self._slots.capacity):
             raise ProtocolError(f"a frame of {width} x {height} pixels in slot {slot} cannot be")
         header = self._slots.headers[slot]
         guard = int(header["guard"])
-        announced = (generation, sequence, width, height)
         if guard % 2 or tuple(int(header[name]) for name in _ANNOUNCED) != announced:
             return None
         combined = self._slots.pixels[slot][: 4 * width * height].reshape(height, width, 4).copy()

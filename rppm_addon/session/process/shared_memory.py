@@ -16,6 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+if sys.platform != "win32":
+    import fcntl
+
 _LABEL = "rppm"
 _NAME = re.compile(r"(/proc/\d+/fd/\d+):(\d+)")
 
@@ -38,9 +41,10 @@ class SharedBlock:
         if sys.platform == "win32":
             name = f"{_LABEL}-{secrets.token_hex(16)}"
             return cls(name, mmap.mmap(-1, size, tagname=name))
-        file = os.memfd_create(_LABEL)
+        file = os.memfd_create(_LABEL, os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
         try:
             os.ftruncate(file, size)
+            fcntl.fcntl(file, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK)
             return cls(f"/proc/{os.getpid()}/fd/{file}:{os.fstat(file).st_ino}", mmap.mmap(file, size), file)
         except BaseException:
             os.close(file)
@@ -52,6 +56,8 @@ class SharedBlock:
 
         Raises FileNotFoundError when it has been withdrawn, and ValueError or OSError when it is none.
         """
+        if type(size) is not int or size <= 0:  # a mapping of 0 bytes is one of all there are
+            raise ValueError(f"a block of {size!r} bytes")
         if sys.platform == "win32":
             return cls(name, mmap.mmap(-1, size, tagname=name))
         match = _NAME.fullmatch(name)
@@ -60,13 +66,15 @@ class SharedBlock:
         path, identity = match.groups()
         if not str(Path(path).readlink()).startswith(f"/memfd:{_LABEL} "):
             raise FileNotFoundError(f"{name} is something else now")
-        file = os.open(path, os.O_RDWR | os.O_CLOEXEC)
+        file = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NONBLOCK)
         try:
             status = os.fstat(file)
             if status.st_ino != int(identity):
                 raise FileNotFoundError(f"{name} is another block now")
             if status.st_size < size:
                 raise ValueError(f"{name} has less than {size} bytes")
+            if not fcntl.fcntl(file, fcntl.F_GET_SEALS) & fcntl.F_SEAL_SHRINK:  # to read what was cut off ends a process
+                raise ValueError(f"{name} may become smaller while it is read")
             return cls(name, mmap.mmap(file, size))
         finally:
             os.close(file)
