@@ -6,7 +6,6 @@ Arrays have row 0 at the bottom, as frames do; files have the top row first.
 
 import contextlib
 import os
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from .scene import whole_files
 from .scene.errors import RppmError
 from .scene.passes import COMBINED, NOISY_IMAGE, PASSES, RenderPass
 
@@ -253,21 +253,9 @@ def _planes(array: np.ndarray) -> list[np.ndarray]:
 
 @contextlib.contextmanager
 def renamed_when_whole(path: str | Path) -> Iterator[str]:
-    """A temporary name in the folder of ``path`` that becomes ``path`` when all went well. Raises PictureError."""
-    path = Path(path)
-    temporary: Path | None = None
+    """As scene/whole_files.py has it, for pictures. Raises PictureError."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
-        temporary = Path(name)
-        os.close(handle)
-        yield name
-        mask = os.umask(0)
-        os.umask(mask)
-        temporary.chmod(0o666 & ~mask)
-        temporary.replace(path)
+        with whole_files.renamed_when_whole(path) as temporary:
+            yield temporary
     except (OSError, RuntimeError) as error:
         raise PictureError(f"{path} cannot be written ({error}); choose another place") from error
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)

@@ -3,9 +3,11 @@
 
 import enum
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+
+from .declared import declared
 
 
 class PanoramaKind(enum.Enum):
@@ -52,7 +54,7 @@ class Panorama:
 class Aperture:
     """A thin lens: what lies at the distance of focus is sharp."""
 
-    radius: float
+    radius: float = field(metadata=declared(minimum=0.0))
     """Meters."""
     focus_distance: float
     """Meters: along the view axis, or in a panorama along the ray."""
@@ -93,14 +95,14 @@ class Camera:
     Sensor fit, shift and pixel aspect are already in the window.
     """
 
-    matrix: np.ndarray
+    matrix: np.ndarray = field(metadata=declared(4, 4))
     """(4, 4) float64, camera to world, a rigid motion (scale removed)."""
     window: tuple[float, float, float, float]
     """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1), meters
     (orthographic), or shares of the frame, 0 to 1 without a shift (panorama)."""
-    width: int
+    width: int = field(metadata=declared(minimum=1, maximum=(1 << 31) - 1))
     """Pixels of the whole frame."""
-    height: int
+    height: int = field(metadata=declared(minimum=1, maximum=(1 << 31) - 1))
     orthographic: bool = False
     clip_start: float = 0.1
     """Meters along the view axis, or in a panorama along the ray, as ``clip_end``."""

@@ -69,7 +69,7 @@ def _reader(kind: typing.Any) -> _Reader | None:
         return lambda value, arrays: arrays[value["array"]]
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     if origin is tuple:
-        return lambda value, _: tuple(value)
+        return lambda value, _: tuple(_checked(value, list))
     if origin in (list, dict):
         return _list_reader(_reader(inner[0])) if origin is list else _dict_reader(_reader(inner[1]))
     if origin is not None:  # optional: the first alternative
@@ -81,13 +81,22 @@ def _reader(kind: typing.Any) -> _Reader | None:
 
 
 def _list_reader(read: _Reader | None) -> _Reader:
-    return lambda value, arrays: list(value) if read is None else [read(item, arrays) for item in value]
+    return lambda value, arrays: (
+        list(_checked(value, list)) if read is None else [read(item, arrays) for item in _checked(value, list)]
+    )
 
 
 def _dict_reader(read: _Reader | None) -> _Reader:
     return lambda value, arrays: (
-        dict(value) if read is None else {name: read(item, arrays) for name, item in value.items()}
+        dict(_checked(value, dict)) if read is None else {name: read(item, arrays) for name, item in value.items()}
     )
+
+
+def _checked(value: typing.Any, kind: type) -> typing.Any:
+    """A value that must be a list or a dictionary: Python would take a text for a list of its letters."""
+    if type(value) is not kind:
+        raise TypeError(f"a {type(value).__name__} is no {kind.__name__}")
+    return value
 
 
 def _dataclass_reader(kind: type) -> _Reader:

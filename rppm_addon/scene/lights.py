@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .declared import declared
 from .meshes import RayVisibility
 from .node_graphs import NodeGraph
 
@@ -25,23 +26,23 @@ class Light:
 
     name: str
     kind: LightKind
-    matrix: np.ndarray
+    matrix: np.ndarray = field(metadata=declared(4, 4, finite=False))
     """(4, 4) float64, object to world; includes the object's scale."""
-    strength: np.ndarray
+    strength: np.ndarray = field(metadata=declared(3))
     """(3,) float64 linear Rec.709: POINT and SPOT radiant intensity on the axis W/sr;
     SUN irradiance on a facing surface W/m^2; AREA radiance W/(m^2 sr)."""
-    radius: float = 0.0
+    radius: float = field(default=0.0, metadata=declared(minimum=0.0))
     """POINT and SPOT: radius of the emitting sphere, meters."""
     soft_falloff: bool = False
     """POINT and SPOT: a disk that faces each point it lights in place of the sphere, which keeps
     surfaces near a large light from glaring (Blender's Soft Falloff)."""
     spot_angle: float = np.pi
     """SPOT: full angle of the cone, radians."""
-    spot_blend: float = 0.0
+    spot_blend: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
     """SPOT: softness of the cone's edge, 0 to 1 (Cycles' spot smooth)."""
     sun_angle: float = 0.0
     """SUN: full angle under which the disk is seen, radians."""
-    shape: str = "SQUARE"
+    shape: str = field(default="SQUARE", metadata=declared(choices=("SQUARE", "RECTANGLE", "DISK", "ELLIPSE")))
     """AREA: SQUARE, RECTANGLE, DISK or ELLIPSE."""
     size: tuple[float, float] = (1.0, 1.0)
     """AREA: full width along local X and height along local Y before the matrix's scale."""
@@ -53,7 +54,7 @@ class Light:
     """Its emission multiplies ``strength``; None is 1."""
     of_world: bool = False
     """SUN: whether the graph is a world's, which the sun belongs to, and sees directions as a world does."""
-    photon_weight: float = 1.0
+    photon_weight: float = field(default=1.0, metadata=declared(minimum=0.0))
     """Weight of this light when photons are allocated (paper section 4.3), on top of its power."""
     light_group: str = ""
     """Whose pass its light belongs to (RenderSettings.light_groups); "" is none."""
@@ -73,7 +74,7 @@ class Mist:
 class World:
     """The environment: constant radiance, or what a node graph gives by direction."""
 
-    radiance: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    radiance: np.ndarray = field(default_factory=lambda: np.zeros(3), metadata=declared(3))
     """(3,) float64 W/(m^2 sr); multiplies what the graph gives where there is one."""
     graph: NodeGraph | None = None
     mist: Mist = field(default_factory=Mist)

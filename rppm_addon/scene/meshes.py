@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .declared import declared
+
 
 class AttributeDomain(enum.Enum):
     """What an attribute has a value for."""
@@ -20,7 +22,7 @@ class MeshAttribute:
     """Values over a mesh that shading nodes may read."""
 
     domain: AttributeDomain
-    values: np.ndarray
+    values: np.ndarray = field(metadata=declared("elements", "channels", types="float32", finite=False))
     """(elements of the domain, 1 to 4) float32; colors are linear Rec.709."""
 
 
@@ -32,17 +34,17 @@ class Mesh:
     """
 
     name: str
-    positions: np.ndarray
+    positions: np.ndarray = field(metadata=declared("vertices", 3, types="float32", finite=False))
     """(vertices, 3) float32, meters."""
-    corner_vertices: np.ndarray
+    corner_vertices: np.ndarray = field(metadata=declared("corners", types="int32", below="vertices"))
     """(corners,) int32, the vertex of each corner."""
-    corner_normals: np.ndarray
+    corner_normals: np.ndarray = field(metadata=declared("corners", 3, types="float32", finite=False))
     """(corners, 3) float32, unit shading normals (flat faces repeat the face normal)."""
-    triangle_corners: np.ndarray
+    triangle_corners: np.ndarray = field(metadata=declared("triangles", 3, types="int32", below="corners"))
     """(triangles, 3) int32, the three corners of each triangle."""
-    triangle_slots: np.ndarray
+    triangle_slots: np.ndarray = field(metadata=declared("triangles", types="int32", minimum=0))
     """(triangles,) int32, material slot of each triangle."""
-    corner_uv: np.ndarray | None = None
+    corner_uv: np.ndarray | None = field(default=None, metadata=declared("corners", 2, types="float32", finite=False))
     """(corners, 2) float32 of the UV map in use, or None."""
     texture_location: tuple[float, float, float] = (0.0, 0.0, 0.0)
     texture_size: tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -71,28 +73,28 @@ class RayVisibility(enum.IntFlag):
 class Particle:
     """What the Particle Info node gives for the particle that an instance stands for."""
 
-    index: float = 0.0
-    random: float = 0.0
-    age: float = 0.0
+    index: float = field(default=0.0, metadata=declared(finite=False))
+    random: float = field(default=0.0, metadata=declared(finite=False))
+    age: float = field(default=0.0, metadata=declared(finite=False))
     """Frames."""
-    lifetime: float = 0.0
+    lifetime: float = field(default=0.0, metadata=declared(finite=False))
     """Frames."""
-    size: float = 0.0
-    location: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    size: float = field(default=0.0, metadata=declared(finite=False))
+    location: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), metadata=declared(finite=False))
+    velocity: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), metadata=declared(finite=False))
+    angular_velocity: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), metadata=declared(finite=False))
 
 
 @dataclass(slots=True)
 class Instance:
     """A mesh placed in the world."""
 
-    mesh: int
+    mesh: int = field(metadata=declared(below="meshes"))
     """Index into Scene.meshes."""
-    matrix: np.ndarray
+    matrix: np.ndarray = field(metadata=declared(4, 4, finite=False))
     """(4, 4) float64, object to world."""
-    materials: list[int] = field(default_factory=list)
-    """Index into Scene.materials of each material slot; slots beyond the end take the last."""
+    materials: list[int] = field(default_factory=list, metadata=declared(below="materials", minimum=-1))
+    """Index into Scene.materials of each material slot, -1 for none; slots beyond the end take the last."""
     object_name: str = ""
     object_index: int = 0
     color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
@@ -105,7 +107,7 @@ class Instance:
     """Whether the camera sees a hole in place of it."""
     shadow_catcher: bool = False
     """Whether the camera sees nothing of it but the shadows on it."""
-    attributes: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    attributes: dict[str, tuple[float, ...]] = field(default_factory=dict, metadata=declared(finite=False))
     """Values of attributes that the object or its instancer has as a whole, in place of those of the mesh."""
     light_group: str = ""
     """Whose pass the light belongs to that it emits (RenderSettings.light_groups); "" is none."""

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .declared import declared
+
 
 @dataclass
 class Movement:
@@ -12,9 +14,9 @@ class Movement:
 
     member: int
     """Index into Scene.instances or Scene.lights."""
-    times: np.ndarray
+    times: np.ndarray = field(metadata=declared("keys"))
     """(keys,) float64, ascending from 0, when the shutter opens, to 1, when it closes."""
-    matrices: np.ndarray
+    matrices: np.ndarray = field(metadata=declared("keys", 4, 4))
     """(keys, 4, 4) float64, object to world."""
 
 
@@ -22,13 +24,13 @@ class Movement:
 class Deformation:
     """The shapes of a mesh, whose corners and triangles stay."""
 
-    mesh: int
+    mesh: int = field(metadata=declared(below="meshes"))
     """Index into Scene.meshes."""
-    times: np.ndarray
+    times: np.ndarray = field(metadata=declared("keys"))
     """(keys,) float64, as those of a Movement."""
-    positions: np.ndarray
+    positions: np.ndarray = field(metadata=declared("keys", "vertices", 3, types="float32"))
     """(keys, vertices, 3) float32, meters."""
-    corner_normals: np.ndarray
+    corner_normals: np.ndarray = field(metadata=declared("keys", "corners", 3, types="float32"))
     """(keys, corners, 3) float32, unit."""
 
 
@@ -36,11 +38,11 @@ class Deformation:
 class CameraMovement:
     """The way of the camera, and how it zooms."""
 
-    times: np.ndarray
+    times: np.ndarray = field(metadata=declared("keys"))
     """(keys,) float64, as those of a Movement."""
-    matrices: np.ndarray
+    matrices: np.ndarray = field(metadata=declared("keys", 4, 4))
     """(keys, 4, 4) float64, camera to world."""
-    windows: np.ndarray
+    windows: np.ndarray = field(metadata=declared("keys", 4))
     """(keys, 4) float64, as Camera.window."""
 
 
@@ -48,7 +50,7 @@ class CameraMovement:
 class Shutter:
     """What of a scene moves while its picture is taken; the scene's own members are those of the middle."""
 
-    curve: np.ndarray
+    curve: np.ndarray = field(metadata=declared("shares", finite=False))
     """(n,) float64, 0 or more: how far the shutter is open in each nth of its time."""
     instances: list[Movement] = field(default_factory=list)
     lights: list[Movement] = field(default_factory=list)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .camera import Camera
+from .declared import declared
 from .images import Image
 from .lights import Light, World
 from .materials import Material
@@ -29,9 +30,9 @@ class Scene:
     world: World = field(default_factory=World)
     images: list[Image] = field(default_factory=list)
     settings: RenderSettings = field(default_factory=RenderSettings)
-    exposure: float = 1.0
+    exposure: float = field(default=1.0, metadata=declared(minimum=0.0, maximum=1e12))
     """Factor on every radiance of the film (Cycles' film exposure)."""
-    cubemap_center: np.ndarray | None = None
+    cubemap_center: np.ndarray | None = field(default=None, metadata=declared(3))
     """(3,) meters where the deep cubemap's center goes; None is automatic."""
     shutter: Shutter | None = None
     """What moves while the picture is taken; None is nothing."""

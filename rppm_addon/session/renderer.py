@@ -14,6 +14,7 @@ from ..gl.programs import ProgramLibrary
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..integrator.stages.film import Film, exposed
+from ..scene.gate import check_scene
 from ..scene.passes import DEEP_CUBEMAP
 from ..scene.scene import Scene
 from .continuation import Continuation, Pause
@@ -89,6 +90,7 @@ class SlicedRender:
 
         Raises the errors of scene/errors.py.
         """
+        check_scene(self._scene)
         mapper, settings = self._mapper, self._scene.settings
         mapper.timers.reset()
         # The pass pictures the deep cubemap: there the center is not free.
@@ -348,6 +350,7 @@ class Renderer:
         Returns (height, width, 4) float32 of CUBEMAP_COSTS, the counts of the structure, and
         its bytes by buffer. Raises the errors of scene/errors.py.
         """
+        check_scene(scene)
         with self._context.moderngl:
             if self._mapper is None:
                 self._mapper = ProgressivePhotonMapper(self._context, self._library)
@@ -358,6 +361,7 @@ class Renderer:
 
     def memory(self, scene: Scene) -> Memory:
         """Bytes on the device that rendering the scene takes. Raises the errors of scene/errors.py."""
+        check_scene(scene)
         with self._context.moderngl:
             if self._mapper is None:
                 self._mapper = ProgressivePhotonMapper(self._context, self._library)

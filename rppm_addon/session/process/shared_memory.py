@@ -73,7 +73,8 @@ class SharedBlock:
                 raise FileNotFoundError(f"{name} is another block now")
             if status.st_size < size:
                 raise ValueError(f"{name} has less than {size} bytes")
-            if not fcntl.fcntl(file, fcntl.F_GET_SEALS) & fcntl.F_SEAL_SHRINK:  # to read what was cut off ends a process
+            # To read what was cut off ends a process.
+            if not fcntl.fcntl(file, fcntl.F_GET_SEALS) & fcntl.F_SEAL_SHRINK:
                 raise ValueError(f"{name} may become smaller while it is read")
             return cls(name, mmap.mmap(file, size))
         finally:

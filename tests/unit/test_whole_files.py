@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that are replaced when the new one is whole, and not before."""
+
+import contextlib
+import os
+import resource
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.floor import floor_scene
+
+from rppm_addon.cli import main
+from rppm_addon.pictures import PictureError, write_exr
+from rppm_addon.scene import Image, load_scene, save_scene
+from rppm_addon.scene.whole_files import renamed_when_whole
+
+
+@contextlib.contextmanager
+def full_disk(free=1 << 12):
+    """As if no file could become larger."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (free, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+def large_scene():
+    scene = floor_scene()
+    scene.images.append(Image("Noise", np.random.default_rng(0).random((256, 64, 4), np.float32)))
+    return scene
+
+
+def test_a_full_disk_leaves_the_scene_of_before(tmp_path):
+    path = tmp_path / "scene.npz"
+    save_scene(floor_scene(), path)
+    before = path.read_bytes()
+    with full_disk(), pytest.raises(OSError):
+        save_scene(large_scene(), path)
+    assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+    load_scene(path)
+
+
+def test_a_full_disk_leaves_the_picture_of_before(tmp_path):
+    path = tmp_path / "picture.exr"
+    write_exr(path, np.zeros((4, 4, 4), np.float32))
+    before = path.read_bytes()
+    with full_disk(), pytest.raises(PictureError, match="choose another place"):
+        write_exr(path, np.random.default_rng(0).random((64, 64, 4), np.float32))
+    assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+
+
+def test_export_says_in_a_line_that_the_disk_is_full(tmp_path, monkeypatch, capsys):
+    from rppm_addon.commands import blend_file
+
+    monkeypatch.setattr(blend_file, "export_blend_file", lambda *given, **named: large_scene())
+    with full_disk():
+        status = main(["export", "a.blend", "-o", str(tmp_path / "a.npz")])
+    error = capsys.readouterr().err
+    assert status == 1 and error.startswith(f"rppm: {tmp_path}/a.npz cannot be written") and error.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+KILLED = """
+import os, signal, sys
+from rppm_addon.scene.whole_files import renamed_when_whole
+with renamed_when_whole(sys.argv[1]) as temporary:
+    open(temporary, "w").write("half")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_a_killed_process_left_is_removed(tmp_path):
+    path = tmp_path / "still.cp.exr"
+    path.write_text("before")
+    beside = [tmp_path / ".still.cp.elsewhere-77-abc.exr", tmp_path / ".still.cp.exr", tmp_path / ".still.cp.x.exr"]
+    for other in beside:
+        other.touch()
+    assert subprocess.run([sys.executable, "-c", KILLED, str(path)]).returncode == -signal.SIGKILL
+    assert path.read_text() == "before" and len(list(tmp_path.iterdir())) == 5
+    with renamed_when_whole(path) as temporary, renamed_when_whole(path) as at_the_same_time:
+        for name, text in ((temporary, "one"), (at_the_same_time, "other")):
+            Path(name).write_text(text)
+    assert path.read_text() == "one"
+    assert sorted(tmp_path.iterdir()) == sorted([path, *beside])
+
+
+@pytest.mark.parametrize("stem", ["n" * 250, "\N{SNOWMAN}" * 83, "x" + "\udcff" * 240])
+def test_long_names(tmp_path, stem):
+    path = tmp_path / f"{stem}.exr"
+    assert len(os.fsencode(path.name)) > 240
+    with renamed_when_whole(path) as temporary:
+        Path(temporary).write_text("whole")
+    assert path.read_text() == "whole" and list(tmp_path.iterdir()) == [path]
