@@ -42,17 +42,19 @@ def check_scene(scene: Scene) -> None:
 
 
 def check_record(record: object, kind: type) -> None:
-    """Raise SceneError unless a record is a ``kind`` and what its declaration says; references are not followed."""
+    """Raise SceneError unless a record is a ``kind`` and what its declaration says. Numbers may be any, and references
+    are not followed."""
     if type(record) is not kind:
         raise SceneError(f"{_shown(record)} is no {kind.__name__}")
-    _Gate({}).records(kind, [record], lambda _: "")
+    _Gate({}, finite=False).records(kind, [record], lambda _: "")
 
 
 class _Gate:
     """Checks records; what their indices count is known."""
 
-    def __init__(self, lengths: Mapping[str, int]) -> None:
+    def __init__(self, lengths: Mapping[str, int], finite: bool = True) -> None:
         self._lengths = lengths
+        self._finite = finite
 
     def records(self, kind: type, records: Sequence[Any], label: _Label) -> None:
         """Check all fields of many records of one dataclass."""
@@ -80,6 +82,8 @@ class _Gate:
             self._dictionaries(inner[1], said, values, label)
         elif hint is np.ndarray:
             self._arrays(said, values, own, label)
+        elif hint is Any:
+            pass
         elif hint is object:
             for place, value in enumerate(values):
                 _check_node_value(value, place, label)
@@ -132,7 +136,7 @@ class _Gate:
             self._in_range(np.array(values, np.float64), said, values, label)
 
     def _in_range(self, numbers: np.ndarray, said: Declared, values: Sequence, label: _Label) -> None:
-        good = np.abs(numbers) <= FLOAT_MAX if said.finite else np.ones(len(numbers), bool)
+        good = np.abs(numbers) <= FLOAT_MAX if said.finite and self._finite else np.ones(len(numbers), bool)
         if said.minimum is not None:
             good &= ~(numbers < said.minimum)
         if said.maximum is not None:

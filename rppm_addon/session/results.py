@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..scene.declared import declared
 from ..scene.passes import RenderPass
 from ..scene.scene import Scene
 
@@ -25,7 +26,7 @@ class Progress:
     """How far a render is."""
 
     iteration: int
-    iterations: int
+    iterations: int = field(metadata=declared(minimum=1))
     elapsed_seconds: float
     photons: int
     time_limit: float = 0.0

@@ -8,7 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from rppm_addon.session.process.protocol import LONGEST_MESSAGE, ProtocolError, frame_message, read_message
+from rppm_addon.session.process.protocol import (
+    FROM_CHILD,
+    LONGEST_MESSAGE,
+    TO_CHILD,
+    ProtocolError,
+    check_message,
+    frame_message,
+    read_message,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -42,3 +50,31 @@ def test_the_child_can_read_its_first_message_before_it_finds_numpy():
         "import rppm_addon.session.process.protocol"
     )
     subprocess.run([sys.executable, "-I", "-S", "-c", code, str(ROOT)], check=True, timeout=60)
+
+
+def test_messages_of_the_tables_are_let_in():
+    for table in (TO_CHILD, FROM_CHILD):
+        for kind, fields in table.items():
+            values = {name: (types if isinstance(types, type) else types[0])() for name, types in fields.items()}
+            check_message({"kind": kind, **values}, table)
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        {"kind": "weather"}, {"kind": "pong", "session": 1}, {"kind": "taken", "session": 1},
+        {"kind": "taken", "session": [1], "number": 1}, {"kind": "taken", "session": 1, "number": 1.0},
+        {"kind": "taken", "session": True, "number": 1}, {"kind": "status", "session": 1, "status": []},
+        {"kind": "failed", "session": 1, "error": "E", "text": None}, {"kind": "prepared", "session": "1"},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_other_messages_are_refused(message):
+    with pytest.raises(ProtocolError):
+        check_message(message, FROM_CHILD)
+
+
+def test_a_message_of_brackets():
+    text = b"[" * 100000
+    with pytest.raises(ProtocolError):
+        read_message(io.BytesIO(len(text).to_bytes(4, "little") + text))

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Protocol
 
 from ...scene.scene import Scene
+from ..results import Progress, RenderStatistics
 from .arrays import unpack
 from .frames import FrameReader, SharedFrame
 from .protocol import ProtocolError
+from .received import received
 from .sessions import SessionKind, SessionStatus
 
 
@@ -146,7 +148,7 @@ class ViewportSession(Session):
         if kind == "frame":
             self._receive_frame(**content)
         elif kind == "status":
-            self.status = SessionStatus(**content["status"])
+            self.status = received(SessionStatus, content["status"])
         elif kind == "slots":
             try:
                 self._reader = FrameReader(**content)
@@ -159,6 +161,8 @@ class ViewportSession(Session):
         self, slot: int, generation: int, sequence: int, width: int, height: int, progress: float
     ) -> None:
         """Take an announced frame, unless it is none of a scene to be seen."""
+        if not 0.0 <= progress <= 1.0:
+            raise ProtocolError(f"a frame cannot show {progress} of a picture")
         reader, shown, newest = self._reader, self._snapshot, self._newest
         if reader is None or shown is None:
             return
@@ -239,6 +243,10 @@ class RenderSession(Session):
         """As Session has it."""
         if kind not in ("progress", "picture", "snapshot", "result", "failed"):
             raise ProtocolError(f"a render has no message {kind!r}")
+        if "progress" in content:
+            content["progress"] = received(Progress, content["progress"])
+        if "statistics" in content:
+            content["statistics"] = received(RenderStatistics, content["statistics"])
         if "arrays" in content:
             description = content["arrays"]
             content["arrays"] = unpack(description)

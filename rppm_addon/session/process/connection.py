@@ -12,7 +12,8 @@ from typing import Any, Protocol
 from ...gl.context import DeviceInformation
 from .child_process import ChildProcess, ProcessEnded
 from .client_session import Session, SessionOwner
-from .protocol import VERSION, ProtocolError
+from .protocol import FROM_CHILD, VERSION, ProtocolError, check_message
+from .received import received
 
 logger = logging.getLogger(__name__)
 
@@ -128,6 +129,7 @@ class Connection:
                 self._owner.changed.notify_all()
 
     def _handle(self, message: dict) -> None:
+        check_message(message, FROM_CHILD)
         kind = message.pop("kind")
         if not self.ready:
             self._handle_greeting(kind, message)
@@ -138,6 +140,8 @@ class Connection:
                 self.pinged_at, self.answered_at = None, time.monotonic()
                 owner.changed.notify_all()
             return
+        if "session" not in message:
+            raise ProtocolError(f"{kind!r} came after the greeting")
         number = message.pop("session")
         if kind == "taken":
             self._child.taken(number, message["number"])
@@ -162,7 +166,7 @@ class Connection:
                 self.usable = False
                 raise ProtocolError("RPPM was updated: restart Blender")
             else:
-                device = DeviceInformation(**message["device"])
+                device = received(DeviceInformation, message["device"] or {})
                 self.ready = True
                 self.answered_at = time.monotonic()
                 self._owner.greeted(device)

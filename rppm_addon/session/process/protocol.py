@@ -3,48 +3,78 @@
 
 A message is a JSON object behind its length in four bytes; its "kind" says what it is. Only the standard library is
 imported here: the child reads its first message before it can find anything else.
-
-To the child                          meaning
-hello version, path                   first; path are folders to find modules in
-open session, session_kind            a SessionKind's name
-members session, number, document, arrays
-                                      new members of the snapshot of this number (transfer.py)
-show session, number, document, arrays, generation, navigating
-                                      a snapshot
-pause session, paused
-expect_snapshots session, seconds     a render is to send its picture at these times
-keep_still session, path              renders go on from this checkpoint and are kept in it; "" is none
-want_picture session                  a render is to send its picture once
-received session                      the render's oldest frame is copied: its shared memory is free
-stop session, generation              the render of a scene is to end with what it has
-close session, dead                   dead are the handles of members that nothing uses any more
-forget dead                           the same without closing
-ping
-leave                                 end; so does the end of the pipe
-
-From the child
-ready version, device                 the answer to hello
-unusable text                         the device cannot be used: another child would do no better
-taken session, number                 a snapshot is decoded: its shared memory is free
-slots session, block, capacity        where the session's frames are from now on (frames.py)
-frame session, slot, generation, sequence, width, height, progress
-                                      progress 0 is a first look
-status session, status                a SessionStatus
-progress session, progress            a render's Progress
-picture session, arrays, progress     as it was wanted
-snapshot session, arrays, seconds     as it was expected
-result session, arrays, statistics, stopped
-failed session, error, text           the render has ended with an error of this name
-prepared session                      the programs of a scene are compiled, or will be
-pong
+Of each kind of message a table says what it holds; nothing else is let in, on either side.
 """
 
 import json
 import struct
-from typing import BinaryIO
+from collections.abc import Mapping
+from typing import Any, BinaryIO, TypeAlias
 
 VERSION = 5
 LONGEST_MESSAGE = 1 << 28
+_Fields: TypeAlias = dict[str, Any]
+"""Types, or tuples of types, of what a message has beside its kind."""
+_SESSION: _Fields = {"session": int}
+_PACKED: _Fields = {"document": dict, "arrays": dict}
+"""A part of a scene (transfer.py), and the arrays that it refers to (arrays.py)."""
+
+TO_CHILD: dict[str, _Fields] = {
+    # First; path are folders to find modules in.
+    "hello": {"version": int, "path": list, "denoisers": list},
+    # session_kind is a SessionKind's name.
+    "open": _SESSION | {"session_kind": str},
+    # New members of the snapshot of this number.
+    "members": _SESSION | _PACKED | {"number": int},
+    # A snapshot.
+    "show": _SESSION | _PACKED | {"number": int, "generation": int, "navigating": bool},
+    "pause": _SESSION | {"paused": bool},
+    # A render is to send its picture at these times.
+    "expect_snapshots": _SESSION | {"seconds": list},
+    # Renders go on from this checkpoint and are kept in it; "" is none.
+    "keep_still": _SESSION | {"path": str},
+    # A render is to send its picture once.
+    "want_picture": _SESSION,
+    # The render's oldest frame is copied: its shared memory is free.
+    "received": _SESSION,
+    # The render of a scene is to end with what it has.
+    "stop": _SESSION | {"generation": int},
+    # dead are the handles of members that nothing uses any more.
+    "close": _SESSION | {"dead": list},
+    # The same without closing.
+    "forget": {"dead": list},
+    "ping": {},
+    # End; so does the end of the pipe.
+    "leave": {},
+}
+FROM_CHILD: dict[str, _Fields] = {
+    # The answer to hello; device is a DeviceInformation, or None from another version.
+    "ready": {"version": int, "device": (dict, type(None))},
+    # The device cannot be used: another child would do no better.
+    "unusable": {"text": str},
+    # A snapshot is decoded: its shared memory is free.
+    "taken": _SESSION | {"number": int},
+    # Where the session's frames are from now on (frames.py).
+    "slots": _SESSION | {"block": str, "capacity": int},
+    # progress 0 is a first look.
+    "frame": _SESSION
+    | {"slot": int, "generation": int, "sequence": int, "width": int, "height": int, "progress": (float, int)},
+    # A SessionStatus.
+    "status": _SESSION | {"status": dict},
+    # A render's Progress.
+    "progress": _SESSION | {"progress": dict},
+    # As it was wanted.
+    "picture": _SESSION | {"arrays": dict, "passes": list, "progress": dict},
+    # As it was expected.
+    "snapshot": _SESSION | {"arrays": dict, "passes": list, "seconds": (float, int)},
+    # The last; statistics are RenderStatistics.
+    "result": _SESSION | {"arrays": dict, "passes": list, "statistics": dict, "stopped": bool},
+    # The render has ended with an error of this name.
+    "failed": _SESSION | {"error": str, "text": str},
+    # The programs of a scene are compiled, or will be.
+    "prepared": _SESSION,
+    "pong": {},
+}
 _LENGTH = struct.Struct("<I")
 
 
@@ -77,8 +107,22 @@ def read_message(stream: BinaryIO) -> dict | None:
         return None
     try:
         message = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ProtocolError(f"a message is no JSON ({error})") from error
     if not isinstance(message, dict) or not isinstance(message.get("kind"), str):
         raise ProtocolError("a message is no object with a kind")
     return message
+
+
+def check_message(message: Mapping[str, object], table: Mapping[str, _Fields]) -> None:
+    """Raise ProtocolError unless a message is one of a table's, with what the table says and nothing else."""
+    kind = message["kind"]
+    if kind not in table:
+        raise ProtocolError(f"there is no message {kind!r:.40}")
+    fields = table[str(kind)]
+    if message.keys() - {"kind"} != fields.keys():
+        raise ProtocolError(f"the message {kind} has {', '.join(sorted(message.keys() - {'kind'}))!r:.200}")
+    for name, types in fields.items():
+        value = message[name]
+        if not isinstance(value, types) or (isinstance(value, bool) and types is not bool):
+            raise ProtocolError(f"the message {kind} has the {name} {value!r:.60}")

@@ -6,10 +6,12 @@ import threading
 import time
 from collections.abc import Mapping
 
+import numpy as np
+
 from ...scene import errors
 from ...scene.scene import Scene
 from ..render_job import POLL_SECONDS, RenderJob
-from ..results import Frame, Progress, RenderResult, RenderStatistics, empty_result
+from ..results import Frame, RenderResult, empty_result
 from .client import ProcessState, RendererProcess
 from .client_session import RenderSession
 from .protocol import ProtocolError
@@ -43,6 +45,11 @@ class RemoteRenderer:
         result = None
         try:
             result = _attend(self.process, session, scene, job)
+        except ProtocolError as error:
+            raise errors.RendererError(
+                f"the renderer process sent what cannot be understood ({error}); please report what is in its log, "
+                f"{self.process.log_path}"
+            ) from error
         finally:
             if result is None:
                 session.close()
@@ -97,25 +104,33 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
             shown = True
             begin()
         elif event == "progress":
-            if job.on_progress(Progress(**content["progress"])):
+            if job.on_progress(content["progress"]):
                 session.want_picture()
         elif event == "picture":
-            job.on_frame(Progress(**content["progress"]), _frame(content))
+            job.on_frame(content["progress"], _frame(content, scene))
         elif event == "snapshot":
-            job.on_snapshot(content["seconds"], _frame(content))
+            job.on_snapshot(content["seconds"], _frame(content, scene))
         elif event == "result":
-            return RenderResult(_frame(content), RenderStatistics(**content["statistics"]), content["stopped"])
+            return RenderResult(_frame(content, scene), content["statistics"], content["stopped"])
         elif event == "failed":
             raise _error(process, content["error"], content["text"])
 
 
-def _frame(content: Mapping) -> Frame:
-    """The frame that came with a message. Raises ProtocolError when arrays and names do not fit each other."""
-    combined, *passes = content["arrays"]
+def _frame(content: Mapping, scene: Scene) -> Frame:
+    """The frame of a scene that came with a message. Raises ProtocolError when arrays, names and the scene do not fit
+    each other."""
+    width, height = scene.camera.resolution
     try:
-        return Frame(combined, dict(zip(content["passes"], passes, strict=True)))
-    except (KeyError, ValueError, TypeError) as error:
+        combined, *passes = content["arrays"]
+        frame = Frame(combined, dict(zip(content["passes"], passes, strict=True)))
+    except (ValueError, TypeError) as error:
         raise ProtocolError(f"a frame cannot be read ({error})") from error
+    for array in content["arrays"]:
+        if array.dtype != np.float32 or array.shape[:2] != (height, width) or array.ndim not in (2, 3):
+            raise ProtocolError(f"a picture of {width} x {height} pixels came as {array.dtype} {array.shape}")
+    if combined.shape[2:] != (4,):
+        raise ProtocolError(f"a picture came with the shape {combined.shape}")
+    return frame
 
 
 def _error(process: RendererProcess, name: str, text: str) -> errors.RppmError:

@@ -21,7 +21,7 @@ from .arrays import unpack
 from .fair_share import FairShare
 from .known_programs import KnownPrograms
 from .preparation import Preparation
-from .protocol import VERSION, ProtocolError, read_message, write_message
+from .protocol import TO_CHILD, VERSION, ProtocolError, check_message, read_message, write_message
 from .rendering import Rendering
 from .sessions import SessionKind
 from .transfer import SceneReceiver
@@ -95,6 +95,7 @@ class Worker:
         code = 0
         try:
             while (message := read_message(self._reader)) is not None and message["kind"] != "leave":
+                check_message(message, TO_CHILD)
                 self._decode(message)
                 if message["kind"] != "members":
                     self._inbox.put(message)
