@@ -14,7 +14,7 @@ from .commands.arguments import parser
 from .commands.compiling import compile_programs
 from .commands.farm.command import farm
 from .commands.interruption import INTERRUPTED
-from .commands.options import is_blend, load_blend_or_saved, split_values, write_json
+from .commands.options import is_blend, load_blend_or_saved, refuse_shared_files, split_values, write_json
 from .commands.picture_set import described
 from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
@@ -64,6 +64,7 @@ def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECO
 def _merge(options: argparse.Namespace, bar: ProgressBar) -> int:
     from .commands.merging import merge_stills, write_stills
 
+    refuse_shared_files(options.json, [*options.parts, *options.output])
     for path in options.output:
         make_folder(path)
     stills = merge_stills(options.parts, options.incomplete)
@@ -109,6 +110,7 @@ def _inspect(options: argparse.Namespace, bar: ProgressBar) -> int:
 
     settings, data_values = split_values(options.values)
     apply_settings(RenderSettings(), settings)
+    refuse_shared_files(options.json, [options.file, *options.output])
     for path in options.output:
         make_folder(path)
     scene = load_blend_or_saved(options.file, options, settings, data_values)
@@ -131,6 +133,7 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     if options.scene is None and (settings or data_values or options.resolution or options.frame is not None):
         raise SettingsError("--resolution, --frame and --set need a scene; name it with --scene FILE")
     apply_settings(RenderSettings(), settings)
+    refuse_shared_files(options.json, [options.scene])
     try:
         blender = importlib.metadata.version("bpy")
     except importlib.metadata.PackageNotFoundError:

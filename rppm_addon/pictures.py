@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .scene import whole_files
-from .scene.errors import RppmError
+from .scene.errors import RppmError, SceneError
 from .scene.passes import COMBINED, NOISY_IMAGE, PASSES, RenderPass
 
 
@@ -233,6 +233,16 @@ def standard_view(combined: np.ndarray) -> np.ndarray:
     color = color.clip(0.0, 1.0)
     encoded = np.where(color <= 0.0031308, color * 12.92, 1.055 * color ** (1 / 2.4) - 0.055)
     return np.rint(np.concatenate([encoded, alpha], axis=-1) * 255.0).astype(np.uint8)
+
+
+def refuse_spoiled(path: str | Path, combined: np.ndarray) -> None:
+    """Raise SceneError where a picture, which was written, has pixels that are no finite numbers."""
+    spoiled = int(np.count_nonzero(~np.isfinite(combined).all(axis=-1)))
+    if spoiled:
+        pixels = "pixel is no finite number" if spoiled == 1 else "pixels are no finite numbers"
+        raise SceneError(
+            f"{path}: {spoiled} {pixels}; look for lights, values of nodes, textures or an exposure that are too large"
+        )
 
 
 def make_folder(path: Path) -> None:

@@ -13,6 +13,7 @@ from ..scene.errors import RppmError
 from .blend_file import BlendFile, BlendRequest, opened_blend_file
 from .frame_numbers import path_of_frame
 from .interruption import Interruption
+from .picture_files import is_whole
 from .picture_set import recorded_pictures
 from .progress_bar import PartBar, ProgressBar
 from .recorder import RenderRequest
@@ -27,7 +28,7 @@ class AnimationRequest:
     """Of each frame; its outputs have a place for the number."""
     frames: Sequence[int]
     resume: bool = False
-    """Leave out frames whose files are all there."""
+    """Leave out frames whose files are all there and whole."""
 
     def outputs(self, frame: int) -> list[Path]:
         """The files of a frame."""
@@ -62,7 +63,7 @@ class Animation:
         request = self._request
         there = set()
         if request.resume:
-            there = {frame for frame in request.frames if all(path.is_file() for path in request.outputs(frame))}
+            there = {frame for frame in request.frames if all(map(is_whole, request.outputs(frame)))}
             for frame in sorted(there):
                 self._tell(frame, {"skipped": True, "files": [str(path) for path in request.outputs(frame)]})
             if there:

@@ -111,6 +111,7 @@ class BlendFile:
                 _save_png(self._bpy, path)
             else:
                 _save_picture(self._bpy, path, frame.combined)
+        pictures.refuse_spoiled()
 
 
 @contextlib.contextmanager

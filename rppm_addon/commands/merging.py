@@ -11,7 +11,7 @@ import numpy as np
 
 from ..denoising.denoiser import Denoiser
 from ..denoising.places import library_places
-from ..pictures import FilePicture, PictureName, standard_view, write_multilayer_exr
+from ..pictures import FilePicture, PictureName, refuse_spoiled, standard_view, write_multilayer_exr
 from ..scene.errors import CheckpointError
 from ..scene.fingerprint import settings_of_plain
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
@@ -104,6 +104,8 @@ def write_stills(stills: Sequence[MergedStill], paths: Sequence[Path]) -> list[P
             for still in reversed(stills):
                 written.append(path_of_picture(path, still.name, names))
                 still.write_png(written[-1])
+    for still in stills:
+        refuse_spoiled(paths[0], still.frame.combined)
     return written
 
 

@@ -3,6 +3,7 @@
 
 import argparse
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..pictures import PictureError, make_folder, renamed_when_whole
@@ -76,6 +77,17 @@ def outputs_of_still(options: argparse.Namespace) -> list[Path]:
         if has_place(path):
             raise SettingsError(f"{path} has a place for a frame number; say which frame, or name it without #")
     return options.output
+
+
+def refuse_shared_files(json_file: Path | None, others: Iterable[Path | None]) -> None:
+    """Raise SettingsError where --json names a file that is read or written as something else."""
+    for other in others:
+        if json_file is not None and other is not None and _same_file(json_file, other):
+            raise SettingsError(f"--json and another option both name {json_file}; give the report a name of its own")
+
+
+def _same_file(first: Path, second: Path) -> bool:
+    return first.resolve() == second.resolve() or (first.exists() and second.exists() and first.samefile(second))
 
 
 def load_blend_or_saved(

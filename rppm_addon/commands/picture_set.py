@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..pictures import FilePicture, PictureName, write_multilayer_exr
+from ..pictures import FilePicture, PictureName, refuse_spoiled, write_multilayer_exr
 from ..scene import Scene
 from ..session.observers import RenderObserver
 from ..session.still_keeper import StillKeeper, attributes_of, placement_of
@@ -124,6 +124,12 @@ class PictureSet(RenderObserver):
         # The first one's files, whose names are known beforehand, tell that all are there.
         for _, recorder in reversed(self.finished):
             recorder.write_part()
+
+    def refuse_spoiled(self) -> None:
+        """Raise SceneError where a picture, whose files are written, is not finite."""
+        for _, recorder in self.finished:
+            for path in self.outputs[:1]:
+                refuse_spoiled(path, recorder.frame.combined)
 
     def _write_exr(self, path: Path) -> None:
         metadata: dict[str, object] = {}

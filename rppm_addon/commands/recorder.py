@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..pictures import Placement, standard_view, write_exr
+from ..pictures import Placement, refuse_spoiled, standard_view, write_exr
 from ..scene import RenderSettings, Scene
 from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver
@@ -159,6 +159,11 @@ class RenderRecorder(RenderObserver):
         """Write the part of a finished render that is one. Raises PictureError."""
         if self._keeper is not None:
             self._keeper.finish()
+
+    def refuse_spoiled(self) -> None:
+        """Raise SceneError where the picture, whose files are written, is not finite."""
+        for path in self.files[:1]:
+            refuse_spoiled(path, self.result.frame.combined)
 
     @property
     def finished_scene(self) -> Scene:

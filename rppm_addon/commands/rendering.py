@@ -16,6 +16,7 @@ from .options import (
     is_blend,
     outputs_of_still,
     refuse_blend_options,
+    refuse_shared_files,
     seconds_of,
     values_and_limits,
     values_of_frames,
@@ -45,6 +46,8 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
     if options.frames is not None:
         return _render_frames(options, bar, blend_request, settings)
     options.output = outputs_of_still(options)
+    snapshots = [RenderRequest(options.output).snapshot_path(mark) for mark in options.snapshots]
+    refuse_shared_files(options.json, [options.file, *options.output, options.checkpoint, *snapshots])
     keeper = _still_keeper(options, settings, {"blend": blend_request.as_plain()} if blend_request else {})
     for path in [*options.output, *([options.checkpoint] if options.checkpoint else [])]:
         make_folder(path)
@@ -91,10 +94,12 @@ def _render_frames(
     if options.checkpoint is not None or options.samples_range is not None:
         raise SettingsError("--checkpoint and --samples-range are for stills; name one frame with --frame")
     check_places(options.output, options.frames)
-    for path in options.output:
-        make_folder(path)
     render = RenderRequest(options.output, settings, seconds_of(options), options.snapshots)
     request = AnimationRequest(blend_request, render, options.frames, options.resume)
+    pictures = (path for frame in options.frames for path in request.outputs(frame))
+    refuse_shared_files(options.json, [options.file, *pictures])
+    for path in options.output:
+        make_folder(path)
 
     def write_report(report: dict[str, object]) -> None:
         if options.json is not None:

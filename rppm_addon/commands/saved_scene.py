@@ -28,6 +28,7 @@ def render_saved_scene(path: Path, recorder: RenderRecorder, resolution: tuple[i
         )
         recorder.on_finish(result, scene)
     recorder.write_files()
+    recorder.refuse_spoiled()
 
 
 def camera_at_resolution(camera: Camera, width: int, height: int) -> Camera:

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Command lines that cannot be meant, and pictures that are none: a line and an exit status, and no file is lost."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from support.floor import floor_scene
+
+from rppm_addon.cli import main
+from rppm_addon.commands.picture_files import is_whole
+from rppm_addon.pictures import read_exr, write_exr
+from rppm_addon.scene import save_scene
+
+
+def told(capsys):
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and error.startswith("rppm: ") and "unexpected" not in error, error
+    return error
+
+
+@pytest.mark.parametrize("clash", ["scene", "picture", "checkpoint", "snapshot", "link"])
+def test_a_report_replaces_no_other_file(tmp_path, saved_scene, capsys, clash):
+    picture, link = tmp_path / "a.exr", tmp_path / "link.json"
+    report = {
+        "scene": saved_scene, "picture": picture, "checkpoint": tmp_path / "c.exr", "snapshot": tmp_path / "a_1s.exr",
+        "link": link,
+    }[clash]  # fmt: skip
+    link.symlink_to(saved_scene)
+    before = saved_scene.read_bytes()
+    files = ["-o", str(picture), "--checkpoint", str(tmp_path / "c.exr"), "--snapshots", "1"]
+    assert main(["render", str(saved_scene), *files, "--json", str(report)]) == 1
+    assert "give the report a name of its own" in told(capsys)
+    assert saved_scene.read_bytes() == before and not picture.exists()
+
+
+@pytest.mark.parametrize("command", ["merge", "inspect", "info"])
+def test_reports_of_other_commands(tmp_path, saved_scene, capsys, command):
+    report = str(tmp_path / "a.exr")
+    arguments = {
+        "merge": ["merge", report, "-o", str(tmp_path / "b.exr"), "--json", report],
+        "inspect": ["inspect", str(saved_scene), "-o", report, "--json", report],
+        "info": ["info", "--scene", str(saved_scene), "--json", str(saved_scene)],
+    }
+    assert main(arguments[command]) == 1
+    assert "--json" in told(capsys)
+
+
+def test_a_picture_that_is_not_finite_does_not_pass(tmp_path, capsys):
+    """Light beyond single precision: what there is is written, the status says that it is none."""
+    scene = floor_scene()
+    scene.lights[0].strength = np.full(3, 1e30)
+    scene = dataclasses.replace(scene, exposure=1e12)
+    save_scene(scene, tmp_path / "bright.npz")
+    picture = tmp_path / "a.exr"
+    assert main(["render", str(tmp_path / "bright.npz"), "-o", str(picture)]) == 1
+    assert "no finite number" in capsys.readouterr().err.splitlines()[-1]
+    assert not np.isfinite(read_exr(picture).combined).all()
+    assert not is_whole(picture)
+
+
+def test_pictures_that_are_whole_are_finite(tmp_path):
+    pixels = np.zeros((4, 4, 4), np.float32)
+    write_exr(tmp_path / "a.exr", pixels, {"Depth": np.full((4, 4), np.inf, np.float32)})
+    assert is_whole(tmp_path / "a.exr")  # what is infinitely far away
+    pixels[2, 1, 0] = np.nan
+    write_exr(tmp_path / "a.exr", pixels)
+    assert not is_whole(tmp_path / "a.exr")
