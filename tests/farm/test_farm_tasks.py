@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a farm hands out, and how it knows what is done."""
 
+import dataclasses
 import json
 import subprocess
 import sys
@@ -58,6 +59,42 @@ def test_what_is_done_of_a_chunk_is_left_out(tmp_path):
     write_picture(tmp_path / "2.exr")
     assert chunk.rest.frames == (1, 3)
     assert [single.frames for single in chunk.rest.singles] == [(1,), (3,)]
+
+
+FOLDER = Path("/out/x.farm")
+GOOD = Task(("render", "/in/a.blend", "--set", "rppm.alpha=0.5"), (Path("/out/####.exr"), Path("/out/#.png")), (7, 8))
+
+
+def test_tasks_that_the_farm_makes_are_let_in():
+    GOOD.check(FOLDER)
+    tasks, merge = still_tasks(Path("/a.npz"), 9, 3, [Path("/out/x.exr")], FOLDER, ["--photons", "5"])
+    for task in (*tasks, merge):
+        task.check(FOLDER)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"outputs": (Path("/out/../etc/####.exr"),)}, {"outputs": (Path("/out/.."),)}, {"outputs": (Path("####.exr"),)},
+        {"outputs": ()}, {"outputs": (Path("/out/####.sh"),)}, {"outputs": (Path("/a/#.exr"), Path("/b/#.exr"))},
+        {"outputs": ("/out/####.exr",)}, {"outputs": [Path("/out/####.exr")]}, {"frames": ("7",)}, {"frames": (1.5,)},
+        {"arguments": ("export", "/in/a.blend")}, {"arguments": ()}, {"arguments": ("render",)}, {"arguments": (5,)},
+        {"arguments": ("render", "/in/a.blend", "-o", "/etc/x.exr")}, {"words": None},
+        {"arguments": ("render", "/in/a.blend", "--outp=/etc/x.exr")}, {"arguments": ("render", "--help")},
+        {"arguments": ("render", "/in/a.blend", "--js", "/etc/x")}, {"arguments": ("info", "--json", "/etc/x")},
+        {"arguments": ("render", "/in/a.npz", "--checkp", "/etc/c.exr"), "frames": ()},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_tasks_of_somebody_else_are_refused(change):
+    with pytest.raises(SettingsError):
+        dataclasses.replace(GOOD, **change).check(FOLDER)
+
+
+def test_a_ledger_that_is_elsewhere_is_refused():
+    for folder in (Path("farm"), Path("/out/../x.farm")):
+        with pytest.raises(SettingsError, match=r"without \.\."):
+            GOOD.check(folder)
 
 
 @pytest.mark.parametrize(("iterations", "parts"), [(4000, 7), (5, 5), (9, 1)])

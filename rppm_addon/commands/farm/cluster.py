@@ -15,6 +15,8 @@ from .by_value import identity_function
 from .errors import FarmError
 from .identity import identity
 
+log = logging.getLogger(__name__)
+
 CONNECT_SECONDS = 20.0
 _LOCAL = {
     "distributed.scheduler.http.routes": [],  # no web pages
@@ -62,6 +64,8 @@ class Cluster:
 def remote_cluster(address: str, debug: bool) -> Iterator[Cluster]:
     """The workers of a scheduler that runs already. Raises FarmError."""
     _log_level(debug)
+    if is_open(address):
+        log.warning("whoever reaches %s can run code on the farm as you; use TLS: docs/farm.md says how", address)
     try:
         client = distributed.Client(address, timeout=CONNECT_SECONDS)
     except (OSError, ValueError, TypeError, ImportError) as error:
@@ -108,6 +112,13 @@ def local_cluster(devices: Sequence[str | None], allowed_failures: int, debug: b
         distributed.Client(cluster, security=security) as client,
     ):
         yield Cluster(client, lambda: cluster.scale(len(devices)))
+
+
+def is_open(address: str) -> bool:
+    """Whether a scheduler's address is one that other machines reach without a key."""
+    scheme, _, host = address.rpartition("://")
+    name = host.rpartition(":")[0].strip("[]") or host
+    return scheme in ("", "tcp") and name != "localhost" and not name.startswith("127.") and name != "::1"
 
 
 def _log_level(debug: bool) -> int:

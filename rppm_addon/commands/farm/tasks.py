@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a farm hands out: one call of the rppm program, and the pictures that it makes."""
 
+import contextlib
+import io
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
-from ...scene.errors import SettingsError
+from ...scene.errors import SceneError, SettingsError
+from ...scene.gate import check_record
+from ..arguments import parser
 from ..frame_numbers import path_of_frame
 from ..picture_files import is_whole
 
 PART = "samples_"
 """Begins the names of the parts of a still and of their checkpoints."""
+CHECKPOINT = ".checkpoint.exr"
+"""Ends the latter."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +32,23 @@ class Task:
     frames: tuple[int, ...] = ()
     words: str = ""
     """What it is called if it has no frames."""
+
+    def check(self, folder: Path) -> None:
+        """Raise SettingsError unless this is a task as those below make them, of a farm whose ledger is ``folder``: it
+        has come over a network, and names files that are to be replaced."""
+        try:
+            check_record(self, Task)
+        except SceneError as error:
+            raise SettingsError(f"a task that is none: {error}") from error
+        for path in (*self.outputs, folder):
+            if not path.is_absolute() or ".." in path.parts:
+                raise SettingsError(f"a task's files must have absolute paths without .., unlike {path}")
+        names = {path.name for path in self.outputs if path.suffix in (".exr", ".png")}
+        if not self.outputs or len(names) != len(self.outputs):
+            raise SettingsError("a task needs .exr and .png files of different names")
+        written = _written(self.command(self.outputs))
+        if any(path.parent != folder for path in written - {*self.outputs}):
+            raise SettingsError(f"a task may write its outputs and what lies in {folder} only: {self.command_line}")
 
     @property
     def name(self) -> str:
@@ -68,6 +91,18 @@ class Task:
         return shlex.join(["rppm", *self.command(self.outputs)])
 
 
+def _written(command: list[str]) -> set[Path]:
+    """All files that a call of rppm names to be written. Raises SettingsError unless it renders or merges."""
+    try:
+        with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
+            options = parser().parse_args(command)
+    except SystemExit as error:
+        raise SettingsError(f"a task that rppm does not understand: {shlex.join(command)}") from error
+    if options.command not in ("render", "merge"):
+        raise SettingsError(f"a task may render or merge, not {options.command}")
+    return {*options.output, *(path for path in (options.json, getattr(options, "checkpoint", None)) if path)}
+
+
 def frame_tasks(file: Path, frames: Sequence[int], outputs: Sequence[Path], options: Sequence[str]) -> list[Task]:
     """A task for each frame; ``options`` are those of rppm render."""
     return Task(("render", str(file), *options), tuple(outputs), tuple(frames)).singles
@@ -100,7 +135,7 @@ def still_tasks(
     tasks = []
     for first, end in pairwise(marks):
         part = folder / f"{PART}{first}_{end}.exr"
-        words = ["--samples-range", f"{first}:{end}", "--checkpoint", str(part.with_suffix(".checkpoint.exr"))]
+        words = ["--samples-range", f"{first}:{end}", "--checkpoint", str(part.with_suffix(CHECKPOINT))]
         arguments = ("render", str(file), *words, "--resume", *options)
         tasks.append(Task(arguments, (part,), words=f"samples {first} to {end - 1}"))
     merge = Task(("merge", *(str(task.outputs[0]) for task in tasks)), tuple(outputs), words="merge")

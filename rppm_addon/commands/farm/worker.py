@@ -20,6 +20,7 @@ import distributed
 
 import rppm_addon
 
+from ...scene.errors import SettingsError
 from .errors import TaskError
 from .ledger import ATTEMPT
 from .tasks import Task
@@ -56,6 +57,10 @@ def perform(task: Task, folder: Path) -> Outcome:
     """
     worker = distributed.get_worker()
     label = f"{platform.node()}:{worker.name}"
+    try:
+        task.check(folder)
+    except SettingsError as error:
+        raise TaskError(str(error), label) from error
     if task.done:
         return Outcome(label, 0.0, False)
 
