@@ -82,3 +82,31 @@ def test_the_export_can_be_stopped(scene):
     with pytest.raises(ExportStopped):
         export_scene(bpy.context.evaluated_depsgraph_get(), should_stop=should_stop)
     assert len(asked) == 4
+
+
+@pytest.mark.parametrize("lost", ["file", "object"])
+def test_what_is_missing_of_linked_files_is_named(registered, tmp_path, lost):
+    library, main = tmp_path / "library.blend", tmp_path / "main.blend"
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    chair, table = (bpy.data.objects.new(name, None) for name in ("Chair", "Table"))
+    bpy.data.libraries.write(str(library), {chair, table})
+    bpy.data.libraries.write(str(tmp_path / "other.blend"), {chair})
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.objects = ["Chair", "Table"]
+    for linked in wanted.objects:
+        bpy.context.scene.collection.objects.link(linked)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    bpy.ops.wm.save_as_mainfile(filepath=str(main))
+    library.unlink()
+    if lost == "object":
+        (tmp_path / "other.blend").rename(library)
+    bpy.ops.wm.open_mainfile(filepath=str(main))
+    (warning,) = export(bpy.context.scene).warnings
+    expected = {
+        "file": 'library.blend" is missing: "Chair", "Table" left out',
+        "object": 'library.blend" does not have all that is linked: "Table" left out',
+    }
+    assert expected[lost] in warning

@@ -16,6 +16,7 @@ from .camera.view import export_view
 from .context import ExportContext
 from .frames import FrameExporter
 from .layers import world_of
+from .libraries import warn_of_missing
 from .lights.world import export_world
 from .motion import MotionExporter, is_blurred, wants_neighbors
 from .objects.assets import export_asset_names
@@ -117,6 +118,7 @@ def _context_of(
 
     report = Report(stop, show)
     report.progress("Exporting the scene")
+    warn_of_missing(report)
     context = ExportContext(report)
     context.read_from(depsgraph)
     return context

@@ -14,6 +14,7 @@ from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
 from .layers import overrides_of, world_of
+from .libraries import warn_of_missing
 from .lights.world import export_world
 from .objects.assets import export_asset_names
 from .objects.object_pass import Placed
@@ -108,6 +109,7 @@ class SceneSync:
 
     def _begin(self) -> None:
         self._report = self._make_report()
+        warn_of_missing(self._report)
         self._context = ExportContext(self._report)
         self._images = self._context.images
         self._objects = ObjectExporter(self._context)
