@@ -19,6 +19,7 @@ from .commands.picture_set import described
 from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
 from .commands.rendering import render
+from .commands.terminal import LineFormatter, printable
 from .denoising.denoiser import Denoiser
 from .denoising.places import library_places
 from .pictures import PictureError, make_folder
@@ -35,7 +36,7 @@ def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECO
     options = parser().parse_args(arguments)
     bar = ProgressBar(sys.stderr, line_seconds)
     handler = BarLogHandler(bar, sys.stderr)
-    handler.setFormatter(logging.Formatter("rppm: %(message)s"))
+    handler.setFormatter(LineFormatter("rppm: %(message)s"))
     logging.basicConfig(level=logging.DEBUG if options.debug else logging.WARNING, handlers=[handler], force=True)
     if options.device is not None:
         os.environ["RPPM_DEVICE"] = options.device  # the engine inside Blender reads it too
@@ -57,7 +58,7 @@ def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECO
     bar.clear()
     if options.debug:
         traceback.print_exc()
-    sys.stderr.write(f"rppm: {' '.join(message.split())}\n")
+    sys.stderr.write(f"rppm: {printable(' '.join(message.split()))}\n")
     return status
 
 

@@ -17,6 +17,7 @@ from .picture_files import is_whole
 from .picture_set import recorded_pictures
 from .progress_bar import PartBar, ProgressBar
 from .recorder import RenderRequest
+from .terminal import printable
 
 
 @dataclass
@@ -100,7 +101,7 @@ class Animation:
             if self._interruption.asked:  # there was no picture yet
                 return
             self._bar.clear()
-            sys.stderr.write(f"rppm: frame {frame}: {' '.join(str(error).split())}\n")
+            sys.stderr.write(f"rppm: frame {frame}: {printable(' '.join(str(error).split()))}\n")
             self.failed.append(frame)
             self._tell(frame, {"error": str(error)})
             return

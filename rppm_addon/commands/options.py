@@ -33,6 +33,8 @@ def split_values(values: list[str]) -> tuple[dict[str, object], list[tuple[str, 
     data_values = []
     for text in values:
         path, value = split_assignment(text)
+        if path == "render.engine" and value.strip('"') != "RPPM":
+            raise SettingsError(f"--set {text}: rppm renders with RPPM only; for others use blender -b -E ENGINE")
         name = path.removeprefix("rppm.")
         if name != path and name not in _OF_BLEND_FILES:
             settings[name] = value

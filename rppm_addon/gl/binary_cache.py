@@ -25,12 +25,17 @@ _FORMAT = "digest, kind, binary\n"
 
 
 def cache_folder() -> Path:
-    """Where binaries are kept: RPPM_CACHE, or the platform's cache folder of the user."""
+    """Where binaries are kept: RPPM_CACHE, or the platform's cache folder of the user, or a temporary one."""
     if "RPPM_CACHE" in os.environ:
         return Path(os.environ["RPPM_CACHE"])
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA", tempfile.gettempdir())) / "rppm" / "programs"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rppm" / "programs"
+    if os.environ.get("XDG_CACHE_HOME"):
+        return Path(os.environ["XDG_CACHE_HOME"]) / "rppm" / "programs"
+    try:
+        return Path.home() / ".cache" / "rppm" / "programs"
+    except RuntimeError:  # without HOME, a user that the system has no entry of: in many containers
+        return Path(tempfile.gettempdir()) / f"rppm-{os.getuid()}" / "programs"
 
 
 def pack_entry(key: bytes, kind: int, binary: bytes) -> bytes:

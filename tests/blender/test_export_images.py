@@ -254,3 +254,14 @@ def test_places_of_colors_stay(scene):
     colors = np.random.default_rng(3).random((3, 4, 3))
     assert to_srgb(scene_linear(colors, "sRGB")) == pytest.approx(colors, abs=1e-5)
     assert len(bpy.data.images) == 0
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("source_kind", ["FILE", "SEQUENCE"])
+def test_a_pipe_is_no_image(scene, tmp_path, source_kind):
+    """Who opened it would wait for ever for somebody that writes."""
+    os.mkfifo(tmp_path / "pipe_0001.png")
+    image = bpy.data.images.new("Pipe", 1, 1)
+    image.source, image.filepath = source_kind, str(tmp_path / "pipe_0001.png")
+    add_mesh(scene).data.materials.append(textured(image))
+    assert any("pipe_0001.png" in text and "is missing" in text for text in export(scene).warnings)

@@ -2,6 +2,10 @@
 """Command lines that cannot be meant, and pictures that are none: a line and an exit status, and no file is lost."""
 
 import dataclasses
+import logging
+import os
+import pwd
+import tempfile
 
 import numpy as np
 import pytest
@@ -9,6 +13,8 @@ from support.floor import floor_scene
 
 from rppm_addon.cli import main
 from rppm_addon.commands.picture_files import is_whole
+from rppm_addon.commands.terminal import LineFormatter
+from rppm_addon.gl.binary_cache import cache_folder
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene import save_scene
 
@@ -66,3 +72,34 @@ def test_pictures_that_are_whole_are_finite(tmp_path):
     pixels[2, 1, 0] = np.nan
     write_exr(tmp_path / "a.exr", pixels)
     assert not is_whole(tmp_path / "a.exr")
+
+
+def test_names_cannot_speak_to_the_terminal(tmp_path, capsys, caplog):
+    scene = floor_scene()
+    scene.lights[0].name = "\x1b]0;owned\x07\nrppm: all is well"
+    scene.lights[0].radius = float("nan")
+    save_scene(scene, tmp_path / "a.npz")
+    assert main(["render", str(tmp_path / "a.npz"), "-o", str(tmp_path / "\udcff.exr")]) == 1
+    error = told(capsys)
+    assert error.isascii() and "\x1b" not in error and r"\x1b]0;owned\x07\n" in error
+
+
+def test_warnings_are_lines(capsys):
+    record = logging.LogRecord("rppm", logging.WARNING, "", 0, 'object "\x1b[2J\n" is missing', (), None)
+    assert LineFormatter("rppm: %(message)s").format(record) == r'rppm: object "\x1b[2J\n" is missing'
+
+
+def test_another_engine_is_refused_before_blender_starts(tmp_path, capsys):
+    blend = tmp_path / "a.blend"
+    blend.touch()
+    assert main(["render", str(blend), "-o", str(tmp_path / "a.exr"), "--set", "render.engine=CYCLES"]) == 1
+    assert "rppm renders with RPPM only" in told(capsys)
+
+
+def test_without_a_home(monkeypatch, tmp_path):
+    """As for a user of a container: no HOME, and no entry in the list of users."""
+    for name in ("RPPM_CACHE", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(pwd, "getpwuid", {}.__getitem__)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    assert cache_folder() == tmp_path / f"rppm-{os.getuid()}" / "programs"

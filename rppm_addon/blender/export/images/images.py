@@ -75,7 +75,7 @@ class ImageTable:
         warn: Warn,
     ) -> int:
         if key not in self._indices:
-            exported = kept(image) or _export(image, load)
+            exported = None if _is_no_file(image.filepath, image) else kept(image) or _export(image, load)
             if exported is None:
                 self._indices[key] = MISSING
             else:
@@ -99,6 +99,18 @@ def _export(image: bpy.types.Image, load: Callable[[], bpy.types.Image | None]) 
     if loaded == image:
         keep(image, exported)
     return exported
+
+
+def _is_no_file(path: str, image: bpy.types.Image) -> bool:
+    """Whether something else has the name of an image's file: who opens a pipe waits until somebody writes, and Blender
+    opens it as soon as it is asked for the image's size."""
+    if not path or image.packed_file is not None:
+        return False
+    place = Path(bpy.path.abspath(path, library=image.library))
+    try:
+        return place.exists() and not place.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 MISSING = -1
@@ -140,6 +152,8 @@ def _of_movie(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
 
 def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
     """A file as a new image that is read as another one is; None when it cannot be read."""
+    if _is_no_file(path, like):
+        return None
     try:
         image = bpy.data.images.load(path)
     except RuntimeError:

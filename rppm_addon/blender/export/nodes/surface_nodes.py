@@ -162,8 +162,10 @@ def _profile(node: bpy.types.Node) -> str:
     """The text of a node's IES profile. Raises OSError."""
     if node.mode == "INTERNAL":
         return "" if node.ies is None else node.ies.as_string()
-    file = bpy.path.abspath(node.filepath, library=node.id_data.library)
-    return pathlib.Path(file).read_text(encoding="latin-1")
+    file = pathlib.Path(bpy.path.abspath(node.filepath, library=node.id_data.library))
+    if file.exists() and not file.is_file():  # who opens a pipe waits until somebody writes
+        raise OSError(f"{file} is no file")
+    return file.read_text(encoding="latin-1")
 
 
 @handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")
