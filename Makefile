@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched coverage test-gui lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -47,6 +47,10 @@ test-long: setup ## Run the tests that take long
 test-touched: setup ## Run of the tests that take long what changed files ask for (SINCE=commit)
 	files="$$(.venv/bin/python tools/touched_tests.py $(SINCE))" && if [ -n "$$files" ]; then \
 		$(PYTEST) -m long $$files || [ $$? -eq 5 ]; else echo "no long tests are asked for"; fi
+
+MINUTES ?= 10
+fuzz: setup ## Give every way in what nobody means (MINUTES=10), and count
+	.venv/bin/python tools/fuzz.py $(MINUTES) $(SEED)
 
 coverage: setup ## Report which lines tests/unit, gl, session and cli reach (TESTS=...: others)
 	$(PYTEST) -m 'not long' --cov --cov-report=term $(or $(TESTS),tests/unit tests/gl tests/session tests/cli)

@@ -7,13 +7,14 @@ Arrays have row 0 at the bottom, as frames do; files have the top row first.
 import contextlib
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .scene import whole_files
+from .scene.declared import declared
 from .scene.errors import RppmError, SceneError
 from .scene.passes import COMBINED, NOISY_IMAGE, PASSES, RenderPass
 
@@ -41,12 +42,12 @@ class PictureName:
 class Placement:
     """Where the pixels of a picture lie in the whole frame."""
 
-    width: int
+    width: int = field(metadata=declared(minimum=1))
     """Pixels of the whole frame."""
-    height: int
-    x: int = 0
+    height: int = field(metadata=declared(minimum=1))
+    x: int = field(default=0, metadata=declared(minimum=0))
     """Column of the picture's left edge in the frame."""
-    y: int = 0
+    y: int = field(default=0, metadata=declared(minimum=0))
     """Row of the picture's bottom edge in the frame, row 0 at the bottom."""
 
     def windows(self, width: int, height: int) -> dict[str, tuple[tuple[int, int], tuple[int, int]]]:

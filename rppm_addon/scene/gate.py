@@ -41,12 +41,12 @@ def check_scene(scene: Scene) -> None:
             _check_members(scene, shutter, name)
 
 
-def check_record(record: object, kind: type) -> None:
-    """Raise SceneError unless a record is a ``kind`` and what its declaration says. Numbers may be any, and references
-    are not followed."""
+def check_record(record: object, kind: type, finite: bool = False) -> None:
+    """Raise SceneError unless a record is a ``kind`` and what its declaration says. References are not followed, and
+    numbers may be any unless they must be finite."""
     if type(record) is not kind:
         raise SceneError(f"{_shown(record)} is no {kind.__name__}")
-    _Gate({}, finite=False).records(kind, [record], lambda _: "")
+    _Gate({}, finite).records(kind, [record], lambda _: "")
 
 
 class _Gate:
@@ -186,11 +186,12 @@ def _check_node_value(value: object, place: int, label: _Label) -> None:
     """An input or option of a shader node."""
     if isinstance(value, str | bool | Link):
         return
-    numbers = np.asarray(value if isinstance(value, np.ndarray | tuple | list) else [value])
-    if numbers.dtype.kind not in "fiub" or numbers.ndim != 1 or len(numbers) > _MOST_CHANNELS:
+    numbers = value.tolist() if isinstance(value, np.ndarray) else value if isinstance(value, tuple | list) else [value]
+    kinds = (int, float, np.integer, np.floating)
+    if not isinstance(numbers, list | tuple) or not all(isinstance(number, kinds) for number in numbers):
         raise SceneError(f"{label(place)} is {_shown(value)}; it must be a number, a color, a text or a link")
-    if not (np.abs(numbers.astype(np.float64)) <= FLOAT_MAX).all():
-        raise SceneError(f"{label(place)} is {_shown(value)}; it must be finite")
+    if len(numbers) > _MOST_CHANNELS or not all(abs(number) <= FLOAT_MAX for number in numbers):
+        raise SceneError(f"{label(place)} is {_shown(value)}; it must be finite, and of at most {_MOST_CHANNELS} numbers")
 
 
 _NAME_LENGTH = 4

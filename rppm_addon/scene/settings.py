@@ -515,5 +515,5 @@ def _converted(name: str, kind: type[Any], value: Any, offset: int = 0) -> Any:
         if issubclass(kind, enum.Enum):
             return value if isinstance(value, kind) else kind[str(value).upper()]
         return kind(value) - offset if offset else kind(value)
-    except (KeyError, ValueError, TypeError) as error:
+    except (KeyError, ValueError, TypeError, AttributeError, OverflowError) as error:
         raise SettingsError(f"{name} cannot be {value!r}; it takes a {kind.__name__}") from error

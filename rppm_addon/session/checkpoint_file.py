@@ -23,8 +23,10 @@ import numpy as np
 from ..integrator.common.photon_counts import PhotonCounts
 from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
+from ..scene.declared import declared
 from ..scene.errors import CheckpointError
 from ..scene.fingerprint import settings_of_plain
+from ..scene.gate import check_record
 from ..scene.passes import RenderPass
 from .continuation import Pause
 
@@ -49,7 +51,7 @@ class StillRender:
     """Digests by member of the scene (scene_digests)."""
     settings: dict[str, Any]
     """Those that the picture depends on (plain_settings)."""
-    exposure: float
+    exposure: float = field(metadata=declared(minimum=0.0))
     placement: Placement
     source: dict[str, Any] = field(default_factory=dict)
     """What the command line knows of the file that the scene came from."""
@@ -152,6 +154,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             pairs("learned.left", "learned.contributed") if "learned.left" in guide else None,
             layer(*_HALF) if _HALF[0] in film else None,
         )
+        _check_state(state, summary.render.placement)
         inspections = {entry.name: layer(*entry.layers) for entry in passes if not entry.comes_of_iterations}
         return summary, Pause(state, summary.device, summary.radius_meters, inspections)
 
@@ -192,6 +195,8 @@ def _digest(file: BinaryIO, size: int) -> bytes:
 
 
 def _check_whole(path: str | Path) -> None:
+    if Path(path).exists() and not Path(path).is_file():  # such as a pipe, at which one would wait
+        raise CheckpointError(f"{path} is no file; name a checkpoint that rppm render wrote")
     with Path(path).open("rb") as file:
         size = os.fstat(file.fileno()).st_size
         file.seek(max(size - _TRAILER, 0))
@@ -221,11 +226,38 @@ def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File
             render = document.pop("render")
             placement = Placement(**render.pop("placement"))
             counts = PhotonCounts(**document.pop("photon_counts"))
-            yield (
-                file,
-                CheckpointSummary(StillRender(placement=placement, **render), photon_counts=counts, **document),
-            )
+            summary = CheckpointSummary(StillRender(placement=placement, **render), photon_counts=counts, **document)
+            _check(summary)
+            yield file, summary
     except FileNotFoundError as error:
         raise CheckpointError(f"{path} does not exist; name a checkpoint that rppm render wrote") from error
-    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
-        raise CheckpointError(f"{path} cannot be read as a checkpoint ({error}); begin anew without it") from error
+    except CheckpointError:
+        raise
+    except Exception as error:  # whatever OpenEXR, json and numpy say to what is damaged or forged
+        told = " ".join(str(error).split())[:_LONGEST_TOLD]
+        raise CheckpointError(f"{path} cannot be read as a checkpoint ({told}); begin anew without it") from error
+
+
+_LONGEST_TOLD = 200
+
+
+def _check(summary: CheckpointSummary) -> None:
+    """Raise SceneError, SettingsError or ValueError for numbers that no render has."""
+    check_record(summary, CheckpointSummary, finite=True)
+    settings_of_plain(summary.render.settings).validate()
+    if not 0 <= summary.left_out < summary.iteration:
+        raise ValueError(f"iterations from {summary.left_out} to {summary.iteration}")
+
+
+def _check_state(state: RenderState, placement: Placement) -> None:
+    """Raise ValueError for arrays that do not fit each other."""
+    height, width = state.radiance.shape[:2]
+    if placement.x + width > placement.width or placement.y + height > placement.height:
+        raise ValueError(f"{width} x {height} pixels at {placement.x}, {placement.y} of the frame")
+    half = [] if state.half is None else [state.half]
+    films = [state.radiance, *state.passes.values(), state.radius_factors, *half]
+    counts = [state.pass_counts, state.tallies, *([] if state.learned is None else [state.learned])]
+    for arrays, dtype in ((films, np.float32), (counts, np.uint32)):
+        for array in arrays:
+            if array.dtype != dtype:
+                raise ValueError(f"pixels of {array.dtype} in place of {np.dtype(dtype)}")

@@ -6,6 +6,7 @@ import pytest
 from rppm_addon.commands.arguments import parser
 from rppm_addon.commands.options import values_and_limits
 from rppm_addon.scene import PixelFilter, RenderSettings
+from rppm_addon.scene.errors import SettingsError
 from rppm_addon.scene.setting_info import settings_of
 
 RENDER = ("render", "scene.npz", "-o", "picture.exr")
@@ -49,3 +50,11 @@ def test_wrong_values_are_told_at_once(words, capsys):
         settings_from(*words)
     told = capsys.readouterr().err
     assert ended.value.code == 2 and words[0] in told and told.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("passes", [None]), ("passes", 5), ("samples", float("inf")), ("samples", None), ("alpha", [])]
+)
+def test_values_of_no_kind_are_refused(name, value):
+    with pytest.raises(SettingsError, match=f"^{name} cannot be"):
+        RenderSettings().with_properties({name: value})
