@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui lock lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -63,12 +63,17 @@ test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot 
 	$(PYTEST_GUI) $(WINDOW_ALONE)
 	$(PYTEST_GUI) --numprocesses=2 --dist=worksteal tests/gui $(WINDOW_ALONE:%=--ignore=%)
 
-lint: setup ## Check Python, types, imports, license lines and shaders
+lock: setup ## Pin anew what set-up installs, by version and hash
+	.venv/bin/python tools/lock.py
+
+lint: setup ## Check Python, types, imports, license lines, shaders, pinned packages, and what bandit finds unsafe
 	.venv/bin/ruff check .
 	.venv/bin/mypy
 	.venv/bin/lint-imports --no-cache
 	.venv/bin/reuse lint --lines
 	.venv/bin/python tools/check_shaders.py
+	.venv/bin/python tools/lock.py --check
+	.venv/bin/bandit --quiet --recursive --configfile pyproject.toml rppm_addon extension tools .ci setup.py
 
 docs: setup ## Build the documents as a site, build/site/index.html, and check their links
 	@.venv/bin/python -c 'import material' 2>/dev/null || .venv/bin/python -m pip install --quiet \

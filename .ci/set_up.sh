@@ -56,14 +56,15 @@ install_system_packages
 
 install_python_packages() {
     local stamp=.venv/set-up-done wanted
-    wanted=$(sha256sum pyproject.toml .ci/set_up.sh | sha256sum)
+    wanted=$(sha256sum pyproject.toml .ci/requirements.txt .ci/set_up.sh | sha256sum)
     if [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ]; then
         return
     fi
     echo "set-up: Python packages into .venv (Blender as a module among them: a few minutes the first time)"
     [ -x .venv/bin/python ] || "$python" -m venv .venv
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --root-user-action=ignore \
-        -e '.[blender,farm,test]'
+    local install=(.venv/bin/python -m pip install --quiet --disable-pip-version-check --root-user-action=ignore)
+    "${install[@]}" --require-hashes -r .ci/requirements.txt
+    "${install[@]}" --no-deps --no-build-isolation -e .
     echo "$wanted" >"$stamp"
 }
 

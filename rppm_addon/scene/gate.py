@@ -191,7 +191,7 @@ def _check_node_value(value: object, place: int, label: _Label) -> None:
     if not isinstance(numbers, list | tuple) or not all(isinstance(number, kinds) for number in numbers):
         raise SceneError(f"{label(place)} is {_shown(value)}; it must be a number, a color, a text or a link")
     if len(numbers) > _MOST_CHANNELS or not all(abs(number) <= FLOAT_MAX for number in numbers):
-        raise SceneError(f"{label(place)} is {_shown(value)}; it must be finite, and of at most {_MOST_CHANNELS} numbers")
+        raise SceneError(f"{label(place)} is {_shown(value)}; it must be finite, {_MOST_CHANNELS} numbers at most")
 
 
 _NAME_LENGTH = 4

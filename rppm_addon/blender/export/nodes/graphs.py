@@ -12,7 +12,7 @@ from ....scene import Link, NodeGraph
 from ....scene.sky import Sky
 from ..context import ExportContext
 from ..meshes.attributes import GENERATED
-from .links import Path, Source, find_source, is_lost
+from .links import LinkTable, Path, Source, find_source, is_lost
 
 Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
 """Gives the value of an output: a Link, a number or a color."""
@@ -80,6 +80,7 @@ class GraphExporter:
         self.skies: dict[int, Sky] = {}
         """Sky textures by the index of their node."""
         self.is_world = owner.startswith("World")
+        self._links = LinkTable()
         self._known: dict[tuple, object] = {}
         self._open: set[tuple] = set()
         self._waiting: set[tuple] = set()
@@ -97,7 +98,7 @@ class GraphExporter:
 
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
         """The shader that feeds an input; a color in place of it glows, as in Cycles."""
-        source = find_source(socket, path)
+        source = find_source(socket, path, self._links)
         if not isinstance(source, Source):
             if source.broken is not None:
                 self.warn(source.broken, _LOST)
@@ -112,7 +113,7 @@ class GraphExporter:
 
     def value(self, socket: bpy.types.NodeSocket, path: Path) -> object:
         """What an input of a node gets: a Link, a number, or a tuple of three."""
-        source = find_source(socket, path)
+        source = find_source(socket, path, self._links)
         if not isinstance(source, Source):
             if source.broken is not None:
                 self.warn(source.broken, _LOST)
@@ -135,7 +136,7 @@ class GraphExporter:
 
     def is_linked(self, socket: bpy.types.NodeSocket, path: Path) -> bool:
         """Whether a node's output feeds an input."""
-        return isinstance(find_source(socket, path), Source)
+        return isinstance(find_source(socket, path, self._links), Source)
 
     def _output(self, source: Source) -> object:
         """The value of an output, None when nothing is known."""

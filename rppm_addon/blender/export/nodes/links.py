@@ -35,7 +35,26 @@ def node_tree(owner: bpy.types.Material | bpy.types.World) -> bpy.types.NodeTree
     return owner.node_tree
 
 
-def find_source(socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
+class LinkTable:
+    """The links of node trees by the inputs that they lead to, while none is changed: Blender's own list of a socket's
+    links looks at all links of the tree each time."""
+
+    def __init__(self) -> None:
+        self._trees: dict[int, dict[int, bpy.types.NodeLink]] = {}
+
+    def into(self, socket: bpy.types.NodeSocket) -> bpy.types.NodeLink | None:
+        """The link that feeds an input, None where none does."""
+        tree = socket.id_data
+        links = self._trees.get(tree.as_pointer())
+        if links is None:
+            links = self._trees[tree.as_pointer()] = {}
+            usable = (link for link in tree.links if link.is_valid and not link.is_muted)
+            for link in sorted(usable, key=lambda link: getattr(link, "multi_input_sort_id", 0)):
+                links[link.to_socket.as_pointer()] = link  # of several the last
+        return links.get(socket.as_pointer())
+
+
+def find_source(socket: bpy.types.NodeSocket, path: Path, links: LinkTable) -> Source | Unlinked:
     """What feeds an input socket of a node that lies in the groups of ``path``."""
     start = socket
     passed: set[tuple[int, Path]] = set()
@@ -44,7 +63,7 @@ def find_source(socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
         if place in passed:
             return Unlinked(start)  # links in a circle, without a node that could give a value
         passed.add(place)
-        link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
+        link = links.into(socket)
         if link is None:
             # A reroute and a muted node have no value that the user sees: the reader's own counts.
             return Unlinked(start if socket.node.type == "REROUTE" else socket)
