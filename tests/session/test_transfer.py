@@ -229,6 +229,15 @@ def test_arrays_that_are_not_there(entry, values):
         block.close()
 
 
+def test_bytes_stand_for_one_array():
+    """Found by fuzzing: a layout that names the same bytes again and again would fill the memory."""
+    description, _ = pack([np.zeros(64)])
+    (entry,) = description["layout"]
+    for layout in ([entry, entry], [entry, [entry[0], [1], 8]]):
+        with pytest.raises(ProtocolError, match="amid another"):
+            unpack(description | {"layout": layout})
+
+
 @pytest.mark.parametrize(
     "change",
     [

@@ -57,7 +57,7 @@ def unpack(description: dict) -> list[np.ndarray]:
     block = None
     try:
         size = natural(description["size"], "a size")
-        runs = [_checked(entry, size) for entry in description["layout"]]
+        runs = _checked(description["layout"], size)
         if sum(shape[0] for _, shape, _ in runs) > _MOST_ARRAYS:
             raise ProtocolError(f"more than {_MOST_ARRAYS} arrays came in one message")
         if "block" in description:
@@ -82,19 +82,23 @@ def natural(value: object, what: str) -> int:
     return value
 
 
-def _checked(entry: Any, size: int) -> tuple[np.dtype, tuple[int, ...], int]:
-    """Type, shape and offset of a run that lies in so many bytes. Raises ProtocolError for another."""
-    kind, shape, offset = entry
-    if not isinstance(kind, str) or _NUMBERS.fullmatch(kind) is None:
-        raise ProtocolError(f"an array of {kind!r}")
-    if not isinstance(shape, list | tuple) or not 1 <= len(shape) <= _MOST_AXES:
-        raise ProtocolError(f"an array of the shape {shape!r}")
-    shape = tuple(natural(length, "a length") for length in shape)
-    dtype, start = np.dtype(kind), natural(offset, "an offset")
-    end = start + math.prod(shape) * dtype.itemsize
-    if end > size:
-        raise ProtocolError(f"an array ends at byte {end} of {size}")
-    return dtype, shape, start
+def _checked(layout: Any, size: int) -> list[tuple[np.dtype, tuple[int, ...], int]]:
+    """Type, shape and offset of runs that lie one behind the other in so many bytes. Raises ProtocolError."""
+    runs, end = [], 0
+    for kind, shape, offset in layout:
+        if not isinstance(kind, str) or _NUMBERS.fullmatch(kind) is None:
+            raise ProtocolError(f"an array of {kind!r}")
+        if not isinstance(shape, list | tuple) or not 1 <= len(shape) <= _MOST_AXES:
+            raise ProtocolError(f"an array of the shape {shape!r}")
+        lengths = tuple(natural(length, "a length") for length in shape)
+        dtype, start = np.dtype(kind), natural(offset, "an offset")
+        if start < end:  # else a few bytes would stand for any number of arrays
+            raise ProtocolError(f"an array begins at byte {start}, amid another")
+        end = start + math.prod(lengths) * dtype.itemsize
+        if end > size:
+            raise ProtocolError(f"an array ends at byte {end} of {size}")
+        runs.append((dtype, lengths, start))
+    return runs
 
 
 def _runs(arrays: Sequence[np.ndarray]) -> list[list[np.ndarray]]:
