@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whatever the renderer's process does, Blender goes on and can say what happened. Here the process is faked."""
 
+import errno
 import os
 import re
 import statistics
@@ -11,8 +12,9 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import Image
-from rppm_addon.session.process import client, remote_rendering
+from rppm_addon.session.process import arrays, client, remote_rendering
 from rppm_addon.session.process.client import MOST_RESTARTS, ProcessState
+from rppm_addon.session.process.protocol import ProtocolError
 from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
 
@@ -234,3 +236,36 @@ def test_a_render_can_be_stopped_though_the_process_hangs(start, monkeypatch):
 
         result = remote_rendering.render(start(fault), scene_of(), Job(), SessionKind.FINAL)
         assert result.stopped and not result.frame.combined.any()
+
+
+def test_without_shared_memory_the_scene_is_not_sent(start, monkeypatch):
+    """Blender goes on and says why; the process, which is not to blame, stays."""
+
+    def nothing_left(size):
+        raise OSError(errno.ENOMEM, "Cannot allocate memory")
+
+    monkeypatch.setattr(arrays.SharedBlock, "create", nothing_left)
+    process = start("hangs_and_stops_reading")
+    session = process.open(SessionKind.VIEWPORT)
+    scene = scene_of()
+    scene.images.append(Image("Large", np.zeros((256, 64, 4), np.float32)))
+    session.show(scene, 1, False)
+    wait_until(lambda: session.status.error)
+    assert "could not be sent" in session.status.error and "not enough shared memory" in session.status.error
+    assert process.state is ProcessState.RUNNING and process.restarts == 0
+
+
+@pytest.mark.parametrize(
+    ("sent", "names", "text"),
+    [
+        ([], [], "cannot be read"), ([np.zeros((4, 4, 4), np.float32)], ["Depth"], "cannot be read"),
+        ([np.zeros((4, 5, 4), np.float32)], [], "came as"), ([np.zeros((4, 4, 3), np.float32)], [], "the shape"),
+        ([np.zeros((4, 4, 4))], [], "came as float64"), ([np.zeros(64, np.float32)], [], "came as"),
+        ([np.zeros((4, 4, 4), np.float32), np.zeros((2, 2), np.float32)], ["Depth"], "came as"),
+    ],
+)  # fmt: skip
+def test_pictures_that_do_not_fit_are_refused(sent, names, text):
+    scene = scene_of()
+    scene.camera.width = scene.camera.height = 4
+    with pytest.raises(ProtocolError, match=text):
+        remote_rendering._frame({"arrays": sent, "passes": names}, scene)
