@@ -2,8 +2,20 @@
 """What is expected of every way in: what is given is taken, or refused by the error that the way promises."""
 
 import contextlib
+import os
 from collections.abc import Iterator
 
+import hypothesis
+
+EXAMPLES = int(os.environ.get("RPPM_FUZZ_EXAMPLES", "0"))
+"""Of each way; 0 is a few, always the same, as in the tests."""
+fuzzed = hypothesis.settings(
+    **({"max_examples": EXAMPLES} if EXAMPLES else {"max_examples": 40, "derandomize": True, "database": None}),
+    deadline=10_000,  # milliseconds: what takes longer hangs
+    suppress_health_check=list(hypothesis.HealthCheck),
+    print_blob=True,
+    phases=[phase for phase in hypothesis.Phase if phase is not hypothesis.Phase.explain],
+)
 COUNTS: dict[str, list[int]] = {}
 """Cases given and cases refused by the name of a way in."""
 

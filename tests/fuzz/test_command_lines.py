@@ -7,7 +7,7 @@ import io
 import hypothesis.strategies as st
 from hypothesis import given
 
-from fuzz.counting import COUNTS, may_refuse
+from fuzz.counting import COUNTS, fuzzed, may_refuse
 from fuzz.values import NUMBERS, TEXTS, VALUES
 from rppm_addon.cli import main
 from rppm_addon.commands.arguments import parser
@@ -27,6 +27,7 @@ WORDS = st.one_of(OPTIONS, _TEXTS, st.sampled_from(["a.exr", "a.png", "absent.np
 COMMANDS = st.sampled_from(["render", "merge", "farm", "export", "inspect", "compile", "info", "", "rend"])
 
 
+@fuzzed
 @given(command=COMMANDS, words=st.lists(WORDS, max_size=8))
 def test_arguments(command, words):
     """Understood, or exit status 2 and a line that says why not."""
@@ -44,6 +45,7 @@ def test_arguments(command, words):
     assert options.command == command
 
 
+@fuzzed
 @given(words=st.lists(WORDS, max_size=5))
 def test_renders_of_nothing(tmp_path_factory, words):
     """A line on standard error and a status, whatever else is asked of a scene that is not there."""
@@ -60,6 +62,7 @@ def test_renders_of_nothing(tmp_path_factory, words):
     count[1] += status != 0
 
 
+@fuzzed
 @given(
     values=st.dictionaries(st.sampled_from([*_NAMES, "nonsense"]), st.one_of(VALUES, _TEXTS), max_size=4),
     text=st.one_of(TEXTS, st.tuples(TEXTS, TEXTS).map("=".join)),

@@ -14,7 +14,7 @@ from hypothesis import given
 from support.full_scene import full_scene
 from unit.checkpoints import write_part
 
-from fuzz.counting import may_refuse
+from fuzz.counting import fuzzed, may_refuse
 from fuzz.values import NUMBERS, changed_documents, damaged_bytes
 from rppm_addon.scene import load_scene, save_scene
 from rppm_addon.scene.errors import CheckpointError, SceneError
@@ -81,6 +81,7 @@ def try_scene(path, way):
         looks_right(load_scene(path))
 
 
+@fuzzed
 @given(data=st.data())
 def test_damaged_scenes(scene_file, folder, data):
     path = folder / "damaged.npz"
@@ -88,6 +89,7 @@ def test_damaged_scenes(scene_file, folder, data):
     try_scene(path, "damaged-scenes")
 
 
+@fuzzed
 @given(data=st.data())
 def test_forged_scenes(scene_file, folder, data):
     """Archives that are whole, with another document, and arrays of other types, shapes and values."""
@@ -138,6 +140,7 @@ def try_checkpoint(path, way):
         assert all(array.shape[:2] == (height, width) for array in pause.state.passes.values())
 
 
+@fuzzed
 @given(data=st.data())
 def test_damaged_checkpoints(checkpoint, folder, data):
     path = folder / "damaged.exr"
@@ -145,6 +148,7 @@ def test_damaged_checkpoints(checkpoint, folder, data):
     try_checkpoint(path, "damaged-checkpoints")
 
 
+@fuzzed
 @given(data=st.data())
 def test_forged_checkpoints(folder, data):
     """Whole ones that say what no render says."""

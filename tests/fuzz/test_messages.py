@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from support.full_scene import full_scene
 
-from fuzz.counting import may_refuse
+from fuzz.counting import fuzzed, may_refuse
 from fuzz.values import INTEGERS, NUMBERS, TEXTS, VALUES, as_json, changed_documents, damaged_bytes
 from rppm_addon.commands.farm.tasks import Task
 from rppm_addon.scene.errors import SettingsError
@@ -46,6 +46,7 @@ def shared():
     block.close()
 
 
+@fuzzed
 @given(layout=LAYOUTS, where=st.sampled_from(["shared", "message"]), data=st.data())
 def test_layouts(shared, layout, where, data):
     description = shared if where == "shared" else _PACKED
@@ -62,6 +63,7 @@ def test_layouts(shared, layout, where, data):
             array.sum()  # which reads all of it
 
 
+@fuzzed
 @given(data=st.data())
 def test_pipes(data):
     stream = b"".join(frame_message("status", session=1, status={"iteration": place}) for place in range(3))
@@ -71,6 +73,7 @@ def test_pipes(data):
             check_message(message, FROM_CHILD)
 
 
+@fuzzed
 @given(data=st.data())
 def test_messages(data):
     table = data.draw(st.sampled_from([TO_CHILD, FROM_CHILD]))
@@ -85,6 +88,7 @@ def test_messages(data):
         assert read.keys() - {"kind"} == table[read["kind"]].keys()
 
 
+@fuzzed
 @given(data=st.data())
 def test_records(data):
     good = data.draw(
@@ -114,6 +118,7 @@ def frames():
     writer.release()
 
 
+@fuzzed
 @given(data=st.data())
 def test_frames(frames, data):
     reader, announced, name = frames
@@ -136,6 +141,7 @@ _WORDS = """render merge export info /in/a.blend -o /etc/x.exr --json --js=/etc/
 WORDS = st.one_of(st.sampled_from(_WORDS.split()), TEXTS)
 
 
+@fuzzed
 @given(
     arguments=st.lists(WORDS, max_size=6).map(lambda words: ("render", "/in/a.blend", *words)),
     outputs=st.lists(PATHS, max_size=2).map(tuple),
