@@ -73,13 +73,13 @@ class Texels:
     Arrays have a row for each of the camera's region, row 0 at the bottom.
     """
 
-    instance: int
+    instance: int = field(metadata=declared(below="instances"))
     """Index into Scene.instances."""
-    triangles: np.ndarray
+    triangles: np.ndarray = field(metadata=declared("height", "width", types="int32", minimum=-1))
     """(height, width) int32, the triangle of the instance's mesh; -1 is none."""
-    barycentrics: np.ndarray
+    barycentrics: np.ndarray = field(metadata=declared("height", "width", 2, types="float32", finite=False))
     """(height, width, 2) float32, weights of the triangle's second and third corner."""
-    differentials: np.ndarray
+    differentials: np.ndarray = field(metadata=declared("height", "width", 4, types="float32", finite=False))
     """(height, width, 4) float32, what these change by over half a texel: the second's to the right and upward, then
     the third's. All 0: not a texel but a vertex."""
     viewer: tuple[float, float, float, float] | None = None

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from .camera import Camera
+from .camera import Camera, Texels
 from .declared import FLOAT_MAX, Declared, declared_of
 from .errors import SceneError
 from .meshes import AttributeDomain, Mesh
@@ -36,6 +36,8 @@ def check_scene(scene: Scene) -> None:
     """Raise SceneError, naming member and field, unless the scene is what its declaration says."""
     lengths = {name: len(getattr(scene, name)) for name in _LISTS if isinstance(getattr(scene, name), list)}
     _Gate(lengths).records(Scene, [scene], lambda _: "")
+    if scene.camera.texels is not None:
+        _check_texels(scene, scene.camera.texels)
     for name, shutter in {"shutter": scene.shutter, "neighbors": scene.neighbors}.items():
         if shutter is not None:
             _check_members(scene, shutter, name)
@@ -340,6 +342,17 @@ def _check_times(moved: Movement | Deformation | CameraMovement, label: str) -> 
 def _check_shutter(shutter: Shutter, label: str) -> None:
     if len(shutter.curve) == 0:
         raise SceneError(f"{label}: curve is empty; it must have a value")
+
+
+def _check_texels(scene: Scene, texels: Texels) -> None:
+    """A texture that is baked lies on the triangles of its mesh."""
+    width, height = scene.camera.resolution
+    if texels.triangles.shape != (height, width):
+        raise SceneError(f"camera: texels: triangles has the shape {texels.triangles.shape}, not ({height}, {width})")
+    count = scene.meshes[scene.instances[texels.instance].mesh].triangle_count
+    greatest = int(texels.triangles.max())
+    if 0 < count <= greatest:  # of meshes without any the renderer tells more
+        raise SceneError(f"camera: texels: triangles has the index {greatest}; there are {count} triangles")
 
 
 def _check_members(scene: Scene, shutter: Shutter, label: str) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.full_scene import full_scene, graph_of_everything
 
-from rppm_addon.scene import Link, NodeGraph, ShaderNode, load_scene, save_scene
+from rppm_addon.scene import Link, NodeGraph, ShaderNode, Texels, load_scene, save_scene
 from rppm_addon.scene.errors import SceneError
 from rppm_addon.scene.gate import check_record, check_scene
 from rppm_addon.scene.meshes import RayVisibility
@@ -26,6 +26,12 @@ def linking(node, output="bsdf"):
     graph = graph_of_everything()
     graph.surface = Link(node, output)
     return graph
+
+
+def texels(scene, triangle):
+    width, height = scene.camera.resolution
+    places = (np.zeros((height, width, count), np.float32) for count in (2, 4))
+    return Texels(0, np.full((height, width), triangle, np.int32), *places)
 
 
 BROKEN = [
@@ -53,6 +59,10 @@ BROKEN = [
     ("camera.height", lambda scene: 1 << 40, "camera: height is"),
     ("camera.width", lambda scene: 8.0, "it must be a int"),
     ("camera.crop", lambda scene: (0, 0, 65, 32), "crop is"),
+    ("camera.texels", lambda scene: texels(scene, 2), "index 2; there are 2 triangles"),
+    ("camera.texels", lambda scene: texels(scene, -2), "triangles is -2"),
+    ("camera.texels", lambda scene: dataclasses.replace(texels(scene, 0), instance=2), "instance is 2"),
+    ("camera.texels", lambda scene: dataclasses.replace(texels(scene, 0), triangles=np.zeros((1, 1))), "float64"),
     ("camera.clip_start", lambda scene: INF, "clip_start is inf"),
     ("meshes.0.corner_vertices", lambda scene: np.array([0, 1, 2, 4], np.int32), "index 4; there are 4 vertices"),
     ("meshes.0.corner_vertices", lambda scene: np.array([0, 1, 2, -1], np.int32), "index -1; there are 4 vertices"),
@@ -131,3 +141,10 @@ def test_a_status_of_the_other_process_is_held_to_its_declaration():
     for change in ({"iteration": "many"}, {"noise": None}, {"warnings": [5]}, {"source_watts": {"a": "b"}}):
         with pytest.raises(SceneError, match=next(iter(change))):
             check_record(SessionStatus(**change), SessionStatus)
+
+
+def test_texels_of_a_mesh_are_let_in():
+    scene = full_scene()
+    for triangle in (-1, 1):
+        scene.camera.texels = texels(scene, triangle)
+        check_scene(scene)
