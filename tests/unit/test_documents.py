@@ -72,4 +72,4 @@ def test_the_site_has_all_documents():
     navigation = (ROOT / "tools" / "site" / "mkdocs.yml").read_text(encoding="utf-8")
     listed = re.findall(r"^\s*- (\S+\.md)$", navigation, re.MULTILINE)
     there = [path.relative_to(ROOT / "docs").as_posix() for path in sorted((ROOT / "docs").rglob("*.md"))]
-    assert sorted(listed) == sorted([*there, "CONTRIBUTING.md", "CHANGELOG.md"])
+    assert sorted(listed) == sorted([*there, "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"])
