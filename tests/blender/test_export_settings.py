@@ -14,8 +14,8 @@ from rppm_addon.scene.setting_info import settings_of
 
 # properties that Blender itself has, and what viewports alone have
 ELSEWHERE = {"film_transparent", "passes", "aovs", "light_groups", "denoising_start_sample"}
-# what a bake holds, what makes the seed another one, a member of the scene, an object of Blender's, exported as a point,
-# and what viewports have apart
+# what a bake holds, what makes the seed another one, a member of the scene, an object of Blender's, exported as a
+# point, and what viewports have apart
 BESIDES = {
     "bake_type",
     "use_animated_seed",
