@@ -55,10 +55,10 @@ def lengths() -> list[str]:
     return [*long_lines(), *functions]
 
 
-def check_shader(variant: Variant) -> str:
+def check_shader(variant: Variant, reads_texels: bool) -> str:
     """What glslangValidator has against a stage file; empty when nothing."""
     try:
-        source = variant.expand()
+        source = variant.expand(reads_texels)
     except ShaderError as error:
         return str(error)
     try:
@@ -80,9 +80,11 @@ def check_shader(variant: Variant) -> str:
 
 def check_shaders() -> tuple[list[str], int]:
     """Problems of all stage files, and how many variants were checked."""
-    checked = variants()
+    # Programs of compute shaders alone read texels.
+    checked = [(variant, False) for variant in variants()]
+    checked += [(variant, True) for variant, _ in checked if variant.name.endswith(".comp")]
     with ThreadPoolExecutor(2) as pool:
-        results = list(pool.map(check_shader, checked))
+        results = list(pool.map(check_shader, *zip(*checked, strict=True)))
     return [*lengths(), *(result for result in results if result)], len(checked)
 
 

@@ -21,6 +21,7 @@ import moderngl
 from ..processors import usable_cores
 from .context import Context
 from .sources import Source
+from .texel_buffers import TEXEL_SIZE, TexelBuffers, allocated_size
 from .textures import TextureKind
 
 log = logging.getLogger(__name__)
@@ -154,7 +155,9 @@ class BackgroundCompiler:
                     for unit, kind in TextureKind.by_unit.items():
                         kind.make(context.moderngl, (1, 1)).use(unit)
                     dispatch = EmptyDispatch(context)
+                    texels = context.moderngl.buffer(reserve=allocated_size(TEXEL_SIZE))
                 program = context.moderngl.compute_shader(source.text)
+                TexelBuffers(context, source.texel_buffers).bind(dict.fromkeys(source.texel_buffers, texels))
                 dispatch.run(program.glo)
                 time.sleep(_KEEPING_SECONDS)
                 program.release()

@@ -7,6 +7,7 @@ from numpy.typing import DTypeLike
 
 from ..scene.errors import DeviceError
 from .context import Context
+from .texel_buffers import allocated_size, release_textures
 
 SMALLEST = 64
 """Bytes that every buffer has at least."""
@@ -37,19 +38,19 @@ class GrowingBuffer:
         self.item_size, self._header_size = item_size, header_size
         self._context = context
         self._buffer: moderngl.Buffer | None = None
-        self._is_required = False
+        self._size = 0
 
     @property
     def buffer(self) -> moderngl.Buffer:
         """To be bound; a few bytes while nothing was required."""
         if self._buffer is None:
-            self._buffer = self._context.moderngl.buffer(reserve=SMALLEST)
+            self._buffer = self._context.moderngl.buffer(reserve=allocated_size(SMALLEST))
         return self._buffer
 
     @property
     def size(self) -> int:
         """Bytes; 0 while nothing was required."""
-        return self.buffer.size if self._is_required else 0
+        return self._size
 
     @property
     def capacity(self) -> int:
@@ -76,8 +77,8 @@ class GrowingBuffer:
             )
         self.release()
         try:
-            self._buffer = self._context.moderngl.buffer(reserve=max(size, SMALLEST))
-            self._is_required = True
+            self._buffer = self._context.moderngl.buffer(reserve=allocated_size(max(size, SMALLEST)))
+            self._size = max(size, SMALLEST)
         except moderngl.Error as error:
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}"
@@ -107,5 +108,6 @@ class GrowingBuffer:
     def release(self) -> None:
         """Free the buffer."""
         if self._buffer is not None:
+            release_textures(self._context, self._buffer)
             self._buffer.release()
-            self._buffer, self._is_required = None, False
+            self._buffer, self._size = None, 0

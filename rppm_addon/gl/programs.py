@@ -36,28 +36,29 @@ class _Program:
         self.before_dispatch: Callable[[], None] | None = None
         """Called once, when all is bound."""
         self.name = " + ".join(source.files[0] for source in sources)
-        self.blocks: dict[str, int] = {}
+        self._bindings: dict[str, int] = {}
         self.record = None
         for source in sources:
             for block, binding in source.blocks.items():
-                if self.blocks.setdefault(block, binding) != binding:
+                if self._bindings.setdefault(block, binding) != binding:
                     raise ShaderError(f"{self.name}: block {block} has two bindings")
             self.record = self.record or source.parameters
-        self.texel_buffers = {name: unit for source in sources for name, unit in source.texel_buffers.items()}
-        self._texel_buffers = TexelBuffers(context, self.texel_buffers) if self.texel_buffers else None
-        self._wanted = self.blocks.keys() | self.texel_buffers.keys()
-        if len(set(self.blocks.values())) != len(self.blocks):
-            raise ShaderError(f"{self.name}: two blocks share a binding: {self.blocks}")
+        texel_buffers = {name: buffer for source in sources for name, buffer in source.texel_buffers.items()}
+        self._texel_buffers = TexelBuffers(context, texel_buffers) if texel_buffers else None
+        if len(set(self._bindings.values())) != len(self._bindings):
+            raise ShaderError(f"{self.name}: two blocks share a binding: {self._bindings}")
+        self.blocks = frozenset(self._bindings) | texel_buffers.keys()
+        """Names of those that it reads and writes."""
         self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
 
     def _bind(self, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None) -> None:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
-        if buffers.keys() != self._wanted:
-            missing, unknown = sorted(self._wanted - buffers.keys()), sorted(buffers.keys() - self._wanted)
+        if buffers.keys() != self.blocks:
+            missing, unknown = sorted(self.blocks - buffers.keys()), sorted(buffers.keys() - self.blocks)
             raise ValueError(f"{self.name}: buffers missing {missing}, unknown {unknown}")
-        for block, binding in self.blocks.items():
+        for block, binding in self._bindings.items():
             buffers[block].bind_to_storage_buffer(binding)
         if self._texel_buffers is not None:
             self._texel_buffers.bind(buffers)
@@ -70,8 +71,6 @@ class _Program:
 
     def release(self) -> None:
         """Free what it has on the device."""
-        if self._texel_buffers is not None:
-            self._texel_buffers.release()
         if self._parameters is not None:
             self._parameters.release()
 
@@ -218,6 +217,7 @@ class ProgramLibrary:
 
     def __init__(self, context: Context) -> None:
         self.context = context
+        self._reads_texels = context.is_software
         self._cache = BinaryCache(context)
         self._background = Background(context) if is_of_use(context) else None
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
@@ -261,7 +261,7 @@ class ProgramLibrary:
         """The same object for the same text, so that asking again costs nothing."""
         key = (path, *sorted(inserts.items()))
         if key not in self._sources:
-            self._sources[key] = expand(path, {}, dict(inserts))
+            self._sources[key] = expand(path, {}, dict(inserts), self._reads_texels)
         return self._sources[key]
 
     def hurry(self, hurries: bool) -> None:
@@ -291,7 +291,8 @@ class ProgramLibrary:
             self.on_start()
 
     def _compute(self, path: str, defines: dict, inserts: dict) -> ComputeProgram:
-        return ComputeProgram(self.context, self._cache, expand(path, defines, inserts), self._background)
+        source = expand(path, defines, inserts, self._reads_texels)
+        return ComputeProgram(self.context, self._cache, source, self._background)
 
     def _draw(self, vertex: str, fragment: str, geometry: str | None, defines: dict) -> DrawProgram:
         geometry_source = expand(geometry, defines) if geometry else None

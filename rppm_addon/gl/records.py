@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-_KINDS = {
+KINDS = {
     # kind: (NumPy element, shape, alignment, size)
     "float": ("<f4", (), 4, 4),
     "int": ("<i4", (), 4, 4),
@@ -52,7 +52,7 @@ class Record:
         offset = 0
         alignment = 4
         for member, kind in members.items():
-            _, _, align, size = _KINDS[kind]
+            _, _, align, size = KINDS[kind]
             offset = -(-offset // align) * align
             self.members.append(_Member(member, kind, offset))
             offset += size
@@ -62,7 +62,7 @@ class Record:
         self.dtype = np.dtype(
             {
                 "names": [m.name for m in self.members],
-                "formats": [np.dtype((_KINDS[m.kind][0], _KINDS[m.kind][1])) for m in self.members],
+                "formats": [np.dtype((KINDS[m.kind][0], KINDS[m.kind][1])) for m in self.members],
                 "offsets": [m.offset for m in self.members],
                 "itemsize": self.size,
             }
@@ -102,5 +102,5 @@ def stride(item: Record | str) -> int:
     """Bytes from one item of an array to the next: of a record, or of a kind such as "vec4" (std430)."""
     if isinstance(item, Record):
         return item.size
-    _, _, alignment, size = _KINDS[item]
+    _, _, alignment, size = KINDS[item]
     return -(-size // alignment) * alignment

@@ -2,13 +2,13 @@
 """GLSL sources: includes, records, defines, and line numbers that name our files."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from . import texel_buffers
 from .constants import Constants
 from .records import Record
 from .storage_blocks import StorageBlock
+from .texel_buffers import DEFINE, TexelBuffer, declared_texel_buffers, read_as_texels
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
@@ -18,7 +18,6 @@ _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>)\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _SHARED_BLOCK = re.compile(r"^(\s*layout\s*\(\s*std430\b[^)]*\)[\w\s]*?\bbuffer\s+(\w+))\s*;(.*)$")
 _BLOCK = re.compile(r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*(\d+)\s*\)[\w\s]*?\bbuffer\s+(\w+)")
-_TEXEL_BUFFER = re.compile(r"layout\s*\(\s*binding\s*=\s*(\d+)\s*\)\s*uniform\s+(u?samplerBuffer)\s+(\w+)")
 _PARAMETERS = re.compile(r"layout\s*\(\s*std140\s*,\s*binding\s*=\s*0\s*\)\s*uniform\s+\w+\s*\{\s*(\w+)\s+\w+\s*;")
 _LOCAL_SIZE = re.compile(r"local_size_x\s*=\s*(\d+)")
 # "0:12(3): error" (Mesa), "0(12) : error" (NVIDIA), "ERROR: 0:12:" (AMD, Intel, glslang)
@@ -39,20 +38,13 @@ class Source:
 
     text: str
     files: list[str]
-    has_texel_buffers: bool = False
+    texel_buffers: dict[str, TexelBuffer] = field(default_factory=dict)
+    """By the names of the blocks that they stand for."""
 
     @property
     def blocks(self) -> dict[str, int]:
         """Binding of each storage block by the block's name, but for those that are texel buffers here."""
-        texels = self.texel_buffers
-        return {name: int(binding) for binding, name in _BLOCK.findall(self.text) if name not in texels}
-
-    @property
-    def texel_buffers(self) -> dict[str, tuple[int, str]]:
-        """Texture unit and type of sampler of each texel buffer by name; none without their define."""
-        if not self.has_texel_buffers:
-            return {}
-        return {name: (int(unit), sampler) for unit, sampler, name in _TEXEL_BUFFER.findall(self.text)}
+        return {name: int(binding) for binding, name in _BLOCK.findall(self.text) if name not in self.texel_buffers}
 
     @property
     def parameters(self) -> Record | None:
@@ -78,13 +70,19 @@ class Source:
         return "\n".join(_POSITION.sub(name, line, count=1) for line in message.splitlines())
 
 
-def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[str, str] | None = None) -> Source:
+def expand(
+    path: str,
+    defines: dict[str, object] | None = None,
+    inserts: dict[str, str] | None = None,
+    reads_texels: bool = False,
+) -> Source:
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include <Ray>`` inserts the struct of the
     record, or the constants, of that name once; ``layout(std430, binding = 0) buffer Rays;`` gets the members of the
     StorageBlock of that name, and before it the structs of its records. Defines go after #version; ``inserts`` are
-    texts of files that are made at run time, by name. Raises ShaderError.
+    texts of files that are made at run time, by name. reads_texels: blocks that are only read become texel buffers.
+    Raises ShaderError.
     """
     files: list[str] = []
     declared: dict[str, Record | Constants] = {**Record.registry, **Constants.registry}
@@ -132,4 +130,11 @@ def expand(path: str, defines: dict[str, object] | None = None, inserts: dict[st
                 lines.append(line)
 
     read(path, path)
-    return Source("\n".join(lines) + "\n", files, texel_buffers.DEFINE in (defines or {}))
+    return _source("\n".join(lines) + "\n", files, DEFINE in (defines or {}), reads_texels)
+
+
+def _source(text: str, files: list[str], declares_texel_buffers: bool, reads_texels: bool) -> Source:
+    texel_buffers = declared_texel_buffers(text) if declares_texel_buffers else {}
+    if reads_texels:
+        text, texel_buffers = read_as_texels(text, texel_buffers)
+    return Source(text, files, texel_buffers)

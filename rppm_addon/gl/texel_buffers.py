@@ -1,22 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Buffers that programs read through texture units, in texels of 16 bytes.
+"""Storage blocks that programs read through image units, as texel buffers.
 
-llvmpipe fetches a texel of each thread without a branch, but the words of storage blocks thread by thread.
+llvmpipe fetches the texels of all threads at once, but the words of storage blocks thread by thread, each behind a
+branch of its own: of 40 loads it takes 2 s to make code, and more with the square of their number; of 40 fetches
+0.1 s. The bits are the same.
 """
 
 import ctypes
+import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import moderngl
 
 from .context import Context
+from .records import KINDS, Record, stride
 
 DEFINE = "TEXEL_BUFFERS"
 """Shaders that are given it declare texel buffers in place of storage blocks of the same names."""
 TEXEL_SIZE = 16
-_TEXTURE_BUFFER, _TEXTURE0, _MAX_TEXTURE_BUFFER_SIZE = 0x8C2A, 0x84C0, 0x8C2B
-_FORMATS = {"samplerBuffer": 0x8814, "usamplerBuffer": 0x8D70}
-"""GL_RGBA32F and GL_RGBA32UI by the type of the sampler."""
+"""Bytes of a texel, at most."""
+MOST_IMAGES = 16
+"""Images of a compute shader that llvmpipe has had at all times."""
+_TEXTURE_BUFFER, _MAX_TEXTURE_BUFFER_SIZE, _READ_ONLY = 0x8C2A, 0x8C2B, 0x88B8
+_FORMATS = {"r32ui": 0x8236, "rg32ui": 0x823C, "rgba32ui": 0x8D70, "rgba32f": 0x8814}
+"""By their names in shaders."""
+_FORMAT_BY_WORDS = {1: "r32ui", 2: "rg32ui", 4: "rgba32ui"}
+
+_IMAGE = re.compile(
+    r"layout\s*\(\s*(\w+)\s*,\s*binding\s*=\s*(\d+)\s*\)\s*restrict\s+readonly\s+uniform\s+u?imageBuffer\s+(\w+)"
+)
+_READ_ARRAY = re.compile(
+    r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*\d+\s*\)\s*(?:restrict\s+)?readonly\s+buffer\s+(?P<block>\w+)\s*"
+    r"\{\s*(?P<item>\w+)\s+(?P<array>\w+)\s*\[\s*\]\s*;\s*\}\s*;"
+)
+"""A block that is an array and nothing else, and is only read."""
 
 
 def most_texels(context: Context) -> int:
@@ -24,26 +42,135 @@ def most_texels(context: Context) -> int:
     return context.integers(_MAX_TEXTURE_BUFFER_SIZE)[0]
 
 
-class TexelBuffers:
-    """The texel buffers of a program: ``units``, the texture unit and type of sampler by name."""
+def allocated_size(size: int) -> int:
+    """Bytes to allocate for a buffer of so many.
 
-    def __init__(self, context: Context, units: Mapping[str, tuple[int, str]]) -> None:
-        self._units = dict(units)
-        unsigned, names = ctypes.c_uint, ctypes.POINTER(ctypes.c_uint)
-        self._delete = context.function("glDeleteTextures", None, ctypes.c_int, names)
-        self._activate = context.function("glActiveTexture", None, unsigned)
+    llvmpipe has code of its own for texel buffers whose size is a power of two, and, as it takes their sizes' bits for
+    a texture's levels, for those with zeros in the lowest byte or the one above: other sizes of a scene would have
+    programs compiled anew.
+    """
+    if size & (size - 1) == 0 or size & 0xFF == 0:
+        size += TEXEL_SIZE
+    return size + 256 if (size >> 8) & 0xFF == 0 else size
+
+
+@dataclass(frozen=True)
+class TexelBuffer:
+    """Image unit and GL's format."""
+
+    unit: int
+    format: int
+
+
+def declared_texel_buffers(text: str) -> dict[str, TexelBuffer]:
+    """Those that a shader with DEFINE declares, by the names of the blocks that they stand for."""
+    return {name: TexelBuffer(int(unit), _FORMATS[kind]) for kind, unit, name in _IMAGE.findall(text)}
+
+
+def read_as_texels(text: str, declared: Mapping[str, TexelBuffer]) -> tuple[str, dict[str, TexelBuffer]]:
+    """A shader's text with texel buffers in place of the storage blocks that it only reads, as far as these are arrays
+    and there are units, and all of its texel buffers. Those that it has ``declared`` stay.
+
+    ``lights[i]`` becomes ``fetched_lights(i)``, which puts an item together from its texels. They are images and not
+    textures: for these llvmpipe has code by the samplers that other programs have left behind as well.
+    """
+    found = dict(declared)
+    taken = {buffer.unit for buffer in declared.values()}
+    units = [unit for unit in range(MOST_IMAGES) if unit not in taken]
+    arrays: list[str] = []
+
+    def declare(match: re.Match) -> str:
+        block, item, array = match["block"], match["item"], match["array"]
+        if not units or block in found or not (item in Record.registry or item in KINDS):
+            return match[0]
+        unit, words = units.pop(0), _words_of_a_texel(item)
+        kind = _FORMAT_BY_WORDS[words]
+        found[block] = TexelBuffer(unit, _FORMATS[kind])
+        arrays.append(array)
+        declaration = f"layout({kind}, binding = {unit}) restrict readonly uniform uimageBuffer {block};"
+        return f"{declaration} {_fetch_function(block, item, array, words)}"
+
+    text = _READ_ARRAY.sub(declare, text)
+    for array in arrays:
+        text = _with_calls(text, array)
+    return text, found
+
+
+def _words_of_a_texel(item: str) -> int:
+    size = stride(Record.registry.get(item, item))
+    return next(words for words in (4, 2, 1) if size % (4 * words) == 0)
+
+
+def _fetch_function(block: str, item: str, array: str, words: int) -> str:
+    """GLSL that gives an item by its number, on one line so that line numbers stay those of the file."""
+    record = Record.registry.get(item)
+    members = [(member.kind, member.offset // 4) for member in record.members] if record else [(item, 0)]
+    texels = stride(record or item) // (4 * words)
+    fetches = " ".join(f"uvec4 t{k} = imageLoad({block}, first + {k});" for k in range(texels))
+    values = ", ".join(_value(kind, first, words) for kind, first in members)
+    made = f"{item}({values})" if record else values
+    return f"{item} fetched_{array}(uint item) {{ int first = int(item) * {texels}; {fetches} return {made}; }}"
+
+
+def _value(kind: str, first: int, words: int) -> str:
+    """GLSL for a member from its first word on."""
+    if kind == "mat4":
+        return f"mat4({', '.join(_value('vec4', first + 4 * k, words) for k in range(4))})"
+    element, _, _, size = KINDS[kind]
+    count = size // 4
+    parts = [f"t{word // words}.{'xyzw'[word % words]}" for word in range(first, first + count)]
+    bits = parts[0] if count == 1 else f"uvec{count}({', '.join(parts)})"
+    if element == "<f4":
+        return f"uintBitsToFloat({bits})"
+    return f"{kind}({bits})"
+
+
+def _with_calls(text: str, array: str) -> str:
+    """The text with a call wherever an item of an array is read; the last first, as indices may be items themselves."""
+    for match in reversed(list(re.finditer(rf"\b{array}\s*\[", text))):
+        end, depth = match.end(), 1
+        while depth:
+            depth += {"[": 1, "]": -1}.get(text[end], 0)
+            end += 1
+        text = f"{text[: match.start()]}fetched_{array}(uint({text[match.end() : end - 1]})){text[end:]}"
+    return text
+
+
+class TexelBuffers:
+    """Binds the texel buffers of a program, by their names."""
+
+    def __init__(self, context: Context, buffers: Mapping[str, TexelBuffer]) -> None:
+        self._buffers = dict(buffers)
+        unsigned, integer = ctypes.c_uint, ctypes.c_int
+        self._generate = context.function("glGenTextures", None, integer, ctypes.POINTER(unsigned))
         self._bind = context.function("glBindTexture", None, unsigned, unsigned)
         self._attach = context.function("glTexBuffer", None, unsigned, unsigned, unsigned)
-        self._textures = (ctypes.c_uint * len(self._units))()
-        context.function("glGenTextures", None, ctypes.c_int, names)(len(self._units), self._textures)
+        self._bind_image = context.function(
+            "glBindImageTexture", None, unsigned, unsigned, integer, ctypes.c_ubyte, integer, unsigned, unsigned
+        )
 
-    def bind(self, buffers: Mapping[str, moderngl.Buffer]) -> None:
-        """Attach each buffer to its unit: a buffer that grew is another one."""
-        for texture, (name, (unit, sampler)) in zip(self._textures, self._units.items(), strict=True):
-            self._activate(_TEXTURE0 + unit)
-            self._bind(_TEXTURE_BUFFER, texture)
-            self._attach(_TEXTURE_BUFFER, _FORMATS[sampler], buffers[name].glo)
+    def bind(self, contents: Mapping[str, moderngl.Buffer]) -> None:
+        """Have each buffer at its unit."""
+        for name, buffer in self._buffers.items():
+            texture = self._texture(contents[name], buffer.format)
+            self._bind_image(buffer.unit, texture, 0, 0, 0, _READ_ONLY, buffer.format)
 
-    def release(self) -> None:
-        """Free the textures; the buffers stay."""
-        self._delete(len(self._textures), self._textures)
+    def _texture(self, contents: moderngl.Buffer, number: int) -> int:
+        """A buffer's texture of a format, made when it is first asked for."""
+        textures = contents.extra = contents.extra or {}
+        if number not in textures:
+            made = ctypes.c_uint(0)
+            self._generate(1, ctypes.byref(made))
+            self._bind(_TEXTURE_BUFFER, made.value)
+            self._attach(_TEXTURE_BUFFER, number, contents.glo)
+            textures[number] = made.value
+        return textures[number]
+
+
+def release_textures(context: Context, contents: moderngl.Buffer) -> None:
+    """Free a buffer's textures, which would keep what it has on the device."""
+    textures = list((contents.extra or {}).values())
+    if textures:
+        delete = context.function("glDeleteTextures", None, ctypes.c_int, ctypes.POINTER(ctypes.c_uint))
+        delete(len(textures), (ctypes.c_uint * len(textures))(*textures))
+        contents.extra = None

@@ -26,9 +26,9 @@
 
 // By index; see rppm_addon/gl/texel_buffers.py.
 #ifdef TEXEL_BUFFERS
-layout(binding = 0) uniform usamplerBuffer CubemapCells;
+layout(rgba32ui, binding = 0) restrict readonly uniform uimageBuffer CubemapCells;
 CubemapCell cubemap_cell(uint index) {
-    uvec4 words = texelFetch(CubemapCells, int(index));
+    uvec4 words = imageLoad(CubemapCells, int(index));
     return CubemapCell(words.x, words.y, words.z, words.w);
 }
 #else

@@ -10,9 +10,9 @@
 #endif
 
 #ifdef TEXEL_BUFFERS
-layout(binding = 1) uniform usamplerBuffer CellEntries;
+layout(rgba32ui, binding = 1) restrict readonly uniform uimageBuffer CellEntries;
 uvec2 cell_entry(uint place) {
-    uvec4 two = texelFetch(CellEntries, int(place >> 1u));
+    uvec4 two = imageLoad(CellEntries, int(place >> 1u));
     return (place & 1u) == 0u ? two.xy : two.zw;
 }
 #else

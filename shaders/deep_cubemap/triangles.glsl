@@ -2,8 +2,8 @@
 // The world-space triangles, three vertices each (w unused).
 
 #ifdef TEXEL_BUFFERS
-layout(binding = 2) uniform samplerBuffer Triangles;
-vec4 triangle_vertex(uint number) { return texelFetch(Triangles, int(number)); }
+layout(rgba32f, binding = 2) restrict readonly uniform imageBuffer Triangles;
+vec4 triangle_vertex(uint number) { return imageLoad(Triangles, int(number)); }
 #else
 layout(std430, binding = 8) restrict readonly buffer Triangles;
 vec4 triangle_vertex(uint number) { return triangle_vertices[number]; }

@@ -1,7 +1,5 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
 // A pixel takes over what the gathering rays of its neighbors found, within a radius that shrinks as all do.
 //
 // Bekaert, Sbert and Halton, Accelerating Path Tracing by Re-Using Paths (2002): a neighbor's ray counts by how much
@@ -18,15 +16,6 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 #include "common/gathering.glsl"
 layout(std140, binding = 0) uniform Parameters { ShareParameters parameters; };
-#ifdef TEXEL_BUFFERS
-layout(binding = 1) uniform usamplerBuffer GatheringVertices;
-layout(binding = 2) uniform samplerBuffer FoundRadiances;
-vec4 place_of(uint index) { return uintBitsToFloat(texelFetch(GatheringVertices, int(4u * index))); }
-uint normal_of(uint index) { return texelFetch(GatheringVertices, int(4u * index + 1u)).w; }
-vec3 weight_of(uint index) { return uintBitsToFloat(texelFetch(GatheringVertices, int(4u * index + 1u)).xyz); }
-uvec4 hit_of(uint index) { return texelFetch(GatheringVertices, int(4u * index + 3u)); }
-vec3 found_by(uint index) { return texelFetch(FoundRadiances, int(index)).rgb; }
-#else
 layout(std430, binding = 0) readonly buffer GatheringVertices;
 layout(std430, binding = 1) readonly buffer FoundRadiances;
 vec4 place_of(uint index) { return vec4(gathering_vertices[index].position, gathering_vertices[index].shared_radius); }
@@ -36,7 +25,6 @@ uvec4 hit_of(uint index) {
     return uvec4(floatBitsToUint(gathering_vertices[index].hit), gathering_vertices[index].hit_normal);
 }
 vec3 found_by(uint index) { return found_radiances[index].rgb; }
-#endif
 layout(std430, binding = 2) buffer Radiances;
 
 // How far the normals of neighbors may part, as a cosine, and how far one may lie off the other's tangent plane in

@@ -23,7 +23,7 @@ class Driver:
 
     def open(self):
         assert self.ready.wait(60.0)
-        gl = SimpleNamespace(compute_shader=self._compile, buffer=lambda data: SimpleNamespace(glo=1))
+        gl = SimpleNamespace(compute_shader=self._compile, buffer=lambda *_, **__: SimpleNamespace(glo=1))
         return SimpleNamespace(moderngl=gl, function=lambda *_: lambda *_: None, release=lambda: None)
 
     def _compile(self, text):

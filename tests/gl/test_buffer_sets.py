@@ -51,7 +51,7 @@ def test_of_what_nothing_is_asked_nothing_is_made(context, library):
     assert Outer.expected_bytes(Sizes(8)).keys() == made.memory_bytes.keys() == {"rocks", "few"}
     made.found.require_items(5)
     assert made.memory_bytes["found"] == 5 * 16
-    assert made.sticks.buffer.size == SMALLEST  # to be bound it has to be something
+    assert made.sticks.buffer.size >= SMALLEST  # to be bound it has to be something
     assert "sticks" not in made.memory_bytes
     made.release()
 

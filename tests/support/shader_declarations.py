@@ -34,9 +34,10 @@ class Variant:
     generated: str = ""
     """Of a node graph."""
 
-    def expand(self) -> Source:
+    def expand(self, reads_texels: bool = False) -> Source:
         """Its text; raises ShaderError."""
-        return expand(self.name, self.defines, {GENERATED: self.generated} if self.generated else {})
+        inserts = {GENERATED: self.generated} if self.generated else {}
+        return expand(self.name, self.defines, inserts, reads_texels)
 
 
 def variants() -> list[Variant]:

@@ -15,8 +15,6 @@ from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
-from ...gl.texel_buffers import DEFINE as TEXEL_BUFFERS
-from ...gl.texel_buffers import TEXEL_SIZE, most_texels
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records import GATHERING_VERTEX
@@ -53,8 +51,7 @@ class FinalGather(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._found_program = library.compute("final_gather/found.comp")
-        as_texels = context.is_software and self.vertices.size <= TEXEL_SIZE * most_texels(context)
-        self._share_program = library.compute("final_gather/share.comp", {TEXEL_BUFFERS: 1} if as_texels else {})
+        self._share_program = library.compute("final_gather/share.comp")
 
     def clear(self) -> None:
         """Forget what the band before found."""

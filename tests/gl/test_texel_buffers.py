@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Storage blocks that are read as texel buffers."""
+
+import numpy as np
+import pytest
+
+from rppm_addon.gl import sources
+from rppm_addon.gl.binary_cache import BinaryCache
+from rppm_addon.gl.buffers import GrowingBuffer
+from rppm_addon.gl.programs import ComputeProgram
+from rppm_addon.gl.records import Record
+from rppm_addon.gl.sources import expand
+from rppm_addon.gl.storage_blocks import StorageBlock
+from rppm_addon.gl.texel_buffers import MOST_IMAGES, allocated_size
+
+COUNT = 37
+"""No multiple of the words of a texel."""
+SHADER = """#version 430 core
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Things;
+layout(std430, binding = 1) readonly buffer Pairs { uvec2 pairs[]; };
+layout(std430, binding = 2) restrict readonly buffer Order { uint order[]; };
+layout(std430, binding = 3) writeonly buffer Found { uint found[]; };
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= COUNT) return;
+    uint at = index * 24u;
+    Thing thing = things[order[order[index]]];
+    for (int k = 0; k < 16; ++k) found[at + k] = floatBitsToUint(thing.turn[k / 4][k % 4]);
+    found[at + 16u] = floatBitsToUint(thing.place.x);
+    found[at + 17u] = floatBitsToUint(thing.place.z);
+    found[at + 18u] = thing.kind;
+    found[at + 19u] = uint(things[index].offset.y);
+    found[at + 20u] = floatBitsToUint(thing.size);
+    found[at + 21u] = pairs[order[index]].x;
+    found[at + 22u] = pairs[index].y;
+    found[at + 23u] = order[index];
+}
+"""
+
+
+@pytest.fixture
+def shader(tmp_path, monkeypatch):
+    """A shader that reads blocks."""
+    monkeypatch.setattr(sources, "SHADER_FOLDER", tmp_path)
+    for kind in (Record, StorageBlock):
+        monkeypatch.setattr(kind, "registry", {})
+    Record("Thing", turn="mat4", place="vec3", kind="uint", offset="ivec2", size="float")
+    StorageBlock("Things", "Thing things[];")
+    (tmp_path / "own.comp").write_text(SHADER)
+    return "own.comp"
+
+
+def test_texels_have_the_bits_of_blocks(context, shader, monkeypatch):
+    monkeypatch.setenv("RPPM_CACHE", "/nowhere")
+    random = np.random.default_rng(1)
+    size = Record.registry["Thing"].size
+    contents = {
+        "Things": random.integers(0, 1 << 32, COUNT * size // 4, np.uint32),  # denormal and infinite numbers, and none
+        "Pairs": random.integers(0, 1 << 32, 2 * COUNT, np.uint32),
+        "Order": random.permutation(COUNT).astype(np.uint32),
+    }
+    buffers = {name: GrowingBuffer(context, name) for name in (*contents, "Found")}
+    for name, array in contents.items():
+        buffers[name].upload(array)
+    buffers["Found"].require(COUNT * 24 * 4)
+    found = {}
+    for reads_texels in (False, True):
+        source = expand(shader, {"COUNT": f"{COUNT}u"}, reads_texels=reads_texels)
+        assert set(source.texel_buffers) == (set(contents) if reads_texels else set())
+        program = ComputeProgram(context, BinaryCache(context), source)
+        assert program.blocks == buffers.keys()
+        buffers["Found"].clear()
+        program.run(COUNT, {name: buffer.buffer for name, buffer in buffers.items()})
+        found[reads_texels] = buffers["Found"].read(np.uint32, COUNT * 24)
+        program.release()
+    assert np.array_equal(found[True], found[False])
+    things = contents["Things"].reshape(COUNT, -1)[contents["Order"][contents["Order"]]]
+    assert np.array_equal(found[True].reshape(COUNT, 24)[:, :16], things[:, :16])
+    for buffer in buffers.values():
+        buffer.release()
+
+
+def test_what_has_no_unit_stays_a_block(shader, tmp_path):
+    blocks = "".join(
+        f"layout(std430, binding = {k}) readonly buffer Block{k} {{ vec4 block{k}[]; }};\n" for k in range(20)
+    )
+    (tmp_path / "own.comp").write_text(f"#version 430 core\n{blocks}")
+    source = expand(shader, reads_texels=True)
+    assert list(source.texel_buffers) == [f"Block{k}" for k in range(MOST_IMAGES)]
+    assert list(source.blocks) == [f"Block{k}" for k in range(MOST_IMAGES, 20)]
+
+
+def test_what_is_written_stays_a_block(shader, tmp_path):
+    (tmp_path / "own.comp").write_text(
+        "#version 430 core\nlayout(std430, binding = 0) buffer Things;\n"
+        "layout(std430, binding = 1) writeonly buffer Found { uint found[]; };\n"
+        "layout(std430, binding = 2) readonly buffer List { uint count; uint items[]; };\n"
+    )
+    assert not expand(shader, reads_texels=True).texel_buffers
+
+
+def test_no_size_asks_for_code_of_its_own():
+    sizes = [1 << bits for bits in range(6, 31)]
+    for size in [*range(16, 2048, 4), *sizes, *(size + 256 for size in sizes), *(size - 16 for size in sizes)]:
+        allocated = allocated_size(size)
+        assert size <= allocated <= size + 512
+        assert allocated & (allocated - 1) and allocated & 0xFF and allocated & 0xFF00
