@@ -41,7 +41,7 @@ uint add_tile(uint tile, ivec2 cell, int face) {
     if (tile >= deep_cubemap.tile_capacity) return 0u;
     uint first = first_cell_of_tile(tile);
     cubemap_tiles[tile] = pack_place(cell, face);
-    for (uint child = 0u; child < 16u; ++child) cubemap_cells[first + child] = CubemapCell(0u, 0u, 0u, 0u);
+    for (uint child = 0u; child < parameters.tile_cells; ++child) cubemap_cells[first + child] = CubemapCell(0u, 0u, 0u, 0u);
     return pack_content(CELL_TILE, 0u, 0u) | first;
 }
 
@@ -50,7 +50,7 @@ void main() {
     if (tile >= parameters.end_tile) return;
     uint first = first_cell_of_tile(tile);
     uint divided = 0u, listed = 0u;
-    for (uint child = 0u; child < 16u; ++child) {
+    for (uint child = 0u; child < parameters.tile_cells; ++child) {
         CubemapCell cell = cubemap_cells[first + child];
         if (is_divisible(cell) && has_room(cell)) {
             divided |= 1u << child;
@@ -61,7 +61,7 @@ void main() {
     uint next_tile = divided == 0u ? 0u : atomicAdd(deep_cubemap.tile_count, uint(bitCount(divided)));
     uint next_entry = listed == 0u ? 0u : atomicAdd(deep_cubemap.entry_count, listed);
     uint place = cubemap_tiles[tile];
-    for (uint child = 0u; child < 16u; ++child) {
+    for (uint child = 0u; child < parameters.tile_cells; ++child) {
         uint index = first + child;
         CubemapCell cell = cubemap_cells[index];
         uint count = cell.content;

@@ -15,11 +15,11 @@ void main() {
     if (index >= parameters.end_cell) return;
     uint first = first_cell_of_tile(index);
     CubemapCell merged = cubemap_cells[index];
-    for (uint child = 0u; child < 16u; ++child) {
+    for (uint child = 0u; child < parameters.tile_cells; ++child) {
         merged.near_complement = max(merged.near_complement, cubemap_cells[first + child].near_complement);
         merged.far = max(merged.far, cubemap_cells[first + child].far);
     }
-    for (uint child = 0u; child < 16u; ++child) {
+    for (uint child = 0u; child < parameters.tile_cells; ++child) {
         CubemapCell cell = cubemap_cells[first + child];
         if (cell.slices == 0u) continue;
         uint near = ~cell.near_complement;

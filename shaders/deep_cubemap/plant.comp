@@ -25,7 +25,8 @@ void main() {
     cubemap_tiles[tile] = pack_place(cell, int(index / (side * side)));
     cubemap_cells[tile] = CubemapCell(0u, 0u, 0u, pack_content(CELL_TILE, 0u, 0u) | first_cell_of_tile(tile));
     bool is_last = shift == 2 * (int(deep_cubemap.base_level) - 1);
-    for (uint child = 0u; is_last && child < 16u; ++child) {
+    uint emptied = is_last ? 16u : 0u;
+    for (uint child = 0u; child < emptied; ++child) {
         cubemap_cells[first_cell_of_tile(tile) + child] = CubemapCell(0u, 0u, 0u, 0u);
     }
 }

@@ -110,8 +110,18 @@ Constants("DepthBins", signed=True, JOIN_MOST=JOIN_MOST)
 StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
 BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
 Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
-Record("DivideLevel", first_tile="uint", end_tile="uint", level="uint", side_exponent="uint", fragment_count="uint")
-Record("MergeLevel", first_cell="uint", end_cell="uint")
+CELLS_OF_A_TILE = 16
+"""Told to shaders as a number that drivers do not know: they write out loops of so few rounds, and compile for seconds."""
+Record(
+    "DivideLevel",
+    first_tile="uint",
+    end_tile="uint",
+    level="uint",
+    side_exponent="uint",
+    fragment_count="uint",
+    tile_cells="uint",
+)
+Record("MergeLevel", first_cell="uint", end_cell="uint", tile_cells="uint")
 Record("TraceParameters", first_place="uint")
 
 FINEST_RESOLUTION = 1 << 14
@@ -433,7 +443,7 @@ class DeepCubemap(BufferSet):
             self._state.upload(state)
             division = {
                 "first_tile": first_tile, "end_tile": end_tile, "level": level, "side_exponent": side_exponent,
-                "fragment_count": fragments,
+                "fragment_count": fragments, "tile_cells": CELLS_OF_A_TILE,
             }  # fmt: skip
             run("divide", end_tile - first_tile, division)
             run("hand_down", fragments, division)
@@ -458,7 +468,9 @@ class DeepCubemap(BufferSet):
             run("scatter_entries", int(state["binned_fragment_count"]))
         for upper in range(base - 1, -1, -1):
             first = sum(level_tiles[:upper])
-            run("merge_tiles", level_tiles[upper], {"first_cell": first, "end_cell": first + level_tiles[upper]})
+            end = first + level_tiles[upper]
+            cells = {"first_cell": first, "end_cell": end, "tile_cells": CELLS_OF_A_TILE}
+            run("merge_tiles", level_tiles[upper], cells)
         state = self._read_state()
         state["last_level"] = level
         self._state.upload(state)
