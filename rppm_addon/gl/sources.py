@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """GLSL sources: includes, records, defines, and line numbers that name our files."""
 
+import functools
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -106,31 +107,50 @@ def expand(
         files.append(name)
         if number:
             lines.append(f"#line 1 {number}")
-        for line_number, line in enumerate(text.splitlines(), 1):
-            include = _INCLUDE.match(line)
-            if include and include.group(1):
-                read(include.group(1), f"{name}:{line_number}")
-                lines.append(f"#line {line_number + 1} {number}")
-            elif include:
-                wanted = include.group(2)
-                if wanted not in declared:
-                    raise ShaderError(f"{name}:{line_number}: there is no record and there are no constants {wanted}")
-                lines.append(declare(wanted))
-            elif (block := _SHARED_BLOCK.match(line)) is not None:
-                if block.group(2) not in StorageBlock.registry:
-                    raise ShaderError(f"{name}:{line_number}: there is no storage block {block.group(2)}")
-                shared = StorageBlock.registry[block.group(2)]
-                structs = "".join(f"{declare(record.name)} " for record in shared.records)
-                lines.append(f"{structs}{block.group(1)} {{ {shared.members} }};{block.group(3)}")
-            elif _VERSION.match(line):
+        for line_number, line, match in _parts(text):
+            if match is None:
+                lines.append(line)
+            elif match.re is _VERSION:
                 lines.append(line)
                 lines.extend(f"#define {key} {value}" for key, value in (defines or {}).items())
                 lines.append(f"#line {line_number + 1} {number}")
+            elif match.re is _SHARED_BLOCK:
+                if match.group(2) not in StorageBlock.registry:
+                    raise ShaderError(f"{name}:{line_number}: there is no storage block {match.group(2)}")
+                shared = StorageBlock.registry[match.group(2)]
+                structs = "".join(f"{declare(record.name)} " for record in shared.records)
+                lines.append(f"{structs}{match.group(1)} {{ {shared.members} }};{match.group(3)}")
+            elif match.group(1):
+                read(match.group(1), f"{name}:{line_number}")
+                lines.append(f"#line {line_number + 1} {number}")
             else:
-                lines.append(line)
+                wanted = match.group(2)
+                if wanted not in declared:
+                    raise ShaderError(f"{name}:{line_number}: there is no record and there are no constants {wanted}")
+                lines.append(declare(wanted))
 
     read(path, path)
     return _source("\n".join(lines) + "\n", files, DEFINE in (defines or {}), reads_texels)
+
+
+@functools.lru_cache(maxsize=512)
+def _parts(text: str) -> list[tuple[int, str, re.Match | None]]:
+    """A file's lines by their numbers, with what those match that are to be replaced; others that follow each other
+    together. Most files are included by many."""
+    parts: list[tuple[int, str, re.Match | None]] = []
+    plain: list[str] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        match = _INCLUDE.match(line) or _SHARED_BLOCK.match(line) or _VERSION.match(line)
+        if match is None:
+            plain.append(line)
+            continue
+        if plain:
+            parts.append((number - len(plain), "\n".join(plain), None))
+        plain = []
+        parts.append((number, line, match))
+    if plain:
+        parts.append((0, "\n".join(plain), None))
+    return parts
 
 
 def _source(text: str, files: list[str], declares_texel_buffers: bool, reads_texels: bool) -> Source:

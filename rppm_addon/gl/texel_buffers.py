@@ -35,6 +35,10 @@ _READ_ARRAY = re.compile(
     r"\{\s*(?P<item>\w+)\s+(?P<array>\w+)\s*\[\s*\]\s*;\s*\}\s*;"
 )
 """A block that is an array and nothing else, and is only read."""
+_BRACKET = re.compile(r"//.*|[\[\]]")
+"""And comments, whose brackets are none."""
+_WORD_BEFORE = re.compile(r"\b\w+$")
+_LONGEST_NAME = 64
 
 
 def most_texels(context: Context) -> int:
@@ -77,7 +81,7 @@ def read_as_texels(text: str, declared: Mapping[str, TexelBuffer]) -> tuple[str,
     found = dict(declared)
     taken = {buffer.unit for buffer in declared.values()}
     units = [unit for unit in range(MOST_IMAGES) if unit not in taken]
-    arrays: list[str] = []
+    arrays: set[str] = set()
 
     def declare(match: re.Match) -> str:
         block, item, array = match["block"], match["item"], match["array"]
@@ -86,14 +90,12 @@ def read_as_texels(text: str, declared: Mapping[str, TexelBuffer]) -> tuple[str,
         unit, words = units.pop(0), _words_of_a_texel(item)
         kind = _FORMAT_BY_WORDS[words]
         found[block] = TexelBuffer(unit, _FORMATS[kind])
-        arrays.append(array)
+        arrays.add(array)
         declaration = f"layout({kind}, binding = {unit}) restrict readonly uniform uimageBuffer {block};"
         return f"{declaration} {_fetch_function(block, item, array, words)}"
 
     text = _READ_ARRAY.sub(declare, text)
-    for array in arrays:
-        text = _with_calls(text, array)
-    return text, found
+    return _with_calls(text, arrays), found
 
 
 def _words_of_a_texel(item: str) -> int:
@@ -125,15 +127,23 @@ def _value(kind: str, first: int, words: int) -> str:
     return f"{kind}({bits})"
 
 
-def _with_calls(text: str, array: str) -> str:
-    """The text with a call wherever an item of an array is read; the last first, as indices may be items themselves."""
-    for match in reversed(list(re.finditer(rf"\b{array}\s*\[", text))):
-        end, depth = match.end(), 1
-        while depth:
-            depth += {"[": 1, "]": -1}.get(text[end], 0)
-            end += 1
-        text = f"{text[: match.start()]}fetched_{array}(uint({text[match.end() : end - 1]})){text[end:]}"
-    return text
+def _with_calls(text: str, arrays: set[str]) -> str:
+    """The text with a call wherever an item of an array is read, in indices of others as well."""
+    pieces: list[str] = []
+    begin, closing = 0, []
+    for match in _BRACKET.finditer(text):
+        replaced, at = "", match.start()
+        if match[0] == "[":
+            word = _WORD_BEFORE.search(text, max(begin, at - _LONGEST_NAME), at)
+            if word and word[0] in arrays:
+                at, replaced = word.start(), f"fetched_{word[0]}(uint("
+            closing.append("))" if replaced else "")
+        elif match[0] == "]":
+            replaced = closing.pop()
+        if replaced:
+            pieces += [text[begin:at], replaced]
+            begin = match.end()
+    return "".join([*pieces, text[begin:]])
 
 
 class TexelBuffers:
