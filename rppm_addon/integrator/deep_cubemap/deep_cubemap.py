@@ -111,7 +111,7 @@ StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
 BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
 Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
 CELLS_OF_A_TILE = 16
-"""Told to shaders as a number that drivers do not know, as these write out loops of so few rounds and compile for long."""
+"""Told to shaders as a number that drivers do not know: loops of so few rounds are written out and compile for long."""
 Record(
     "DivideLevel",
     first_tile="uint",
