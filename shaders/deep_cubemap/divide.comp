@@ -41,7 +41,8 @@ uint add_tile(uint tile, ivec2 cell, int face) {
     if (tile >= deep_cubemap.tile_capacity) return 0u;
     uint first = first_cell_of_tile(tile);
     cubemap_tiles[tile] = pack_place(cell, face);
-    for (uint child = 0u; child < parameters.tile_cells; ++child) cubemap_cells[first + child] = CubemapCell(0u, 0u, 0u, 0u);
+    for (uint child = 0u; child < parameters.tile_cells; ++child)
+        cubemap_cells[first + child] = CubemapCell(0u, 0u, 0u, 0u);
     return pack_content(CELL_TILE, 0u, 0u) | first;
 }
 
