@@ -51,8 +51,8 @@ def shader(tmp_path, monkeypatch):
     return "own.comp"
 
 
-def test_texels_have_the_bits_of_blocks(context, shader, monkeypatch):
-    monkeypatch.setenv("RPPM_CACHE", "/nowhere")
+def test_texels_have_the_bits_of_blocks(context, shader, tmp_path, monkeypatch):
+    monkeypatch.setenv("RPPM_CACHE", str(tmp_path))
     random = np.random.default_rng(1)
     size = Record.registry["Thing"].size
     contents = {
