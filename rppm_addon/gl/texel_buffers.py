@@ -87,6 +87,8 @@ def read_as_texels(text: str, declared: Mapping[str, TexelBuffer]) -> tuple[str,
         block, item, array = match["block"], match["item"], match["array"]
         if not units or block in found or not (item in Record.registry or item in KINDS):
             return match[0]
+        if re.search(rf"\b{array}\s*\.\s*length\b", text):  # which texel buffers do not tell
+            return match[0]
         unit, words = units.pop(0), _words_of_a_texel(item)
         kind = _FORMAT_BY_WORDS[words]
         found[block] = TexelBuffer(unit, _FORMATS[kind])

@@ -100,6 +100,12 @@ def test_what_is_written_stays_a_block(shader, tmp_path):
     assert not expand(shader, reads_texels=True).texel_buffers
 
 
+def test_what_is_asked_for_its_length_stays_a_block(shader, tmp_path):
+    text = SHADER.replace("if (index >= COUNT)", "if (index >= pairs.length())")
+    (tmp_path / "own.comp").write_text(text)
+    assert set(expand(shader, {"COUNT": "8u"}, reads_texels=True).texel_buffers) == {"Things", "Order"}
+
+
 def test_no_size_asks_for_code_of_its_own():
     sizes = [1 << bits for bits in range(6, 31)]
     for size in [*range(16, 2048, 4), *sizes, *(size + 256 for size in sizes), *(size - 16 for size in sizes)]:

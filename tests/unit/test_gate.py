@@ -148,3 +148,10 @@ def test_texels_of_a_mesh_are_let_in():
     for triangle in (-1, 1):
         scene.camera.texels = texels(scene, triangle)
         check_scene(scene)
+
+
+def test_tables_of_ramps_and_of_curves_pass():
+    scene = full_scene()
+    for shape in ((259,), (257, 4)):
+        scene.materials[0].graph.add("float_curve", "value", table=np.zeros(shape, np.float32))
+    check_scene(scene)
