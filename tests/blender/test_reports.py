@@ -120,7 +120,7 @@ def test_an_error_is_shown_until_a_render_succeeds(facing):
         bpy.ops.render.render()
     panel, context = panels.performance.RPPM_PT_status, context_of(facing)
     assert not panels.warnings.RPPM_PT_warnings.poll(context)
-    assert panel.poll(context) and "all lights have photon weight of 0" in " ".join(drawn(panel, context).labels)
+    assert panel.poll(context) and "all lights have a photon weight of 0" in " ".join(drawn(panel, context).labels)
     light.data.rppm.photon_weight = 1.0
     rendered(facing)
     assert "photon weight of 0" not in " ".join(drawn(panel, context).labels)

@@ -190,7 +190,7 @@ def test_stills_of_a_blend_file(tmp_path, rppm, blend_files):
     assert status == 0, errors
     assert_same_state(read_checkpoint(part)[1].state, read_checkpoint(checkpoint)[1].state)
     merged_exr, merged_png = tmp_path / "merged.exr", tmp_path / "merged.png"
-    status, _, errors = rppm_here("merge", part, "-o", merged_exr, "-o", merged_png)
+    status, _, errors = rppm("merge", part, "-o", merged_exr, "-o", merged_png)  # opens the .blend file
     assert status == 0, errors
     for name, channel in read_exr(exr).channels.items():
         np.testing.assert_array_equal(channel, read_exr(merged_exr).channels[name], name)

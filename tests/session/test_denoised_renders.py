@@ -125,7 +125,7 @@ def test_parts_are_merged_before_they_are_denoised(renderer, tmp_path):
     assert merged.iterations == 4 and merged.warnings == []
     np.testing.assert_allclose(merged.frame.passes["Noisy Image"], whole.passes["Noisy Image"], rtol=1e-5, atol=1e-6)
     np.testing.assert_allclose(merged.frame.combined, whole.combined, rtol=1e-2, atol=1e-3)
-    merged.write([tmp_path / "merged.exr"])
+    merged.write_exr(tmp_path / "merged.exr")
     read = read_exr(tmp_path / "merged.exr")
     np.testing.assert_array_equal(read.combined, merged.frame.combined)
 

@@ -4,9 +4,10 @@
 import itertools
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from rppm_addon.scene.settings import RenderSettings
+from rppm_addon.scene import Camera, RenderSettings, Scene
 from rppm_addon.session import renderer
 from rppm_addon.session.continuation import Continuation
 from rppm_addon.session.renderer import SlicedRender
@@ -64,9 +65,8 @@ def run(monkeypatch):
             return RenderResult(self.frame(), RenderStatistics(self.iterations, 0, 0, 0, "", 0, 0), stopped)
 
         monkeypatch.setattr(SlicedRender, "result", plain_result)
-        scene = SimpleNamespace(
-            settings=RenderSettings(iterations=70, time_limit=float(limit)), exposure=1.0, warnings=[]
-        )
+        camera = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8)
+        scene = Scene(camera, settings=RenderSettings(iterations=70, time_limit=float(limit)))
         marks = []
         context = SimpleNamespace(finish=lambda: None, information=SimpleNamespace(label="a device"))
         render = SlicedRender(
