@@ -29,7 +29,7 @@ class ShaderNode:
     """A float, a tuple of three floats or a Link by name; what is left out has the kind's default."""
     options: dict[str, object] = field(default_factory=dict)
     """Choices that select code; what is left out has the kind's first value."""
-    table: np.ndarray | None = field(default=None, metadata=declared(types="fiu"))
+    table: np.ndarray | None = field(default=None, metadata=declared(types="fiu", finite=False))
     """(n, channels) float32 of a ramp, (n,) of a curve, a profile of light or tiles."""
     image: int = field(default=-1, metadata=declared(minimum=-1, below="images"))
     """Index into Scene.images, or -1."""
