@@ -51,8 +51,11 @@ def open_blocks(process="self"):
 
 def children():
     """This process's children that run."""
-    tasks = Path("/proc/self/task").iterdir()
-    return {int(pid) for task in tasks for pid in (task / "children").read_text().split() if is_running(int(pid))}
+    found = []
+    for thread in Path("/proc/self/task").iterdir():
+        with contextlib.suppress(OSError):  # a thread may end meanwhile
+            found += (thread / "children").read_text().split()
+    return {int(pid) for pid in found if is_running(int(pid))}
 
 
 def scene_of(iterations=1000, size=16, **changes):
