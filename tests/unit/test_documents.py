@@ -73,3 +73,9 @@ def test_the_site_has_all_documents():
     listed = re.findall(r"^\s*- (\S+\.md)$", navigation, re.MULTILINE)
     there = [path.relative_to(ROOT / "docs").as_posix() for path in sorted((ROOT / "docs").rglob("*.md"))]
     assert sorted(listed) == sorted([*there, "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"])
+
+
+@pytest.mark.parametrize("picture", sorted((ROOT / "docs").rglob("*.png")), ids=lambda path: path.name)
+def test_pictures_tell_no_place(picture):
+    """Blender writes the file that a picture comes from into it."""
+    assert b"File\0" not in picture.read_bytes()
