@@ -33,6 +33,11 @@ class PictureName:
     """Of stereo and multiview, such as "left"; "" is the only one."""
 
     @property
+    def joined(self) -> str:
+        """As metadata of files have it."""
+        return ".".join(filter(None, (self.layer, self.view)))
+
+    @property
     def prefix(self) -> str:
         """Before the names of its passes in files."""
         return f"{self.layer}." if self.layer else ""

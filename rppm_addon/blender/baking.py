@@ -13,7 +13,7 @@ from ..session.bake_passes import BakePass
 from ..session.render_job import RenderJob
 from ..session.results import Progress
 from .export import BakePixels, ExportStopped, export_baked_scene
-from .final import render_scene, report_warnings, status_text
+from .final import render_scene, report_late_warnings, report_warnings, status_text
 from .following import follow
 
 logger = logging.getLogger(__name__)
@@ -65,8 +65,7 @@ def _bake(
     scene = follow(scene)
     engine.update_stats("", "Preparing the graphics device")
     result = render_scene(engine, scene, _BakeJob(engine, scene, baked.name))
-    found = dict.fromkeys((*result.statistics.warnings, *scene.warnings))
-    report_warnings(engine, [text for text in found if text not in told])
+    report_late_warnings(engine, result, scene, told)
     return bake_pass.picture(result.frame)
 
 

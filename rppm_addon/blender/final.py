@@ -100,9 +100,7 @@ def _render(
     job.end(cancel=False)
     if not engine.is_preview:
         _stamp(engine, scene, view.name, result.statistics)
-    # The statistics repeat the scene's warnings, which have been reported.
-    found = dict.fromkeys((*result.statistics.warnings, *scene.warnings))
-    report_warnings(engine, [text for text in found if text not in told])
+    report_late_warnings(engine, result, scene, told)
     if result.statistics.iterations and not engine.is_preview:
         record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
     observer.on_finish(result, scene)
@@ -111,12 +109,11 @@ def _render(
 def _stamp(engine: bpy.types.RenderEngine, scene: Scene, name: PictureName, statistics: "RenderStatistics") -> None:
     """Tell files of the picture what Blender does not know of it."""
     fields = cryptomatte.metadata(scene, name.prefix)
-    layer = ".".join(filter(None, (name.layer, name.view)))
     fields |= {
-        f"rppm.{layer}.samples": str(statistics.iterations),
-        f"rppm.{layer}.photons": str(statistics.photons),
-        f"rppm.{layer}.seconds": f"{statistics.seconds:.3f}",
-        f"rppm.{layer}.device": statistics.device,
+        f"rppm.{name.joined}.samples": str(statistics.iterations),
+        f"rppm.{name.joined}.photons": str(statistics.photons),
+        f"rppm.{name.joined}.seconds": f"{statistics.seconds:.3f}",
+        f"rppm.{name.joined}.device": statistics.device,
     }
     result = engine.get_result()
     for field, value in fields.items():
@@ -224,6 +221,12 @@ def report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> None
     more = len(warnings) - WARNINGS_SHOWN
     if more > 0:
         engine.report({"WARNING"}, f"{more} more warnings of this kind are in the log")
+
+
+def report_late_warnings(engine: bpy.types.RenderEngine, result: "RenderResult", scene: Scene, told: list[str]) -> None:
+    """Show the user those of a render that were not ``told`` before it; the statistics repeat the scene's."""
+    found = dict.fromkeys((*result.statistics.warnings, *scene.warnings))
+    report_warnings(engine, [text for text in found if text not in told])
 
 
 class _FinalJob(RenderJob):

@@ -9,6 +9,7 @@ from pathlib import Path
 from ..pictures import PictureError, make_folder, renamed_when_whole
 from ..scene import Scene
 from ..scene.errors import SettingsError
+from ..scene.whole_files import is_no_file
 from .data_paths import split_assignment
 from .frame_numbers import has_place, path_of_frame
 from .recorder import apply_settings
@@ -118,7 +119,7 @@ def write_json(path: Path, report: dict[str, object]) -> None:
     make_folder(path)
     text = json.dumps(report, indent=2) + "\n"
     try:
-        if path.exists() and not path.is_file():  # such as /dev/stdout
+        if is_no_file(path):  # such as /dev/stdout
             path.write_text(text, encoding="utf-8")
             return
         with renamed_when_whole(path) as temporary:

@@ -183,8 +183,7 @@ class PictureSet(RenderObserver):
 
 def metadata_of(name: PictureName, metadata: Mapping[str, object]) -> dict[str, object]:
     """Metadata of a picture in a file that has several."""
-    prefix = ".".join(filter(None, (name.layer, name.view)))
-    return {f"{prefix}.{key}": value for key, value in metadata.items()}
+    return {f"{name.joined}.{key}": value for key, value in metadata.items()}
 
 
 def recorded_pictures(

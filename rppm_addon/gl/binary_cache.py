@@ -4,7 +4,6 @@
 import contextlib
 import ctypes
 import hashlib
-import hmac
 import logging
 import os
 import stat
@@ -47,7 +46,7 @@ def pack_entry(key: bytes, kind: int, binary: bytes) -> bytes:
 def unpack_entry(key: bytes, entry: bytes) -> tuple[int, bytes] | None:
     """Kind and binary of what was written for this key; None where it is another's, or is not whole."""
     digest, body = entry[:_DIGEST_SIZE], entry[_DIGEST_SIZE:]
-    if len(body) <= _KIND_SIZE or not hmac.compare_digest(digest, hashlib.sha256(key + body).digest()):
+    if len(body) <= _KIND_SIZE or digest != hashlib.sha256(key + body).digest():
         return None
     return struct.unpack("<I", body[:_KIND_SIZE])[0], body[_KIND_SIZE:]
 

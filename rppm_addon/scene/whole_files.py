@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that are there whole or not at all, whatever ends the process or fills the disk."""
+"""Files that are there whole or not at all, whatever ends the process or fills the disk; and what is no file."""
 
 import contextlib
 import os
@@ -11,6 +11,11 @@ from pathlib import Path
 
 _LONGEST_START = 80
 """Bytes of the file's and of the machine's own name that a temporary name has: systems allow 255 in all."""
+
+
+def is_no_file(path: Path) -> bool:
+    """Whether something else has this name, such as a device or a pipe, at which readers wait."""
+    return path.exists() and not path.is_file()
 
 
 @contextlib.contextmanager

@@ -40,9 +40,7 @@ _SINGLE = {
 _COMBINED = "COMBINED"
 BAKE_TYPES = {
     _COMBINED: "Combined",
-    **{kind: kind.title() for kind in _SINGLE},
-    "UV": "UV",
-    "EMIT": "Emission",
+    **_SINGLE,
     **{name.upper(): name for name in _LOBES},
 }
 """Those that can be baked, by Blender's names, and how Cycles labels them."""

@@ -28,6 +28,7 @@ from ..scene.errors import CheckpointError
 from ..scene.fingerprint import settings_of_plain
 from ..scene.gate import check_record
 from ..scene.passes import RenderPass
+from ..scene.whole_files import is_no_file
 from .continuation import Pause
 
 if TYPE_CHECKING:
@@ -195,7 +196,7 @@ def _digest(file: BinaryIO, size: int) -> bytes:
 
 
 def _check_whole(path: str | Path) -> None:
-    if Path(path).exists() and not Path(path).is_file():  # such as a pipe, at which one would wait
+    if is_no_file(Path(path)):
         raise CheckpointError(f"{path} is no file; name a checkpoint that rppm render wrote")
     with Path(path).open("rb") as file:
         size = os.fstat(file.fileno()).st_size

@@ -3,19 +3,15 @@
 
 import bpy
 
-from .report import Report
-
-_MOST_NAMES = 3
+from .report import Report, listed
 
 
 def warn_of_missing(report: Report) -> None:
     """Name the libraries of the open file of which something is missing, and what."""
     for library in bpy.data.libraries:
-        missing = sorted(user.name for user in library.users_id if user.is_missing)
+        missing = [user.name for user in library.users_id if user.is_missing]
         if not missing and not library.is_missing:
             continue
-        named = ", ".join(f'"{name}"' for name in missing[:_MOST_NAMES])
-        more = f" and {len(missing) - _MOST_NAMES} more" if len(missing) > _MOST_NAMES else ""
         where = "is missing" if library.is_missing else "does not have all that is linked"
-        left_out = f": {named}{more} left out" if missing else ""
+        left_out = f": {listed(missing)} left out" if missing else ""
         report.warn(f'the library "{library.filepath}" {where}{left_out}; put it back, or link to another file')

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 
 import bpy
 
-from .report import Report
+from .report import Report, listed
 
 _CYCLES_BOUNCES = 1024
 """Of lights and of the world, Cycles' default: no limit."""
-_NAMES_SHOWN = 3
 
 
 @dataclass(frozen=True)
@@ -231,7 +230,7 @@ class OmissionList:
         with report.about("omissions"):
             for omission, users in self._users.items():
                 if users:
-                    report.warn(f"{omission.title} ({_listed(users.values())}): {omission.consequence}")
+                    report.warn(f"{omission.title} ({listed(users.values())}): {omission.consequence}")
             for omission in OF_SCENES:
                 if omission.is_used(scene):
                     report.warn(f"{omission.title}: {omission.consequence}")
@@ -242,10 +241,3 @@ class OmissionList:
 def objects_of(depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Object]:
     """The evaluated objects that a depsgraph holds, what is multiplied included."""
     return (block for block in depsgraph.ids if isinstance(block, bpy.types.Object))
-
-
-def _listed(names: Iterable[str]) -> str:
-    ordered = sorted(names)
-    shown = ", ".join(f'"{name}"' for name in ordered[:_NAMES_SHOWN])
-    more = len(ordered) - _NAMES_SHOWN
-    return f"{shown} and {more} more" if more > 0 else shown

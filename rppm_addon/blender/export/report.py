@@ -3,11 +3,21 @@
 
 import contextlib
 import logging
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from ...scene.errors import RppmError
 
 logger = logging.getLogger(__name__)
+
+_NAMES_SHOWN = 3
+
+
+def listed(names: Iterable[str]) -> str:
+    """The first of the names in their order, and how many more there are."""
+    ordered = sorted(names)
+    shown = ", ".join(f'"{name}"' for name in ordered[:_NAMES_SHOWN])
+    more = len(ordered) - _NAMES_SHOWN
+    return f"{shown} and {more} more" if more > 0 else shown
 
 
 class ExportStopped(RppmError):

@@ -96,9 +96,7 @@ class LightGroups(BufferSet):
                 self._programs["passed"],
                 {
                     **lights.tree_buffers,
-                    "Closures": importons.closures.buffer,
-                    "Rays": importons.rays.buffer,
-                    "CameraPaths": importons.paths.buffer,
+                    **importons.path_blocks,
                     "Radiances": importons.radiances.buffer,
                     "SeenLight": self._seen.buffer,
                     "LightGroupTable": lights.group_table.buffer,
@@ -139,7 +137,6 @@ class LightGroups(BufferSet):
         if not self._groups:
             return
         with context.timers.stage("light groups"):
-            self._taken.clear()
             light = {"GroupedLight": self._grouped.buffer, "GroupSums": sums.group_sums}
             for group in range(self._groups):
                 parameters = self._parameters(context) | {
@@ -148,8 +145,8 @@ class LightGroups(BufferSet):
                     "iteration": iteration.number_in_film,
                     "quantum": sums.quantum,
                 }
+                self._taken.clear()
                 if context.gathers:
-                    self._taken.clear()
                     found = {
                         "GatheringVertices": final_gather.vertices.buffer,
                         "FoundRadiances": self._found.buffer,

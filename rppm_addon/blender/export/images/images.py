@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ....scene import Image
+from ....scene.whole_files import is_no_file
 from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 from .kept_images import keep, kept
 
@@ -108,7 +109,7 @@ def _is_no_file(path: str, image: bpy.types.Image) -> bool:
         return False
     place = Path(bpy.path.abspath(path, library=image.library))
     try:
-        return place.exists() and not place.is_file()
+        return is_no_file(place)
     except (OSError, ValueError):
         return False
 

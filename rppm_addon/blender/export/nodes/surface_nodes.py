@@ -11,6 +11,7 @@ from ....materials.ies import FLAT_PROFILE, ProfileError, profile_table
 from ....materials.sky.picture import sky_picture
 from ....scene import Image, Link
 from ....scene.sky import Sky
+from ....scene.whole_files import is_no_file
 from ..images.images import is_associated
 from ..meshes.attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, TANGENT, attribute_of
 from .graphs import GraphExporter, handles, snake_case
@@ -163,7 +164,7 @@ def _profile(node: bpy.types.Node) -> str:
     if node.mode == "INTERNAL":
         return "" if node.ies is None else node.ies.as_string()
     file = pathlib.Path(bpy.path.abspath(node.filepath, library=node.id_data.library))
-    if file.exists() and not file.is_file():  # who opens a pipe waits until somebody writes
+    if is_no_file(file):
         raise OSError(f"{file} is no file")
     return file.read_text(encoding="latin-1")
 
