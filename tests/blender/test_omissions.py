@@ -3,6 +3,7 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -10,7 +11,7 @@ from blender_scenes import add_light, add_mesh, export
 from rna_without_bearing import WITHOUT_BEARING
 
 import rppm_addon.blender
-from rppm_addon.blender.export import omissions
+from rppm_addon.blender.export import export_scene, omissions
 from rppm_addon.blender.export.sync import SceneSync
 from rppm_addon.scene.passes import PASSES
 
@@ -119,6 +120,15 @@ def test_what_is_used_is_named_once(lit, omission):
     USES[omission.title](lit)
     (text,) = warnings_about(lit, omission.title)
     assert omission.consequence in text
+
+
+def test_previews_name_nothing(lit):
+    """Their scene is Blender's own, and none of the user's doing."""
+    the(lit, "LIGHT").data.use_shadow = False
+    lit.view_layers[0].update()
+    engine = SimpleNamespace(is_preview=True, test_break=lambda: False, update_stats=lambda *_: None)
+    scene = export_scene(bpy.context.evaluated_depsgraph_get(), engine)
+    assert len(scene.lights) == 1 and not scene.warnings
 
 
 def test_many_objects_make_one_line(scene):

@@ -62,14 +62,16 @@ def export_scene(
     report, source = context.report, depsgraph.scene_eval
     scene = Scene(camera=export_camera(source, depsgraph, report, eye=Eye(engine)))
     scene.settings = export_settings(source, depsgraph.view_layer)
-    if engine is not None and engine.is_preview:
+    is_preview = engine is not None and engine.is_preview
+    if is_preview:
         scene.settings = preview_settings(scene.settings)
     scene.settings.validate()
     objects = ObjectExporter(context)
     blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
     placed = objects.export(depsgraph, identify=blurred or neighbors)
     scene.world, suns = export_world(world_of(depsgraph), context)
-    _tell_omissions(depsgraph, context.report)
+    if not is_preview:  # whose scene is Blender's own
+        _tell_omissions(depsgraph, context.report)
     if blurred or neighbors:
         placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
     scene.lights = placed.lights + suns
@@ -118,13 +120,13 @@ def _context_of(
 
     report = Report(stop, show)
     report.progress("Exporting the scene")
-    warn_of_missing(report)
     context = ExportContext(report)
     context.read_from(depsgraph)
     return context
 
 
 def _tell_omissions(depsgraph: bpy.types.Depsgraph, report: Report) -> None:
+    warn_of_missing(report)
     omissions = OmissionList()
     omissions.look_at(objects_of(depsgraph))
     omissions.tell(depsgraph, report)
