@@ -127,6 +127,19 @@ def _inspect(options: argparse.Namespace, bar: ProgressBar) -> int:
     return 0
 
 
+def _doctor(options: argparse.Namespace, bar: ProgressBar) -> int:
+    from .self_test.report import report_text, write_report
+
+    make_folder(options.output)
+    try:
+        found = write_report(options.output, bar.show, options.device)
+    except OSError as error:
+        raise PictureError(f"{options.output} cannot be written ({error}); choose another place with -o") from error
+    bar.clear()
+    print(f"{report_text(found)}\nWritten to {options.output}")
+    return 0 if found.passed else 1
+
+
 def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     from .gl.context import device_information
 
@@ -176,4 +189,5 @@ _RUNS = {
     "inspect": _inspect,
     "compile": compile_programs,
     "info": _info,
+    "doctor": _doctor,
 }

@@ -14,6 +14,7 @@ from . import (
     renderer_process,
     renderer_thread,
     reports,
+    self_test,
 )
 from .export.images import kept_images
 
@@ -24,6 +25,7 @@ def register() -> None:
     properties.register()
     engine.register()
     operators.register()
+    self_test.register()
     panels.register()
     preferences.register()
     renderer_process.register()
@@ -42,6 +44,7 @@ def unregister() -> None:
     renderer_process.unregister()
     preferences.unregister()
     panels.unregister()
+    self_test.unregister()
     operators.unregister()
     engine.unregister()
     properties.unregister()

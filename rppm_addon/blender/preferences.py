@@ -10,7 +10,7 @@ import bpy
 from ..denoising.places import REMEDY
 from ..scene.quantities import bytes_text
 from ..session.process.client import ProcessState
-from . import renderer_process
+from . import renderer_process, self_test
 from .chosen_device import device_here, device_of_environment, with_device_here
 from .denoising_libraries import denoising_libraries, root_package
 from .panels.base import letters_across, paragraph, reading
@@ -134,6 +134,7 @@ class RppmPreferences(bpy.types.AddonPreferences):
         row = layout.row()
         row.label(text=f"Log: {process.log_path}")
         row.operator("rppm.open_log", text="Open", icon="TEXT")
+        self_test.draw(layout)
 
     def _draw_denoiser(self, context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)

@@ -33,7 +33,7 @@ def renderer_process() -> RendererProcess:
             folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
             python = [python_program(), *bpy.app.python_args]
             _process = RendererProcess(python, folders, log_path(), denoisers=denoising_libraries())
-            _process.environment = _environment()
+            _process.environment = environment()
         return _process
 
 
@@ -76,12 +76,13 @@ def libraries_changed() -> None:
 def device_changed() -> None:
     """Another device was chosen: a process that runs is started anew on it."""
     if _process is not None:
-        _process.environment = _environment()
+        _process.environment = environment()
         if _process.state is not ProcessState.STOPPED:
             _process.restart()
 
 
-def _environment() -> dict[str, str]:
+def environment() -> dict[str, str]:
+    """What the process's environment has besides Blender's."""
     device = chosen_device()
     return {VARIABLE: device} if device else {}
 

@@ -50,6 +50,7 @@ def parser() -> argparse.ArgumentParser:
     _add_inspect(commands, scene, common)
     _add_compile(commands, scene, common)
     _add_info(commands, scene, common)
+    _add_doctor(commands, common)
     return program
 
 
@@ -228,6 +229,19 @@ def _add_info(commands: _Commands, scene: argparse.ArgumentParser, common: argpa
     )
     info.add_argument("--scene", type=Path, metavar="FILE", help="a .blend file or a .npz of rppm export")
     _add_json(info, "write it as JSON")
+
+
+def _add_doctor(commands: _Commands, common: argparse.ArgumentParser) -> None:
+    doctor = commands.add_parser(
+        "doctor",
+        parents=[common],
+        help="try the device and write a report that can be attached to a bug report",
+        description="Try the device: rays against brute force, light whose radiance is known, a small picture, speeds. "
+        "The report names the system, its driver and packages, but no person, machine or file.",
+    )
+    doctor.add_argument(
+        "-o", "--output", type=Path, default=Path("rppm_report.txt"), metavar="REPORT.txt", help="where it is written"
+    )
 
 
 def _add_output(command: argparse.ArgumentParser, text: str) -> None:

@@ -55,8 +55,8 @@ def identifiers(record):
 def test_before_the_renderer_was_needed(scene, process, context):
     record = drawn(RppmPreferences, context)
     assert record.labels[0] == "The renderer has not been needed yet"
-    assert identifiers(record) == ["rppm.start_renderer", "rppm.open_log"]
-    assert str(process.log_path) in record.labels[-1] and process.restarted == 0
+    assert identifiers(record) == ["rppm.start_renderer", "rppm.open_log", "rppm.self_test"]
+    assert str(process.log_path) in record.labels[-2] and process.restarted == 0
 
 
 def test_the_device_that_was_found(scene, process, context, monkeypatch):

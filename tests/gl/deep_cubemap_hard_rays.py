@@ -2,7 +2,8 @@
 """Rays that are hard for a cubemap and for float32, made from a scene's own triangles and the center."""
 
 import numpy as np
-from deep_cubemap_device import ray_records
+
+from rppm_addon.self_test.ray_queries import ray_records
 
 KINDS = (
     "uniform",

@@ -4,60 +4,9 @@
 import numpy as np
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, Mesh, RenderSettings, Scene, World
-
-
-def polygons(name: str, positions: np.ndarray, faces: list[tuple[int, ...]], smooth: bool = False) -> Mesh:
-    """A mesh of convex faces; smooth normals point away from the origin."""
-    positions = np.asarray(positions, np.float32)
-    corners, normals, triangles = [], [], []
-    for face in faces:
-        a, b, c = (positions[face[k]].astype(float) for k in range(3))
-        normal = np.cross(b - a, c - a)
-        first = len(corners)
-        corners += face
-        normals += [normal / np.linalg.norm(normal)] * len(face)
-        triangles += [(first, first + k, first + k + 1) for k in range(1, len(face) - 1)]
-    corners = np.array(corners, np.int32)
-    normals = np.array(normals, np.float32)
-    if smooth:
-        normals = positions[corners] / np.linalg.norm(positions[corners], axis=1, keepdims=True)
-    return Mesh(name, positions, corners, normals, np.array(triangles, np.int32), np.zeros(len(triangles), np.int32))
-
-
-def rectangle(name: str, *corners: tuple[float, float, float]) -> Mesh:
-    return polygons(name, np.array(corners), [(0, 1, 2, 3)])
-
-
-def sphere(name: str, columns: int = 32, rows: int = 16) -> Mesh:
-    """A unit sphere of quads with smooth normals."""
-    theta, phi = np.pi * np.arange(rows + 1) / rows, 2 * np.pi * np.arange(columns) / columns
-    s, c = np.sin(theta)[:, None], np.cos(theta)[:, None]
-    points = np.stack([s * np.cos(phi), s * np.sin(phi), c * np.ones(columns)], -1).reshape(-1, 3)
-    faces = []
-    for j in range(rows):
-        for i in range(columns):
-            a, b = j * columns + i, j * columns + (i + 1) % columns
-            d, e = a + columns, b + columns
-            faces.append((a, d, e) if j == 0 else (a, d, b) if j == rows - 1 else (a, d, e, b))
-    return polygons(name, points, faces, smooth=True)
-
-
-def placed(x: float, y: float, z: float, scale: float = 1.0) -> np.ndarray:
-    matrix = np.diag([scale, scale, scale, 1.0])
-    matrix[:3, 3] = x, y, z
-    return matrix
-
-
-def looking(position: tuple[float, float, float], target: tuple[float, float, float]) -> np.ndarray:
-    """Camera matrix that looks from a position to a target, Z up."""
-    forward = np.subtract(target, position).astype(float)
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, [0, 0, 1] if abs(forward[2]) < 0.999 else [0, 1, 0])
-    right /= np.linalg.norm(right)
-    matrix = np.eye(4)
-    matrix[:3, :4] = np.stack([right, np.cross(right, forward), -forward, position], 1)
-    return matrix
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene, World
+from rppm_addon.self_test.meshes import box_sides, looking, placed, rectangle, sphere
+from rppm_addon.self_test.meshes import polygons as polygons
 
 
 def diffuse(*color: float) -> Material:
@@ -67,11 +16,7 @@ def diffuse(*color: float) -> Material:
 def room(size: int = 32, **settings: object) -> Scene:
     """An open box of side 2 with a glass and a mirror sphere and an area light below the ceiling."""
     meshes = [
-        rectangle("floor", (-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)),
-        rectangle("ceiling", (-1, -1, 1), (-1, 1, 1), (1, 1, 1), (1, -1, 1)),
-        rectangle("back", (-1, 1, -1), (1, 1, -1), (1, 1, 1), (-1, 1, 1)),
-        rectangle("left", (-1, -1, -1), (-1, 1, -1), (-1, 1, 1), (-1, -1, 1)),
-        rectangle("right", (1, -1, -1), (1, -1, 1), (1, 1, 1), (1, 1, -1)),
+        *box_sides()[:5],
         sphere("ball"),
     ]
     materials = [

@@ -5,7 +5,6 @@ import time
 
 import numpy as np
 import pytest
-from deep_cubemap_device import Scene, ray_records
 from deep_cubemap_rays import KINDS, make_rays
 from deep_cubemap_reference import Reference
 from deep_cubemap_scenes import CENTERS, box, furnished_room, room_with_meshes
@@ -13,6 +12,7 @@ from deep_cubemap_scenes import CENTERS, box, furnished_room, room_with_meshes
 from rppm_addon.integrator.common.records import NO_TRIANGLE
 from rppm_addon.integrator.deep_cubemap import deep_cubemap
 from rppm_addon.scene.errors import DeviceError
+from rppm_addon.self_test.ray_queries import TracedTriangles, ray_records
 
 PLAIN = CENTERS["plain"]
 
@@ -45,7 +45,7 @@ def reference(meshes):
 @pytest.mark.parametrize("count", [100_000, pytest.param(1_000_000, marks=pytest.mark.long)])
 def test_random_rays(context, library, meshes, reference, count):
     rays = ray_records(*make_rays("uniform", count, PLAIN, seed=1))
-    with Scene(context, library, meshes, PLAIN, 128) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 128) as scene:
         scene.trace(rays[:1000])  # compiles
         start = time.perf_counter()
         hits = scene.trace(rays)
@@ -74,7 +74,7 @@ def test_embree_agrees(context, library, meshes):
     embree = rtcore_scene.EmbreeScene()
     TriangleMesh(embree, meshes)
     expected = embree.run(origins, directions, output=1)
-    with Scene(context, library, meshes, PLAIN, 128) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 128) as scene:
         hits = scene.trace(ray_records(origins, directions))
     far = np.abs(hits["distance"] - expected["tfar"]) > 1e-4 * np.maximum(hits["distance"], 1e-2)
     print(
@@ -87,7 +87,7 @@ def test_embree_agrees(context, library, meshes):
 @pytest.mark.parametrize("place", CENTERS)
 def test_all_kinds_of_rays_from_all_kinds_of_centers(context, library, meshes, reference, place):
     center = CENTERS[place]
-    with Scene(context, library, meshes, center, 64) as scene:
+    with TracedTriangles(context, library, meshes, center, 64) as scene:
         for kind in KINDS:
             rays = ray_records(*make_rays(kind, 60_000, center, seed=3))
             hits = scene.trace(rays)
@@ -103,7 +103,7 @@ def test_all_kinds_of_rays_from_all_kinds_of_centers(context, library, meshes, r
 def test_large_triangles_bit_for_bit(context, library, place):
     """Against a GPU kernel that tests all triangles with the same routine."""
     center = CENTERS[place]
-    with Scene(context, library, furnished_room(4), center, 128) as scene:
+    with TracedTriangles(context, library, furnished_room(4), center, 128) as scene:
         for kind in KINDS:
             rays = ray_records(*make_rays(kind, 30_000, center, seed=4))
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
@@ -113,7 +113,7 @@ def test_large_triangles_bit_for_bit(context, library, place):
 def test_scale_and_offset(context, library, scale, offset):
     triangles = furnished_room(4) * np.float32(scale) + np.float32(offset)
     center = np.float32(PLAIN) * np.float32(scale) + np.float32(offset)
-    with Scene(context, library, triangles, center, 64) as scene:
+    with TracedTriangles(context, library, triangles, center, 64) as scene:
         for kind in KINDS:
             origins, directions = make_rays(kind, 20_000, PLAIN, seed=5)
             rays = ray_records(origins * np.float32(scale) + np.float32(offset), directions)
@@ -125,7 +125,7 @@ def test_scale_and_offset(context, library, scale, offset):
 
 def test_the_resolution_does_not_matter(context, library, meshes):
     rays = ray_records(*make_rays("uniform", 50_000, PLAIN, seed=6))
-    with Scene(context, library, meshes, PLAIN, 256) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 256) as scene:
         expected = scene.trace(rays)
         for resolution in (4, 8, 32, 64, 128, 512):
             scene.build(resolution)
@@ -137,7 +137,7 @@ def test_texel_buffers_change_no_hit(context, library, meshes):
     rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=8))
     found = []
     for texel_buffers in (False, True):
-        with Scene(context, library, meshes, PLAIN, 256, texel_buffers=texel_buffers) as scene:
+        with TracedTriangles(context, library, meshes, PLAIN, 256, texel_buffers=texel_buffers) as scene:
             found.append((bits(scene.trace(rays)), scene.occluded(rays)))
     np.testing.assert_array_equal(found[0][0], found[1][0])
     np.testing.assert_array_equal(found[0][1], found[1][1])
@@ -145,7 +145,7 @@ def test_texel_buffers_change_no_hit(context, library, meshes):
 
 def test_buffers_too_long_for_texels_are_read_as_storage(context, library, meshes, monkeypatch):
     rays = ray_records(*make_rays("uniform", 2_000, PLAIN, seed=8))
-    with Scene(context, library, meshes, PLAIN, 256, texel_buffers=True) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 256, texel_buffers=True) as scene:
         expected = scene.trace(rays)
         monkeypatch.setattr(scene.cubemap, "_most_texel_bytes", 1024)
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
@@ -154,7 +154,7 @@ def test_buffers_too_long_for_texels_are_read_as_storage(context, library, meshe
 def test_any_hit_decides_as_the_nearest_hit_does(context, library, meshes):
     rays = ray_records(*make_rays("uniform", 100_000, PLAIN, seed=7))
     rng = np.random.default_rng(8)
-    with Scene(context, library, meshes, PLAIN, 64) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 64) as scene:
         distances = scene.trace(rays)["distance"]
         # just reaching the hit, just not reaching it, and anything
         rays["maximum_distance"] = np.where(rng.random(len(rays)) < 0.5, distances, rng.uniform(0.0, 2.0, len(rays)))
@@ -170,7 +170,7 @@ def test_any_hit_decides_as_the_nearest_hit_does(context, library, meshes):
 def test_source_triangles_are_never_hit(context, library, meshes, reference):
     """Rays that leave surfaces: from the hits of other rays on, with and without tracing through them."""
     first = ray_records(*make_rays("uniform", 100_000, PLAIN, seed=9))
-    with Scene(context, library, meshes, PLAIN, 64) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 64) as scene:
         hits = scene.trace(first)
         rays = ray_records(*make_rays("uniform", 100_000, PLAIN, seed=10))
         rays["origin"] = first["origin"] + first["direction"] * hits["distance"][:, None]
@@ -189,7 +189,7 @@ def test_inactive_and_broken_rays_miss(context, library, meshes):
     rays["direction"][36:40] = np.inf
     rays["direction"][40:48] = 0.0
     rays["maximum_distance"][48:56] = np.inf
-    with Scene(context, library, meshes, PLAIN) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN) as scene:
         hits, free = scene.trace(rays), scene.occluded(rays)
     assert np.all(hits["triangle"][:48] == NO_TRIANGLE) and np.all(free[:48] == 1)
     assert np.all(hits["triangle"][48:] != NO_TRIANGLE) and np.all(free[48:] == 0)
@@ -197,7 +197,7 @@ def test_inactive_and_broken_rays_miss(context, library, meshes):
 
 def test_an_empty_scene(context, library):
     rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=12))
-    with Scene(context, library, np.zeros((0, 3, 3)), PLAIN) as scene:
+    with TracedTriangles(context, library, np.zeros((0, 3, 3)), PLAIN) as scene:
         assert np.all(scene.trace(rays)["triangle"] == NO_TRIANGLE)
         assert np.all(scene.occluded(rays) == 1)
 
@@ -205,7 +205,7 @@ def test_an_empty_scene(context, library):
 def test_an_empty_scene_after_a_full_one(context, library, meshes):
     """Nothing of the last build is left."""
     rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=13))
-    with Scene(context, library, meshes, PLAIN) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN) as scene:
         scene.cubemap.build(scene.triangles, 0, PLAIN, 2.0, 64)
         assert np.all(scene.trace(rays)["triangle"] == NO_TRIANGLE)
 
@@ -220,8 +220,8 @@ def test_broken_triangles_do_no_harm(context, library):
     broken[40:50] = broken[40:50, :1]  # points
     broken[50:, 2] = broken[50:, 0]  # lines
     with (
-        Scene(context, library, np.concatenate([room, broken]), PLAIN) as scene,
-        Scene(context, library, room, PLAIN) as whole,
+        TracedTriangles(context, library, np.concatenate([room, broken]), PLAIN) as scene,
+        TracedTriangles(context, library, room, PLAIN) as whole,
     ):
         for kind in KINDS:
             rays = ray_records(*make_rays(kind, 20_000, PLAIN, seed=15))
@@ -232,7 +232,7 @@ def test_lists_that_are_too_short_grow(context, library, meshes, monkeypatch):
     monkeypatch.setattr(deep_cubemap, "_expected", lambda triangle_count: {"tile": 200})
     center = meshes[len(meshes) // 2, 0]  # on a dense mesh: a long core list
     rays = ray_records(*make_rays("past the center", 20_000, center, seed=16))
-    with Scene(context, library, meshes, center) as scene:
+    with TracedTriangles(context, library, meshes, center) as scene:
         first = scene.cubemap.memory_bytes
         hits = scene.trace(rays)
         scene.build(64)
@@ -246,7 +246,7 @@ def test_a_crowd_at_the_center(context, library):
     rng = np.random.default_rng(17)
     crowd = (rng.normal(size=(5000, 1, 3)) * 1e-5 + rng.normal(size=(5000, 3, 3)) * 1e-5).astype(np.float32)
     triangles = np.concatenate([box((-1, -1, -1), (1, 1, 1)).astype(np.float32), crowd])
-    with Scene(context, library, triangles, (0, 0, 0), 32) as scene:
+    with TracedTriangles(context, library, triangles, (0, 0, 0), 32) as scene:
         assert scene.cubemap.counts["core"] > 4000
         for kind in KINDS:
             rays = ray_records(*make_rays(kind, 1000, (0, 0, 0), seed=18))
@@ -256,13 +256,13 @@ def test_a_crowd_at_the_center(context, library):
 def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshes, monkeypatch, caplog):
     """And the same hits; with a warning where more than the fragments is too long."""
     rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=19))
-    with Scene(context, library, meshes, PLAIN, 0) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 0) as scene:
         expected, tiles, finest = scene.trace(rays), scene.cubemap.counts["tile"], scene.cubemap.resolution
         assert max(scene.cubemap.memory_bytes.values()) > 1 << 19
     for limit in (1 << 19, 360_000):
         caplog.clear()
         monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
-        with Scene(context, library, meshes, PLAIN, 0) as scene:
+        with TracedTriangles(context, library, meshes, PLAIN, 0) as scene:
             assert max(scene.cubemap.memory_bytes.values()) <= limit
             assert scene.cubemap.counts["tile"] < tiles
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
@@ -273,7 +273,7 @@ def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshe
 
 
 def test_triangles_that_the_device_cannot_hold_are_an_error(context, library, meshes, monkeypatch):
-    with Scene(context, library, meshes, PLAIN) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN) as scene:
         rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=19))
         expected = scene.trace(rays)
         monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 1 << 16)
@@ -290,23 +290,23 @@ def test_triangles_that_the_device_cannot_hold_are_an_error(context, library, me
 @pytest.mark.parametrize("resolution", [2, 48, -64, 1 << 15])
 def test_resolutions_are_powers_of_two(context, library, resolution):
     with pytest.raises(ValueError, match=str(resolution)):
-        Scene(context, library, furnished_room(), PLAIN, resolution)
+        TracedTriangles(context, library, furnished_room(), PLAIN, resolution)
 
 
 def test_both_routes_are_tried_once(context, library, meshes):
     """Small scenes say nothing about speed; the first larger one decides."""
-    with Scene(context, library, furnished_room(), PLAIN, 0, rasterize=None) as scene:
+    with TracedTriangles(context, library, furnished_room(), PLAIN, 0, rasterize=None) as scene:
         assert scene.cubemap.route is None
         scene.cubemap.build(scene.triangles, len(furnished_room()), PLAIN, 2.0)
         rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=20))
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
-    with Scene(context, library, meshes, PLAIN, 0, rasterize=None) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=None) as scene:
         assert scene.cubemap.route in ("rasterization", "compute shader")
 
 
 def test_build_times(context, library):
     for count, resolution in ((10_000, 64), (10_000, 128), (100_000, 128)):
-        with Scene(context, library, room_with_meshes(count), PLAIN, resolution) as scene:
+        with TracedTriangles(context, library, room_with_meshes(count), PLAIN, resolution) as scene:
             context.finish()
             start = time.perf_counter()
             scene.build(resolution)

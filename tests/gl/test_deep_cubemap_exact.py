@@ -10,13 +10,13 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
-from deep_cubemap_device import Scene
 from deep_cubemap_files import blend_triangles, ply_triangles
 from deep_cubemap_hard_rays import KINDS, HardRays
 from deep_cubemap_scenes import box, furnished_room, room_with_meshes, sphere, torus
 
 from benchmarks.device.bounding_volumes import BoundingVolumes, build_nodes
 from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE
+from rppm_addon.self_test.ray_queries import TracedTriangles
 
 RAYS = 6600
 """Of each kind about each center: more than two million in all."""
@@ -76,11 +76,11 @@ def bits(hits: np.ndarray) -> np.ndarray:
     return rows
 
 
-def boxes_trace(scene: Scene, volumes: BoundingVolumes, rays: np.ndarray) -> np.ndarray:
+def boxes_trace(scene: TracedTriangles, volumes: BoundingVolumes, rays: np.ndarray) -> np.ndarray:
     return scene._run(rays, HIT.dtype, lambda *buffers: volumes.trace(scene.triangles, *buffers))
 
 
-def tried_one_by_one(scene: Scene, rays: np.ndarray) -> np.ndarray:
+def tried_one_by_one(scene: TracedTriangles, rays: np.ndarray) -> np.ndarray:
     """Hits of few rays in any number of triangles, each of which is tested."""
     best = None
     for first in range(0, len(scene.host_triangles), _CHUNK):
@@ -117,7 +117,7 @@ def test_hits_equal_those_of_boxes(context, library, tmp_path, name):
     number = found = by_boxes = 0
     wrong = []
     for place in places if len(triangles) < 200_000 else [LARGE[name]]:
-        with Scene(context, library, triangles, places[place], 0) as scene:
+        with TracedTriangles(context, library, triangles, places[place], 0) as scene:
             maker = HardRays(triangles, scene.center, seed=2)
             for kind in KINDS:
                 rays = maker.rays(kind, RAYS)
@@ -216,7 +216,7 @@ def test_differences_from_float64_are_explained(context, library, name, count):
     triangles = SCENES[name](None)
     reasons = Counter()
     number = 0
-    with Scene(context, library, triangles, centers(triangles)["in the middle"], 0) as scene:
+    with TracedTriangles(context, library, triangles, centers(triangles)["in the middle"], 0) as scene:
         maker = HardRays(triangles, scene.center, seed=3)
         for kind in KINDS:
             rays = maker.rays(kind, count)

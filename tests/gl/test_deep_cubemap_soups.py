@@ -7,11 +7,11 @@ cell borders exactly, again and again.
 
 import hypothesis.extra.numpy as arrays
 import numpy as np
-from deep_cubemap_device import Scene, ray_records
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.self_test.ray_queries import TracedTriangles, ray_records
 
 grid = st.integers(-4, 4).map(lambda i: i / 4)
 triangles_on_grid = st.integers(1, 12).flatmap(lambda n: arrays.arrays(np.float32, (n, 3, 3), elements=grid))
@@ -24,7 +24,7 @@ def check(context, library, triangles, center, origins, targets, resolution):
     directions /= np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-30)
     rays = ray_records(origins, directions.astype(np.float32))
     rays["source_triangle"][::4] = 0
-    with Scene(context, library, triangles, center, resolution) as scene:
+    with TracedTriangles(context, library, triangles, center, resolution) as scene:
         hits, expected, free = scene.trace(rays), scene.brute_force(rays), scene.occluded(rays)
     rays_without_direction = np.all(rays["direction"] == 0, axis=1)
     expected["triangle"][rays_without_direction] = NO_TRIANGLE

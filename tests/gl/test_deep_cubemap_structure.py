@@ -7,11 +7,11 @@ points are shaken by as much.
 
 import numpy as np
 import pytest
-from deep_cubemap_device import Scene
 from deep_cubemap_scenes import CENTERS, furnished_room, room_with_meshes, sphere
 from deep_cubemap_structure import BEFORE, BEHIND, BINS, LIST, TILE, Structure, as_sets, read_structure
 
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import JOIN_MOST, DeepCubemap
+from rppm_addon.self_test.ray_queries import TracedTriangles
 
 POINTS = 200_000
 BASE_LEVEL = 2
@@ -51,7 +51,7 @@ SCENES = {
 def test_every_point_is_on_file(context, library, name, place, resolution):
     triangles = SCENES[name]()
     rng = np.random.default_rng(21)
-    with Scene(context, library, triangles, CENTERS[place], resolution) as scene:
+    with TracedTriangles(context, library, triangles, CENTERS[place], resolution) as scene:
         structure = read_structure(scene.cubemap)
         center = scene.center.astype(float)
     chosen, points = points_on(triangles, rng)
@@ -95,7 +95,7 @@ def test_every_point_is_on_file(context, library, name, place, resolution):
 @pytest.mark.parametrize("resolution", [0, 16, 64])
 @pytest.mark.parametrize("name", SCENES)
 def test_marks_tell_of_the_bins_before_and_behind(context, library, name, resolution):
-    with Scene(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
+    with TracedTriangles(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
         structure = read_structure(scene.cubemap)
     row, bin_, triangle, marks = structure.entries[:, :4].T
     order = np.lexsort((bin_, triangle, row))
@@ -116,7 +116,7 @@ def test_lists_are_for_few_triangles_and_bins_for_many(context, library):
     used = set()
     for name in SCENES:
         for resolution in (0, 16, 64):
-            with Scene(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
+            with TracedTriangles(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
                 structure = read_structure(scene.cubemap)
             held = np.bincount(distinct(structure)[:, 0], minlength=len(structure.kind))
             leaf, binned = structure.kind != TILE, structure.kind == BINS
@@ -170,7 +170,7 @@ def touched_cells(extents: np.ndarray, x: int, y: int, side: int, slack: float) 
 @pytest.mark.parametrize("name", SCENES)
 def test_cells_that_hold_much_are_divided_where_that_gains(context, library, name):
     triangles, resolution = SCENES[name](), 1024
-    with Scene(context, library, triangles, CENTERS["plain"], resolution) as scene:
+    with TracedTriangles(context, library, triangles, CENTERS["plain"], resolution) as scene:
         structure = read_structure(scene.cubemap)
         about = triangles.astype(float) - scene.center.astype(float)
     # triangles of each cell, handed up from the leaves
@@ -220,7 +220,7 @@ def test_cells_that_hold_much_are_divided_where_that_gains(context, library, nam
 
 @pytest.mark.parametrize("most_bins", [1, 1024])
 def test_other_numbers_of_bins(context, library, most_bins):
-    with Scene(context, library, SCENES["crowd"](), CENTERS["plain"], 64) as scene:
+    with TracedTriangles(context, library, SCENES["crowd"](), CENTERS["plain"], 64) as scene:
         scene.cubemap.release()
         scene.cubemap = DeepCubemap(context, library, True, most_bins=most_bins)
         scene.build(64)
@@ -239,7 +239,7 @@ def assert_same(first: Structure, second: Structure) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_lists_are_the_same_every_time(context, library, name):
     """But for the order of cells and within a bin, which no result depends on."""
-    with Scene(context, library, SCENES[name](), CENTERS["plain"], 256) as scene:
+    with TracedTriangles(context, library, SCENES[name](), CENTERS["plain"], 256) as scene:
         first = read_structure(scene.cubemap)
         scene.build(64)
         scene.build(256)
@@ -254,7 +254,7 @@ def test_the_compute_route_builds_the_same(context, library, name, place):
     triangles = SCENES[name]()
     structures = []
     for rasterize in (True, False):
-        with Scene(context, library, triangles, CENTERS[place], 0, rasterize) as scene:
+        with TracedTriangles(context, library, triangles, CENTERS[place], 0, rasterize) as scene:
             structures.append(read_structure(scene.cubemap))
     assert_same(*structures)
 
@@ -263,9 +263,9 @@ def test_small_things_in_the_distance_get_small_cells(context, library):
     """A bare room stays coarse; a detailed ball of a hundredth of its size gets the finest cells, nothing else does."""
     ball, radius = np.array([0.7, 0.3, 0.3]), 0.01
     triangles = np.concatenate([furnished_room(1), sphere(ball, radius, 70).astype(np.float32)])
-    with Scene(context, library, furnished_room(1), CENTERS["plain"], 0) as scene:
+    with TracedTriangles(context, library, furnished_room(1), CENTERS["plain"], 0) as scene:
         bare = read_structure(scene.cubemap)
-    with Scene(context, library, triangles, CENTERS["plain"], 0) as scene:
+    with TracedTriangles(context, library, triangles, CENTERS["plain"], 0) as scene:
         detailed = read_structure(scene.cubemap)
     assert bare.level.max() == BASE_LEVEL and detailed.level.max() >= BASE_LEVEL + 3
     finest = detailed.level == detailed.level.max()

@@ -19,7 +19,7 @@ _LINT = re.compile(r"^\s*//\s*lint:(.*)$", re.MULTILINE)
 
 def import_declarations() -> None:
     """Import every module without Blender that may declare records, constants or storage blocks."""
-    for floor in ("gl", "materials", "integrator"):
+    for floor in ("self_test", "gl", "materials", "integrator"):
         package = importlib.import_module(f"{rppm_addon.__name__}.{floor}")
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)

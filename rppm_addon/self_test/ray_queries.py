@@ -1,37 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A deep cubemap of a NumPy scene, with NumPy in and out."""
+"""Rays through a deep cubemap and past all of its triangles, with NumPy in and out."""
 
+from collections.abc import Callable
+
+import moderngl
 import numpy as np
 
-from rppm_addon.gl.records import Record
-from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE, RAY
-from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
+from ..gl.context import Context
+from ..gl.programs import ProgramLibrary
+from ..gl.records import Record
+from ..integrator.common.living_paths import LivingPaths
+from ..integrator.common.records import HIT, NO_TRIANGLE, RAY
+from ..integrator.deep_cubemap.deep_cubemap import DeepCubemap
 
-BRUTE_FORCE = Record("BruteForceParameters", first_ray="uint", end_ray="uint", triangle_count="uint")
-_BRUTE_FORCE_TESTS = 1 << 24  # per dispatch
+Record("BruteForceParameters", first_ray="uint", end_ray="uint", triangle_count="uint")
+
+_BRUTE_FORCE_TESTS = 1 << 24
+"""Of one dispatch."""
+
+_Operation = Callable[[moderngl.Buffer, moderngl.Buffer, int], None]
 
 
-def ray_records(origins, directions, maximum_distance=1e9) -> np.ndarray:
+def ray_records(origins: np.ndarray, directions: np.ndarray, maximum_distance: float = 1e9) -> np.ndarray:
+    """RAY records of (n, 3) origins in meters and directions of length 1."""
     rays = RAY.zeros(len(origins))
     rays["origin"], rays["direction"], rays["maximum_distance"] = origins, directions, maximum_distance
     rays["source_triangle"] = NO_TRIANGLE
     return rays
 
 
-class Scene:
-    """Triangles on the device and their cubemap; a context manager."""
+class TracedTriangles:
+    """Triangles on the device and their deep cubemap; a context manager."""
 
     def __init__(
         self,
-        context,
-        library,
+        context: Context,
+        library: ProgramLibrary,
         triangles: np.ndarray,
-        center,
+        center: np.ndarray,
         resolution: int = 64,
         rasterize: bool | None = True,
         texel_buffers: bool | None = None,
     ) -> None:
+        """triangles: (n, 3, 3) vertices; the other arguments as DeepCubemap's. Raises DeviceError."""
         self.context, self.library = context, library
         self.host_triangles = np.asarray(triangles, np.float32)
         vertices = np.zeros((max(3 * len(triangles), 1), 4), np.float32)
@@ -43,31 +54,32 @@ class Scene:
         self.build(resolution)
 
     def build(self, resolution: int) -> None:
+        """Build the deep cubemap anew."""
         distances = np.linalg.norm(self.host_triangles.reshape(-1, 3) - self.center, axis=1)
         radius = distances[np.isfinite(distances)].max(initial=0.0)
         self.cubemap.build(self.triangles, len(self.host_triangles), self.center, radius, resolution)
 
     def trace(self, rays: np.ndarray) -> np.ndarray:
-        """Hit records."""
+        """HIT records of RAY records."""
         return self._run(rays, HIT.dtype, self._of_all(self.cubemap.trace))
 
     def occluded(self, rays: np.ndarray) -> np.ndarray:
-        """1 where a ray is free, else 0."""
+        """uint32, 1 where a ray is free, else 0."""
         return self._run(rays, np.dtype(np.uint32), self._of_all(self.cubemap.occluded))
 
-    def _of_all(self, operation):
-        def run(ray_buffer, result_buffer, count):
+    def _of_all(self, operation: Callable[[moderngl.Buffer, moderngl.Buffer, LivingPaths], None]) -> _Operation:
+        def run(ray_buffer: moderngl.Buffer, result_buffer: moderngl.Buffer, count: int) -> None:
             self._rays.fill(count)
             operation(ray_buffer, result_buffer, self._rays)
 
         return run
 
     def brute_force(self, rays: np.ndarray) -> np.ndarray:
-        """Hit records, by testing all triangles."""
-        program = self.library.compute("../tests/gl/deep_cubemap_brute_force.comp")
+        """HIT records of RAY records, by testing all triangles."""
+        program = self.library.compute("self_test/brute_force.comp")
         chunk = max(_BRUTE_FORCE_TESTS // max(len(self.host_triangles), 1), 64)
 
-        def run(ray_buffer, hit_buffer, count):
+        def run(ray_buffer: moderngl.Buffer, hit_buffer: moderngl.Buffer, count: int) -> None:
             for first in range(0, count, chunk):
                 end = min(first + chunk, count)
                 program.run(
@@ -78,7 +90,7 @@ class Scene:
 
         return self._run(rays, HIT.dtype, run)
 
-    def _run(self, rays, dtype, operation) -> np.ndarray:
+    def _run(self, rays: np.ndarray, dtype: np.dtype, operation: _Operation) -> np.ndarray:
         ray_buffer = self.context.moderngl.buffer(rays.tobytes())
         result = self.context.moderngl.buffer(reserve=dtype.itemsize * len(rays))
         try:
@@ -89,12 +101,13 @@ class Scene:
             result.release()
 
     def release(self) -> None:
+        """Free the device's memory."""
         self.cubemap.release()
         self._rays.release()
         self.triangles.release()
 
-    def __enter__(self) -> "Scene":
+    def __enter__(self) -> "TracedTriangles":
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         self.release()

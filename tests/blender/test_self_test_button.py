@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The button that tries the device, with a device that is not there, which takes no time."""
+
+import time
+
+import bpy
+import pytest
+from drawing import RecordingLayout
+
+from rppm_addon.blender import renderer_process, self_test
+
+
+@pytest.fixture
+def report(tmp_path, monkeypatch):
+    monkeypatch.setattr(renderer_process, "log_path", lambda: tmp_path / "new" / "renderer.log")
+    monkeypatch.setattr(self_test, "_running", None)
+    yield tmp_path / "new" / "rppm_report.txt"
+    if bpy.app.timers.is_registered(self_test._show_end):
+        bpy.app.timers.unregister(self_test._show_end)
+
+
+def test_a_process_writes_the_report(report, monkeypatch):
+    monkeypatch.setattr(renderer_process, "environment", lambda: {"RPPM_DEVICE": "no device"})
+    assert bpy.ops.rppm.self_test() == {"FINISHED"}
+    with pytest.raises(RuntimeError, match="poll"):
+        bpy.ops.rppm.self_test()  # one at a time
+    layout = RecordingLayout()
+    self_test.draw(layout)
+    assert layout.record.labels == ["The self-test runs for a minute or two"]
+    deadline = time.monotonic() + 60.0
+    while self_test._show_end() is not None and time.monotonic() < deadline:
+        time.sleep(0.02)
+    text = report.read_text()
+    assert "stopped: " in text and "'no device' is not a number" in text and "Not all is well" in text
+
+
+def test_a_process_that_cannot_be_started(report, monkeypatch):
+    monkeypatch.setattr(renderer_process, "python_program", lambda: "/nowhere/python")
+    with pytest.raises(RuntimeError, match="cannot be started"):
+        bpy.ops.rppm.self_test()
+    assert not self_test.is_running()
