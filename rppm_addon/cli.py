@@ -22,9 +22,10 @@ from .commands.rendering import render
 from .commands.terminal import LineFormatter, printable
 from .denoising.denoiser import Denoiser
 from .denoising.places import library_places
+from .gl.devices import Device, list_devices
 from .pictures import PictureError, make_folder
 from .scene import RenderSettings
-from .scene.errors import DenoiserError, RppmError, SettingsError
+from .scene.errors import DenoiserError, DeviceError, RppmError, SettingsError
 from .scene.quantities import count_text
 
 
@@ -140,8 +141,14 @@ def _doctor(options: argparse.Namespace, bar: ProgressBar) -> int:
     return 0 if found.passed else 1
 
 
+def _print_devices(devices: Sequence[Device], used: int | None) -> None:
+    for device in devices:
+        mark = "*" if device.number == used else " "
+        print(f"{mark} --device {device.number} or {device.identity}: {device.label}")
+
+
 def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
-    from .gl.context import device_information
+    from .gl.context import device_information, open_others
 
     settings, data_values = split_values(options.values)
     if options.scene is None and (settings or data_values or options.resolution or options.frame is not None):
@@ -153,11 +160,17 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     except importlib.metadata.PackageNotFoundError:
         blender = "no bpy module: saved scenes only (make setup, or pip install bpy==5.0.1)"
     print(f"Blender  {blender}")
-    device = device_information(options.device)
+    try:
+        device = device_information()
+    except DeviceError:
+        _print_devices(open_others(list_devices(), None), None)
+        raise
     unpacked = f", unpacked in {device.driver_folder}" if device.driver_folder else ""
     print(f"Device   {device.name}\nDriver   {device.driver}{unpacked}\nOpenGL   {device.version}")
-    for number, name in enumerate(device.devices):
-        print(f"  --device {number}: {name}")
+    for warning in device.warnings:
+        print(f"Warning  {warning}")
+    devices = open_others(device.devices, device.number)
+    _print_devices(devices, device.number)
     for name, value in device.limits.items():
         print(f"  {name} {value}")
     print("Missing  " + ("nothing" if not device.missing else "\n         ".join(device.missing)))
@@ -166,6 +179,7 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     except DenoiserError as error:
         denoiser = f"none: {error}"
     print(f"Denoise  {denoiser}")
+    device.devices = devices
     report: dict[str, object] = {"blender": blender, "device": dataclasses.asdict(device), "denoiser": denoiser}
     if options.scene is not None:
         from .commands.memory import memory_lines

@@ -21,18 +21,18 @@ _lost_frames = False
 
 
 def read_options(arguments: Sequence[str]) -> None:
-    """Take RPPM's options from Blender's command line: --rppm-device N behind ``--``, which has precedence over the
-    environment. What is not RPPM's is left to others."""
+    """Take RPPM's options from Blender's command line: --rppm-device DEVICE behind ``--``, which has precedence over
+    the environment. What is not RPPM's is left to others."""
     behind = list(arguments)[list(arguments).index("--") + 1 :] if "--" in arguments else []
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    parser.add_argument("--rppm-device", metavar="N")
+    parser.add_argument("--rppm-device", metavar="DEVICE")
     try:
         options, others = parser.parse_known_args(behind)
     except (argparse.ArgumentError, SystemExit):
-        logger.warning("--rppm-device needs a number, that of an EGL device; it is ignored")
+        logger.warning("--rppm-device needs a device, as rppm info lists them; it is ignored")
         return
     for unknown in (text for text in others if text.startswith("--rppm-")):
-        logger.warning("%s is no option of RPPM; there is --rppm-device N", unknown)
+        logger.warning("%s is no option of RPPM; there is --rppm-device DEVICE", unknown)
     if options.rppm_device is not None:
         os.environ["RPPM_DEVICE"] = options.rppm_device
 

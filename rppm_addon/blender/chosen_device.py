@@ -5,6 +5,7 @@ import contextlib
 import json
 import os
 import platform
+from typing import NamedTuple
 
 import bpy
 
@@ -13,28 +14,42 @@ from .denoising_libraries import root_package
 VARIABLE = "RPPM_DEVICE"
 
 
+class ChosenDevice(NamedTuple):
+    """A device of the preferences: how it is found again, and what the menu calls it."""
+
+    identity: str
+    name: str
+
+
 def device_of_environment() -> str:
-    """The number that RPPM_DEVICE or --rppm-device say; "" where they say none."""
+    """What RPPM_DEVICE or --rppm-device say; "" where they say nothing."""
     return os.environ.get(VARIABLE, "")
 
 
 def chosen_device() -> str:
-    """The number of an EGL device; "" is the driver's default. Main thread only."""
+    """The device, as RPPM_DEVICE takes it; "" is RPPM's choice. Main thread only.
+
+    Without the preferences' device another will do: they may be of a time when it was there.
+    """
     addon = bpy.context.preferences.addons.get(root_package())
     preferences = None if addon is None else addon.preferences
-    return device_of_environment() or ("" if preferences is None else device_here(preferences.devices))
+    chosen = None if preferences is None else device_here(preferences.devices)
+    return device_of_environment() or ("" if chosen is None else f"{chosen.identity}?{chosen.name}")
 
 
-def device_here(devices: str) -> str:
-    """What ``devices``, numbers by machine as JSON, say of this one; "" where they say nothing."""
-    chosen = _by_machine(devices).get(platform.node(), "")
-    return chosen if isinstance(chosen, str) and chosen.isdigit() else ""
+def device_here(devices: str) -> ChosenDevice | None:
+    """What ``devices``, devices by machine as JSON, say of this one; None where they say nothing."""
+    chosen = _by_machine(devices).get(platform.node())
+    match chosen:
+        case [str(identity), str(name)] if identity:
+            return ChosenDevice(identity, name)
+    return None
 
 
-def with_device_here(devices: str, number: str) -> str:
-    """``devices`` with another number for this machine; "" is none."""
-    kept = {machine: chosen for machine, chosen in _by_machine(devices).items() if machine != platform.node()}
-    return json.dumps(kept | ({platform.node(): number} if number else {}))
+def with_device_here(devices: str, chosen: ChosenDevice | None) -> str:
+    """``devices`` with another device for this machine; None is RPPM's choice."""
+    kept = {machine: device for machine, device in _by_machine(devices).items() if machine != platform.node()}
+    return json.dumps(kept | ({platform.node(): chosen} if chosen else {}))
 
 
 def _by_machine(devices: str) -> dict[str, object]:

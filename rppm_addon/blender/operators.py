@@ -55,17 +55,17 @@ class RPPM_OT_start_renderer(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Called by Blender."""
-        renderer_process.renderer_process().restart()
+        renderer_process.renderer_process().restart(lists_devices=True)
         if not bpy.app.timers.is_registered(_show_start):
             bpy.app.timers.register(_show_start, first_interval=START_SHOWN_EVERY)
         return {"FINISHED"}
 
 
 def _show_start() -> float | None:
-    """Have the preferences drawn again until the process has started or failed."""
+    """Have the preferences drawn again until the process has started or failed and has listed the devices."""
     panels.redraw()
-    starting = renderer_process.renderer_process().state is ProcessState.STARTING
-    return START_SHOWN_EVERY if starting else None
+    process = renderer_process.renderer_process()
+    return START_SHOWN_EVERY if process.state is ProcessState.STARTING or process.is_listing else None
 
 
 class RPPM_OT_open_log(bpy.types.Operator):

@@ -11,7 +11,7 @@ from ..denoising.places import REMEDY
 from ..scene.quantities import bytes_text
 from ..session.process.client import ProcessState
 from . import renderer_process, self_test
-from .chosen_device import device_here, device_of_environment, with_device_here
+from .chosen_device import ChosenDevice, device_here, device_of_environment, with_device_here
 from .denoising_libraries import denoising_libraries, root_package
 from .panels.base import letters_across, paragraph, reading
 
@@ -34,33 +34,41 @@ _LIMITS = {
 }
 
 
-_DEFAULT = "DEFAULT"
+_AUTOMATIC = "AUTOMATIC"
 _items: list[tuple[str, str, str, int]] = []
 """Of the menu of devices; Blender does not keep their texts."""
 
 
 def _device_items(owner: bpy.types.AddonPreferences, _context: bpy.types.Context | None) -> list:
-    """The default, those that the renderer has found, and the one that was chosen when there were more."""
+    """RPPM's choice, the devices that the renderer has found, and the chosen one where it is none of them."""
     device = renderer_process.renderer_process().device
-    names = {str(number): name for number, name in enumerate(device.devices if device is not None else ())}
+    labels: dict[str, str] = {}
+    for found in device.devices if device is not None else ():
+        labels.setdefault(found.identity, found.label)  # a card that two drivers list is one
     chosen = device_here(owner.devices)
-    if chosen:
-        names.setdefault(chosen, "not looked for yet" if device is None else "not there")
-    tooltip = "EGL device of this number"
+    if chosen is not None:
+        labels.setdefault(chosen.identity, f"{chosen.name}, {'not looked for yet' if device is None else 'not there'}")
+    automatic = "A graphics card; where there is none what the processor has, and at last the processor itself"
     _items[:] = [
-        (_DEFAULT, "Default", "The one that the driver takes by itself", 0),
-        *((number, f"{number}: {name}", tooltip, int(number) + 1) for number, name in names.items()),
+        (_AUTOMATIC, "Automatic", automatic, 0),
+        *((identity, label, identity, number) for number, (identity, label) in enumerate(labels.items(), 1)),
     ]
     return _items
 
 
 def _device_of(owner: bpy.types.AddonPreferences) -> int:
     chosen = device_here(owner.devices)
-    return int(chosen) + 1 if chosen else 0
+    items = _device_items(owner, None)
+    return 0 if chosen is None else next(number for identity, _, _, number in items if identity == chosen.identity)
 
 
 def _choose_device(owner: bpy.types.AddonPreferences, number: int) -> None:
-    owner.devices = with_device_here(owner.devices, str(number - 1) if number > 0 else "")
+    identity, label, _, _ = _device_items(owner, None)[number]
+    before = device_here(owner.devices)
+    if number and before is not None and before.identity == identity:
+        return
+    chosen = ChosenDevice(identity, label.partition(" (")[0]) if number else None
+    owner.devices = with_device_here(owner.devices, chosen)
     renderer_process.device_changed()
 
 
@@ -84,7 +92,7 @@ class RppmPreferences(bpy.types.AddonPreferences):
     bl_idname = root_package()
 
     devices: bpy.props.StringProperty(
-        name="Devices", description="The number of the chosen device by the machine's name, as JSON", options={"HIDDEN"}
+        name="Devices", description="The chosen device by the machine's name, as JSON", options={"HIDDEN"}
     )
     device: bpy.props.EnumProperty(
         name="Device",
@@ -120,7 +128,7 @@ class RppmPreferences(bpy.types.AddonPreferences):
             paragraph(layout, process.error, letters_across(context), icon="INFO")
         device = process.device  # the process may end meanwhile
         if device is not None:
-            self._draw_device(device)
+            self._draw_device(device, context)
         if device_of_environment():
             text = f"{device_of_environment()}, by the environment variable RPPM_DEVICE or --rppm-device"
             reading(layout, "Chosen Device", text)
@@ -146,9 +154,11 @@ class RppmPreferences(bpy.types.AddonPreferences):
             paragraph(column, f"Open Image Denoise is not there: {REMEDY}", letters_across(context), icon="INFO")
         column.prop(self, "denoiser_path", text="Denoiser")
 
-    def _draw_device(self, device: "DeviceInformation") -> None:
+    def _draw_device(self, device: "DeviceInformation", context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
         reading(column, "Renders on", device.name)
+        for warning in device.warnings:
+            paragraph(column, warning, letters_across(context), icon="ERROR")
         reading(column, "Driver", device.driver)
         if device.driver_folder:
             reading(column, "Driver Folder", device.driver_folder)

@@ -19,7 +19,7 @@ def parser() -> argparse.ArgumentParser:
     """Of the whole program: what it gives has the name of the command as ``command``."""
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--debug", action="store_true", help="show tracebacks and everything that is logged")
-    common.add_argument("--device", metavar="N", help="EGL device number; RPPM_DEVICE does the same")
+    common.add_argument("--device", metavar="DEVICE", help="one that info lists; RPPM_DEVICE does the same")
     scene = argparse.ArgumentParser(add_help=False)
     scene.add_argument("--resolution", type=_resolution, metavar="WxH", help="size of the whole frame in pixels")
     scene.add_argument("--frame", type=int, metavar="N", help="frame number of a .blend file")
@@ -163,7 +163,7 @@ def _add_farm(commands: _Commands, scene: argparse.ArgumentParser, common: argpa
     where.add_argument(
         "--workers", type=_positive_integer, default=1, metavar="N", help="so many renders at a time here; default: 1"
     )
-    where.add_argument("--devices", metavar="N,N,...", help="a render at a time here on each of these EGL devices")
+    where.add_argument("--devices", metavar="DEVICE,...", help="a render at a time here on each of these devices")
     farm.add_argument(
         "--chunk",
         type=_positive_integer,

@@ -2,6 +2,7 @@
 """The offscreen OpenGL context and what its device can do."""
 
 import ctypes
+import dataclasses
 import functools
 import logging
 import os
@@ -14,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from ..scene.errors import DeviceError
-from .devices import device_names
+from .devices import Choice, Device, choose, list_devices
+from .kernel_devices import DeviceKind
 from .project_mesa import load_project_mesa
 from .requirements import NEEDS, refuse_small_devices
 
@@ -31,6 +33,11 @@ _LIMITS = (
 )
 _NUM_PROGRAM_BINARY_FORMATS = 0x87FE
 _AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87FC}
+_DEDICATED_KIBIBYTES = 0x9047
+"""Of GL_NVX_gpu_memory_info."""
+_VARIABLE = "RPPM_DEVICE"
+_SHARING = frozenset((DeviceKind.INTEGRATED, DeviceKind.SOFTWARE))
+"""Kinds whose memory is the processor's."""
 
 
 @dataclass
@@ -44,22 +51,33 @@ class DeviceInformation:
     missing: list[str] = field(default_factory=list)
     driver_folder: str = ""
     """Where the driver was loaded from, if it is not the system's."""
-    devices: list[str] = field(default_factory=list)
-    """Names of all that EGL lists, by their numbers."""
+    number: int | None = None
+    """EGL's, of ``devices``; None where it does not list them."""
+    devices: list[Device] = field(default_factory=list)
+    """All that EGL lists, by their numbers; of others than this one what is known without opening them."""
+    warnings: list[str] = field(default_factory=list)
+    """Why it is not the device that was wished for."""
+
+    def __post_init__(self) -> None:
+        """From another process come devices as plain values."""
+        self.devices = [Device(**device) if isinstance(device, dict) else device for device in self.devices]
+
+    @property
+    def kind(self) -> str:
+        """A DeviceKind."""
+        return DeviceKind.UNKNOWN if self.number is None else self.devices[self.number].kind
 
     @property
     def label(self) -> str:
         """Device and driver's version: where both are the same, so are pictures bit for bit."""
-        # The driver is its vendor, OpenGL's version, maybe the profile in brackets, and its own version.
-        return f"{self.name}, {re.sub(r'^.*?[0-9]+[.][0-9.]+ (?:[(].*?[)] )?', '', self.driver, count=1)}"
+        return f"{self.name}, {driver_version(self.driver)}"
 
 
 class Context:
     """An offscreen context of OpenGL 4.3 core: EGL on Linux, WGL on Windows."""
 
-    def __init__(self, gl: Any, information: DeviceInformation, device: str | None = None) -> None:
+    def __init__(self, gl: Any, information: DeviceInformation) -> None:
         self.moderngl = gl
-        self._device = device
         self.information = information
         self.limits = information.limits
 
@@ -67,31 +85,65 @@ class Context:
     def create(cls, device: str | None = None) -> "Context":
         """Open a context.
 
-        ``device`` is an EGL device number as text; None takes the environment variable
-        RPPM_DEVICE, then the driver's default. Raises DeviceError saying what to install, or what the device
-        has too little of.
+        ``device`` says which (devices.choose); None takes the environment variable RPPM_DEVICE. Raises DeviceError
+        saying what to install, or what the device has too little of.
         """
-        import moderngl
-
         if sys.platform == "darwin":
             raise DeviceError("macOS stops at OpenGL 4.1; RPPM needs 4.3: use Linux or Windows")
         mesa = load_project_mesa()
-        options: dict[str, Any] = {}
-        device = device if device is not None else os.environ.get("RPPM_DEVICE", "")
+        wish = device if device is not None else os.environ.get(_VARIABLE, "")
+        devices = list_devices()
         if sys.platform.startswith("linux"):
-            options["backend"] = "egl"
-            if device:
-                if not device.isdigit():
-                    raise DeviceError(
-                        f"device {device!r} is not a number; give the EGL device number, 0 being the first"
-                    )
-                options["device_index"] = int(device)
+            context = cls._open_first(choose(wish, devices), devices)
+        else:
+            context = cls._open(None, devices)
+            if wish:
+                log.warning("%s says %s, but Windows chooses the device: see docs/settings.md", _VARIABLE, wish)
+        information = context.information
+        information.driver_folder = str(mesa or "")
+        if not context.has_program_binaries:
+            information.missing.append("program binaries (programs are compiled at every start)")
+        if context.is_software:
+            information.missing.append("a GPU (Mesa renders on the processor)")
+        for text in information.warnings:
+            log.warning("%s", text)
+        log.info("device %s, %s %s", information.name, information.driver, information.driver_folder)
+        return context
+
+    @classmethod
+    def _open_first(cls, choice: Choice, devices: list[Device]) -> "Context":
+        """The first of the chosen devices that can be opened, or EGL's own choice where it lists none."""
+        if not choice.devices:
+            return cls._open(None, devices)
+        failures: list[str] = []
+        for device in choice.devices:
+            try:
+                context = cls._open(device, devices)
+            except DeviceError as error:
+                failures.append(str(error))
+                continue
+            instead = f"rendering on {context.information.name} instead; choose another device"
+            if choice.is_missing:
+                context.information.warnings.append(f"the device {choice.wish} is not there: {instead}")
+            elif failures:
+                context.information.warnings.append(f"{'; '.join(failures)}: {instead}")
+            return context
+        raise DeviceError("; ".join(failures))
+
+    @classmethod
+    def _open(cls, device: Device | None, devices: list[Device]) -> "Context":
+        import moderngl
+
+        options: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+        if device is not None:
+            options["device_index"] = device.number
         try:
             gl = moderngl.create_context(standalone=True, require=REQUIRED_VERSION, **options)
         except Exception as error:  # moderngl raises bare Exception
+            of = f" on {device.label}" if device is not None else ""
             raise DeviceError(
-                f"no OpenGL 4.3 context could be opened ({error}); install a driver with EGL "
-                "(Debian: libegl1 libegl-mesa0 libgl1-mesa-dri libgl1) or choose another device"
+                f"no OpenGL 4.3 context could be opened{of} ({error}); install a driver with EGL (Debian: libegl1 "
+                f"libegl-mesa0 libgl1-mesa-dri libgl1), let this user open /dev/dri, or choose another device"
             ) from error
         info = gl.info
         information = DeviceInformation(
@@ -99,25 +151,24 @@ class Context:
             driver=f"{info['GL_VENDOR']} {info['GL_VERSION']}",
             version=f"{gl.version_code // 100}.{gl.version_code % 100 // 10}",
             limits={name: info[name] for name in _LIMITS if name in info},
-            driver_folder=str(mesa or ""),
-            devices=device_names(),
+            number=None if device is None else device.number,
+            devices=devices,
         )
         try:
             refuse_small_devices(information.name, information.limits)
         except DeviceError:
             gl.release()
             raise
-        context = cls(gl, information, device)
-        if not context.has_program_binaries:
-            information.missing.append("program binaries (programs are compiled at every start)")
-        if context.is_software:
-            information.missing.append("a GPU (Mesa renders on the processor)")
-        log.info("device %s, %s %s", information.name, information.driver, information.driver_folder)
+        context = cls(gl, information)
+        if device is not None:
+            device.name, device.driver = short_name(information.name), driver_version(information.driver)
+            device.memory = context.memory or device.memory
         return context
 
     def another(self) -> "Context":
         """Open another context of the same device, for the calling thread. Raises DeviceError."""
-        return Context.create(self._device)
+        number = self.information.number
+        return Context.create("" if number is None else str(number))
 
     @functools.cached_property
     def is_software(self) -> bool:
@@ -148,14 +199,20 @@ class Context:
         return self.integers(_NUM_PROGRAM_BINARY_FORMATS)[0] > 0
 
     @property
+    def memory(self) -> int | None:
+        """Bytes that the device has, its own or the processor's; None where the driver does not tell."""
+        if self.is_software or self.information.kind in _SHARING:
+            return _memory_of_processor("MemTotal")
+        if "GL_NVX_gpu_memory_info" in self.moderngl.extensions:
+            return self.integers(_DEDICATED_KIBIBYTES)[0] << 10
+        return None
+
+    @property
     def available_memory(self) -> int | None:
         """Bytes that the device has left by its driver's word; None where the driver does not tell."""
-        if self.is_software:
-            try:
-                lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-            except OSError:
-                return None
-            return next((int(line.split()[1]) << 10 for line in lines if line.startswith("MemAvailable:")), None)
+        if self.is_software or self.information.kind in _SHARING:
+            # What the drivers of integrated devices tell is what the firmware keeps aside, often 256 MiB.
+            return _memory_of_processor("MemAvailable")
         for extension, name in _AVAILABLE_KIBIBYTES.items():
             if extension in self.moderngl.extensions:
                 return self.integers(name)[0] << 10
@@ -191,6 +248,26 @@ class Context:
         self.moderngl.release()
 
 
+def _memory_of_processor(name: str) -> int | None:
+    """Bytes of a line of /proc/meminfo."""
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+    except OSError:
+        return None
+    return next((int(line.split()[1]) << 10 for line in lines if line.startswith(f"{name}:")), None)
+
+
+def short_name(name: str) -> str:
+    """A device's name without what drivers say of themselves behind it in brackets."""
+    return re.sub(r"(\s*[(]([^()]*,.*|LLVM.*)[)]|(/PCIe)?/SSE2)$", "", name) or name
+
+
+def driver_version(driver: str) -> str:
+    """The version that a driver gives itself, such as Mesa 25.0.7."""
+    # The driver is its vendor, OpenGL's version, maybe the profile in brackets, and its own version.
+    return re.sub(r"^.*?[0-9]+[.][0-9.]+ (?:[(].*?[)] )?", "", driver, count=1)
+
+
 def device_information(device: str | None = None) -> DeviceInformation:
     """Open a context, describe its device, and close it. Raises DeviceError."""
     context = Context.create(device)
@@ -198,3 +275,19 @@ def device_information(device: str | None = None) -> DeviceInformation:
         return context.information
     finally:
         context.release()
+
+
+def open_others(devices: list[Device], number: int | None) -> list[Device]:
+    """The devices, each opened for a moment but that of a number, with what their drivers tell or why they fail.
+
+    Another context is the calling thread's afterwards than was before.
+    """
+    known = []
+    for device in devices:
+        if device.number != number:
+            try:
+                device = device_information(str(device.number)).devices[device.number]
+            except DeviceError as error:
+                device = dataclasses.replace(device, problem=str(error))
+        known.append(device)
+    return known

@@ -142,7 +142,7 @@ def _versions() -> list[str]:
 def _device_lines(device: DeviceInformation | None) -> list[str]:
     if device is None:
         return ["Device    none"]
-    others = [f"          {number}: {name}" for number, name in enumerate(device.devices)]
+    others = [f"          {other.number} or {other.identity}: {other.label}" for other in device.devices]
     limits = [f"          {name} {value}" for name, value in device.limits.items()]
     return [
         f"Device    {device.name}",

@@ -21,7 +21,7 @@ def test_the_device_behind_two_dashes_wins(monkeypatch, arguments, device):
     assert background.os.environ["RPPM_DEVICE"] == device
 
 
-@pytest.mark.parametrize(("word", "text"), [("--rppm-device", "needs a number"), ("--rppm-speed=3", "no option")])
+@pytest.mark.parametrize(("word", "text"), [("--rppm-device", "needs a device"), ("--rppm-speed=3", "no option")])
 def test_options_that_make_no_sense_are_told(monkeypatch, caplog, word, text):
     monkeypatch.setenv("RPPM_DEVICE", "1")
     background.read_options(["blender", "-b", "--", word])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The device that renders take, of the environment or of the preferences."""
 
+import dataclasses
 import platform
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import bpy
 import pytest
 
 from rppm_addon.blender import chosen_device, preferences, renderer_process
-from rppm_addon.gl.devices import device_names
+from rppm_addon.gl.devices import Device
 
 
 @pytest.fixture
@@ -21,44 +22,50 @@ def stored(monkeypatch):
     return SimpleNamespace(devices="", changes=changes)
 
 
+CARD = Device(0, "1002:73bf@0000:03:00.0", "discrete", "A card", "Mesa 25", 16 << 30)
+CHIP = Device(1, "8086:9a49@0000:00:02.0", "integrated", "A chip")
+
+
 def test_each_machine_has_its_own(stored, monkeypatch):
+    renderer_process._process.device = SimpleNamespace(devices=[CARD, CHIP])
     monkeypatch.setattr(platform, "node", lambda: "farm")
-    preferences._choose_device(stored, 3)
+    preferences._choose_device(stored, 2)
     monkeypatch.setattr(platform, "node", lambda: "desk")
     assert preferences._device_of(stored) == 0
     preferences._choose_device(stored, 1)
-    assert chosen_device.device_here(stored.devices) == "0"
+    assert chosen_device.device_here(stored.devices) == (CARD.identity, "A card")
     monkeypatch.setattr(platform, "node", lambda: "farm")
-    assert chosen_device.device_here(stored.devices) == "2" and preferences._device_of(stored) == 3
+    assert chosen_device.device_here(stored.devices) == (CHIP.identity, "A chip")
+    assert preferences._device_of(stored) == 2
+    preferences._choose_device(stored, 2)  # as Blender does when the same is chosen again
     preferences._choose_device(stored, 0)
-    assert chosen_device.device_here(stored.devices) == "" and len(stored.changes) == 3
-    for nonsense in ("", "[1]", "{", '{"farm": "x"}', '{"farm": 1}'):
-        assert chosen_device.device_here(nonsense) == ""
+    assert chosen_device.device_here(stored.devices) is None and len(stored.changes) == 3
+    for nonsense in ("", "[1]", "{", '{"farm": "x"}', '{"farm": ["", "x"]}', '{"farm": [1, 2]}'):
+        assert chosen_device.device_here(nonsense) is None
 
 
 def test_the_menu_has_what_was_found_and_what_was_chosen(stored):
-    stored.devices = chosen_device.with_device_here("", "5")
+    stored.devices = chosen_device.with_device_here("", chosen_device.ChosenDevice("10de:1@0000:01:00.0", "Old"))
     assert [item[:2] for item in preferences._device_items(stored, None)] == [
-        ("DEFAULT", "Default"), ("5", "5: not looked for yet"),
+        ("AUTOMATIC", "Automatic"), ("10de:1@0000:01:00.0", "Old, not looked for yet"),
     ]  # fmt: skip
-    renderer_process._process.device = SimpleNamespace(devices=["a card", "another"])
-    shown = [(item[1], item[3]) for item in preferences._device_items(stored, None)]
-    assert shown == [("Default", 0), ("0: a card", 1), ("1: another", 2), ("5: not there", 6)]
+    again = dataclasses.replace(CARD, number=2, name="The card, by another driver")
+    renderer_process._process.device = SimpleNamespace(devices=[CARD, CHIP, again])
+    labels = ("Automatic", "A card (discrete, 16.00 GiB, Mesa 25)", "A chip (integrated)", "Old, not there")
+    shown = [(item[3], item[1]) for item in preferences._device_items(stored, None)]
+    assert shown == list(enumerate(labels))
+    assert preferences._device_of(stored) == 3
 
 
 def test_the_environment_wins(scene, stored, monkeypatch):
-    here = SimpleNamespace(preferences=SimpleNamespace(devices=chosen_device.with_device_here("", "2")))
+    devices = chosen_device.with_device_here("", chosen_device.ChosenDevice("software", "llvmpipe"))
+    here = SimpleNamespace(preferences=SimpleNamespace(devices=devices))
     context = SimpleNamespace(preferences=SimpleNamespace(addons={chosen_device.root_package(): here}))
     monkeypatch.setattr(chosen_device, "bpy", SimpleNamespace(context=context))
-    assert chosen_device.chosen_device() == "2"
+    assert chosen_device.chosen_device() == "software?llvmpipe"
     monkeypatch.setenv("RPPM_DEVICE", "4")
     assert chosen_device.chosen_device() == "4"
     context.preferences.addons = {}
     monkeypatch.delenv("RPPM_DEVICE")
     assert chosen_device.chosen_device() == ""
     assert bpy.context is not context
-
-
-def test_this_machine_lists_its_devices():
-    names = device_names()
-    assert names and all(names)

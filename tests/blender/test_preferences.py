@@ -24,9 +24,9 @@ class Process:
 
     def __init__(self, log_path):
         self.state, self.error, self.device, self.log_path = ProcessState.STOPPED, "", None, log_path
-        self.restarted = 0
+        self.restarted, self.is_listing = 0, False
 
-    def restart(self):
+    def restart(self, lists_devices=False):
         self.restarted += 1
         self.state, self.error = ProcessState.STARTING, ""
 
@@ -66,6 +66,8 @@ def test_the_device_that_was_found(scene, process, context, monkeypatch):
     process.device = DeviceInformation("Some GPU", "Some driver 1.0", "4.6", limits, ["float atomics"])
     labels = drawn(RppmPreferences, context).labels
     assert {"Some GPU", "Some driver 1.0", "4.6", "128.0 MiB", "16,384", "float atomics"} <= set(labels)
+    process.device.warnings.append("My card is not there")
+    assert "My card is not there" in drawn(RppmPreferences, context).labels
     assert "1, by the environment variable RPPM_DEVICE or --rppm-device" in labels
 
 
@@ -77,7 +79,9 @@ def test_why_the_renderer_does_not_run(scene, process, context):
     assert "The renderer is starting" in drawn(RppmPreferences, context).labels
     assert bpy.app.timers.is_registered(operators._show_start)
     assert operators._show_start() == operators.START_SHOWN_EVERY
-    process.state = ProcessState.RUNNING
+    process.state, process.is_listing = ProcessState.RUNNING, True
+    assert operators._show_start() == operators.START_SHOWN_EVERY
+    process.is_listing = False
     assert operators._show_start() is None
     bpy.app.timers.unregister(operators._show_start)
 

@@ -15,6 +15,10 @@ def test_the_memory_of_a_saved_scene(tmp_path, saved_scene):
     assert status == 0, errors
     told = json.loads(report.read_text())
     assert told["device"]["name"] in output
+    (used,) = (device for device in told["device"]["devices"] if device["number"] == told["device"]["number"])
+    assert used["name"] in told["device"]["name"]
+    assert f"* --device {used['number']} or {used['identity']}: {used['name']}" in output
+    assert used["memory"] > 1 << 28 and not used["problem"]
     memory = told["memory"]
     assert (memory["pixels"], memory["photons"], memory["segments"]) == (1200, 2000, 3)
     assert memory["ppm"]["film"] == 16 * 1200

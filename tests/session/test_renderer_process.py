@@ -168,6 +168,11 @@ def test_restart_of_a_process_that_runs(start):
     wait_until(lambda: process.state is ProcessState.RUNNING)
     next_frame(session)
     assert process.restarts == 0 and not is_running(child) and child_of(process) != child
+    with process.changed:
+        process.is_listing = True
+        process.post("list_devices")
+    wait_until(lambda: not process.is_listing)
+    assert process.device.devices[process.device.number].driver
 
 
 _PARENT = """

@@ -78,7 +78,7 @@ def remote_cluster(address: str, debug: bool) -> Iterator[Cluster]:
 
 @contextlib.contextmanager
 def local_cluster(devices: Sequence[str | None], allowed_failures: int, debug: bool) -> Iterator[Cluster]:
-    """A worker for each of ``devices``: EGL device numbers, or None for what RPPM chooses.
+    """A worker for each of ``devices``: as RPPM_DEVICE takes them, or None for what RPPM chooses.
 
     Args:
         devices: one a worker.

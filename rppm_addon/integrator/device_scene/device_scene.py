@@ -47,7 +47,7 @@ class DeviceScene:
         """The scene, its shutter included."""
         self._uploaded_scene: Scene | None = None
         """What stands on the device; None: nothing to compare a change with."""
-        self._warnings: dict[str, list[str]] = {}
+        self._warnings: dict[str, list[str]] = {"device": context.information.warnings}
         """What was said when a part was built, which holds for scenes after it as well."""
         self._moving: MovingScene | None = None
         self._swept = _NOWHERE

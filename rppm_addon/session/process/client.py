@@ -15,6 +15,7 @@ from typing import TypeVar
 
 from ...denoising.places import LibraryPlace
 from ...gl.context import DeviceInformation
+from ...gl.devices import Device
 from ...scene.scene import Scene
 from .child_process import ChildProcess
 from .client_session import PreparationSession, RenderSession, Session, ViewportSession
@@ -85,6 +86,8 @@ class RendererProcess:
         self.error = ""
         """Why the process ended last, one line; empty while all is well."""
         self.device: DeviceInformation | None = None
+        self.is_listing = False
+        """Whether more will be known of the other devices."""
         self.log_path = log_path
         self.restarts = 0
         self.changed = threading.Condition()
@@ -131,9 +134,13 @@ class RendererProcess:
                 self._start()
             return session
 
-    def restart(self) -> None:
-        """End the process if there is one, and start a new one that takes over the open sessions."""
+    def restart(self, lists_devices: bool = False) -> None:
+        """End the process if there is one, and start a new one that takes over the open sessions.
+
+        lists_devices: have it open each device for a moment; until it has, ``is_listing`` is set.
+        """
         with self.changed:
+            self.is_listing = lists_devices
             if self._keeper is None:
                 self._start()
             else:
@@ -171,7 +178,16 @@ class RendererProcess:
         self.outbox.clear()
         for session in self.sessions.values():
             session.introduce()
+        self.is_listing &= len(device.devices) > 1
+        if self.is_listing:
+            self.outbox.append(("list_devices", {}))
         self.changed.notify_all()
+
+    def devices_listed(self, devices: list[Device]) -> None:
+        """A process has opened each device."""
+        self.is_listing = False
+        if self.device is not None:
+            self.device.devices = devices
 
     def close_session(self, session: Session) -> None:
         """Forget a session."""
@@ -202,6 +218,7 @@ class RendererProcess:
                 logger.warning("%s", reason)  # not where Blender could wait for it
             with self.changed:
                 self.device = None
+                self.is_listing &= self._restarting  # what a driver ends is not asked for again
                 if self._leaving:
                     self._end_sessions()
                     self.state, self._keeper = ProcessState.STOPPED, None

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from ...gl.context import DeviceInformation
+from ...gl.devices import Device
 from .child_process import ChildProcess, ProcessEnded
 from .client_session import Session, SessionOwner
 from .protocol import FROM_CHILD, VERSION, ProtocolError, check_message
@@ -30,6 +31,9 @@ class ConnectionOwner(SessionOwner, Protocol):
 
     def greeted(self, device: DeviceInformation) -> None:
         """The process has opened the device; ``changed`` is held."""
+
+    def devices_listed(self, devices: list[Device]) -> None:
+        """More is known of the devices that there are; ``changed`` is held."""
 
 
 class Connection:
@@ -139,6 +143,11 @@ class Connection:
             with owner.changed:
                 self.pinged_at, self.answered_at = None, time.monotonic()
                 owner.changed.notify_all()
+            return
+        if kind == "devices":
+            devices = [received(Device, device) for device in message["devices"]]
+            with owner.changed:
+                owner.devices_listed(devices)
             return
         if "session" not in message:
             raise ProtocolError(f"{kind!r} came after the greeting")

@@ -11,7 +11,7 @@ import struct
 from collections.abc import Mapping
 from typing import Any, BinaryIO, TypeAlias
 
-VERSION = 5
+VERSION = 6
 LONGEST_MESSAGE = 1 << 28
 _Fields: TypeAlias = dict[str, Any]
 """Types, or tuples of types, of what a message has beside its kind."""
@@ -44,6 +44,8 @@ TO_CHILD: dict[str, _Fields] = {
     # The same without closing.
     "forget": {"dead": list},
     "ping": {},
+    # Open each device for a moment, to tell more of it.
+    "list_devices": {},
     # End; so does the end of the pipe.
     "leave": {},
 }
@@ -74,6 +76,8 @@ FROM_CHILD: dict[str, _Fields] = {
     # The programs of a scene are compiled, or will be.
     "prepared": _SESSION,
     "pong": {},
+    # As they were asked for; each is a Device.
+    "devices": {"devices": list},
 }
 _LENGTH = struct.Struct("<I")
 

@@ -14,7 +14,7 @@ from typing import BinaryIO
 
 from ...denoising.denoiser import Denoiser
 from ...denoising.places import LibraryPlace, Source
-from ...gl.context import Context
+from ...gl.context import Context, open_others
 from ...gl.programs import ProgramLibrary
 from ...scene.errors import RppmError
 from .arrays import unpack
@@ -141,6 +141,8 @@ class Worker:
         kind, number = message.pop("kind"), message.pop("session", None)
         if kind == "ping":
             self._send("pong")
+        elif kind == "list_devices":
+            threading.Thread(target=self._list_devices, name="RPPM devices", daemon=True).start()
         elif kind == "open":
             session_kind = SessionKind[message["session_kind"]]
             send = functools.partial(self._send, session=number)
@@ -159,6 +161,13 @@ class Worker:
                 getattr(self._sessions[number][1], kind)(**message)
         elif kind != "forget":
             raise ProtocolError(f"there is no message {kind}")
+
+    def _list_devices(self) -> None:
+        """In a thread of its own: drivers take their time, and contexts belong to threads."""
+        information = self._context.information
+        devices = open_others(information.devices, information.number)
+        with contextlib.suppress(BrokenPipeError):
+            self._send("devices", devices=[asdict(device) for device in devices])
 
     def _run_slice(self) -> None:
         number = self._share.next(number for number, (_, session) in self._sessions.items() if session.busy)
