@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seconds of each program of a render."""
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from rppm_addon.gl.context import Context
+from rppm_addon.gl.programs import ComputeProgram, DrawProgram
+from rppm_addon.gl.timers import StageTimers
+
+_METHODS = ((ComputeProgram, "run"), (ComputeProgram, "run_indirect"), (DrawProgram, "draw"))
+
+
+class KernelTimes:
+    """Times programs that run within ``with``: by queries on GPUs, else by all threads' processor time.
+
+    Stages are not timed meanwhile, as queries do not nest.
+    """
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._queries: list[tuple[str, Any]] = []
+        self._seconds: dict[str, float] = {}
+        self._restore = contextlib.ExitStack()
+
+    def __enter__(self) -> "KernelTimes":
+        for kind, name in _METHODS:
+            self._replace(kind, name, self._timed(getattr(kind, name)))
+        self._replace(StageTimers, "stage", _untimed)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._restore.close()
+
+    def _replace(self, kind: type, name: str, method: Callable) -> None:
+        self._restore.callback(setattr, kind, name, getattr(kind, name))
+        setattr(kind, name, method)
+
+    def _timed(self, method: Callable) -> Callable:
+        def run(program: Any, *arguments: object, **named: object) -> None:
+            if self._context.is_software:
+                self._context.finish()
+                start = time.process_time()
+                method(program, *arguments, **named)
+                self._context.finish()
+                self._seconds[program.name] = self._seconds.get(program.name, 0.0) + time.process_time() - start
+                return
+            query = self._context.moderngl.query(time=True)
+            with query:
+                method(program, *arguments, **named)
+            self._queries.append((program.name, query))
+
+        return run
+
+    def seconds(self) -> dict[str, float]:
+        """By program, so far."""
+        for name, query in self._queries:
+            self._seconds[name] = self._seconds.get(name, 0.0) + query.elapsed * 1e-9
+        self._queries.clear()
+        return dict(self._seconds)
+
+
+@contextlib.contextmanager
+def _untimed(_timers: StageTimers, _name: str) -> Iterator[None]:
+    yield
