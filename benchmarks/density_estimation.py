@@ -29,7 +29,7 @@ def measure(context: Context, library: ProgramLibrary, clock: Clock, scene: Scen
     mappers, figures = [], []
     for route in ROUTES:
         mapper = ProgressivePhotonMapper(context, library)
-        mapper.timers.clock = clock.now
+        mapper.timers.begin(clock.now)
         mapper.build(dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, density_estimation=route)))
         mapper.iterate()
         mappers.append(mapper)

@@ -50,7 +50,7 @@ def measure(context: Context, library: ProgramLibrary, clock: Clock, scene: Scen
     anew = []
     for route in ROUTES:
         mapper = ProgressivePhotonMapper(context, library)
-        mapper.timers.clock = clock.now
+        mapper.timers.begin(clock.now)
         mapper.build(dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, first_photon_hits=route)))
         for _ in range(_LEARNING):
             mapper.iterate()

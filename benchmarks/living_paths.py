@@ -47,7 +47,7 @@ def measure(scene: Path, context: Context, library: ProgramLibrary, options: arg
         loaded.settings.photons = options.photons
         mappers[name] = ProgressivePhotonMapper(context, library)
         mappers[name].build(loaded)
-        mappers[name].timers.clock = clock.now
+        mappers[name].timers.begin(clock.now)
     best: dict[tuple[str, str], float] = {}
     for _ in range(options.iterations):
         for name, mapper in mappers.items():

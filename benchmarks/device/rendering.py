@@ -128,7 +128,7 @@ class Rendering:
         width = max(1, round(math.sqrt(scale.pixels * proportion)))
         self.size = width, max(1, round(width / proportion))
         self.mapper = ProgressivePhotonMapper(subject.context, subject.library)
-        self.mapper.timers.clock = clock.now
+        self.mapper.timers.begin(clock.now)
 
     def __enter__(self) -> "Rendering":
         return self

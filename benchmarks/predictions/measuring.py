@@ -3,12 +3,11 @@
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ComputeProgram, DrawProgram
-from rppm_addon.gl.timers import StageTimers
 
 _METHODS = ((ComputeProgram, "run"), (ComputeProgram, "run_indirect"), (DrawProgram, "draw"))
 
@@ -16,7 +15,7 @@ _METHODS = ((ComputeProgram, "run"), (ComputeProgram, "run_indirect"), (DrawProg
 class KernelTimes:
     """Times programs that run within ``with``: by queries on GPUs, else by all threads' processor time.
 
-    Stages are not timed meanwhile, as queries do not nest.
+    Stages must not be timed meanwhile, as queries do not nest.
     """
 
     def __init__(self, context: Context) -> None:
@@ -28,7 +27,6 @@ class KernelTimes:
     def __enter__(self) -> "KernelTimes":
         for kind, name in _METHODS:
             self._replace(kind, name, self._timed(getattr(kind, name)))
-        self._replace(StageTimers, "stage", _untimed)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -60,8 +58,3 @@ class KernelTimes:
             self._seconds[name] = self._seconds.get(name, 0.0) + query.elapsed * 1e-9
         self._queries.clear()
         return dict(self._seconds)
-
-
-@contextlib.contextmanager
-def _untimed(_timers: StageTimers, _name: str) -> Iterator[None]:
-    yield

@@ -72,13 +72,15 @@ class Demand:
     """Atomics of single words, which wait for each other."""
 
     def seconds(self, gpu: Gpu, pixels: int) -> float:
-        """The floor: memory at full speed, and an atomic of a word a clock."""
-        return max(self.least.at(pixels) / gpu.bytes_per_second, self.counters.at(pixels) / gpu.clock)
+        """The floor: memory at full speed, and an atomic of a word a clock where a wave makes one of its threads'."""
+        counters = self.counters.at(pixels) / gpu.width
+        return max(self.least.at(pixels) / gpu.bytes_per_second, counters / gpu.clock)
 
     def waiting_seconds(self, gpu: Gpu, pixels: int, waves: float, width: int) -> float:
-        """The same and as long as loads take that wait for each other, each thread's one after the other."""
+        """The same and as long as loads take, each thread's one after the other, and atomics of a word of all threads."""
         together = gpu.processors * waves * width
-        return self.seconds(gpu, pixels) + self.loads.at(pixels) * LATENCY / together
+        loads, counters = self.loads.at(pixels) * LATENCY / together, self.counters.at(pixels) / gpu.clock
+        return self.seconds(gpu, pixels) + loads + counters
 
     @classmethod
     def of(cls, values: Mapping) -> "Demand":

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..denoising.denoiser import Denoiser
 from ..scene import Scene
+from ..session.observers import RenderObserver, current_observer
 from ..session.render_job import POLL_SECONDS, RenderJob
 from .chosen_device import chosen_device
 from .denoising_libraries import denoising_libraries
@@ -35,6 +36,7 @@ class _Conversation:
         self.scene = scene
         self.libraries = denoising_libraries()
         self.device = chosen_device() or None
+        self.times_stages = type(current_observer()) is not RenderObserver  # the program's reports have them
         self.job = job
         self.stop = threading.Event()
         self._questions: queue.SimpleQueue = queue.SimpleQueue()
@@ -137,7 +139,8 @@ class RendererThread:
                 if renderer is None:
                     from ..session.renderer import Renderer
 
-                    renderer = Renderer(conversation.device, Denoiser(conversation.libraries))
+                    denoiser = Denoiser(conversation.libraries)
+                    renderer = Renderer(conversation.device, denoiser, conversation.times_stages)
                 result = context.run(_render, renderer, conversation)
             except BaseException as raised:
                 error = raised

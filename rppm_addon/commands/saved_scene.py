@@ -16,7 +16,7 @@ def render_saved_scene(path: Path, recorder: RenderRecorder, resolution: tuple[i
     if resolution is not None:
         scene.camera = camera_at_resolution(scene.camera, *resolution)
     recorder.on_scene(scene)
-    with Renderer() as renderer:
+    with Renderer(times_stages=True) as renderer:
         recorder.on_start(scene)
         result = renderer.render(
             scene,

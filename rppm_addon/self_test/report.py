@@ -74,7 +74,7 @@ def run_self_test(on_progress: Callable[[float, str], None], device: str | None 
         found.device = device_information(device)
         on_progress(0.05, "rays")
         found.findings.append(exact_rays(device))
-        with Renderer(device) as renderer:
+        with Renderer(device, times_stages=True) as renderer:
             found.speed = speed(renderer, lambda words: on_progress(0.2, words))
             on_progress(0.5, "energy")
             found.findings += energy(renderer)

@@ -255,14 +255,18 @@ class SlicedRender:
 class Renderer:
     """Owns the GL context and the compiled programs; renders one scene after another."""
 
-    def __init__(self, device: str | None = None, denoiser: Denoiser | None = None) -> None:
+    def __init__(
+        self, device: str | None = None, denoiser: Denoiser | None = None, times_stages: bool = False
+    ) -> None:
         """Open the device (see Context.create). Raises DeviceError.
 
         denoiser: None is one by the libraries that are found here.
+        times_stages: whether statistics tell the seconds of stages, for which the device is waited for.
         """
         self._context = Context.create(device)
         self._denoiser = denoiser or Denoiser(library_places())
         self._library = ProgramLibrary(self._context)
+        self._times_stages = times_stages
         self._mapper: ProgressivePhotonMapper | None = None
 
     @property
@@ -309,6 +313,8 @@ class Renderer:
     ) -> RenderResult:
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
+            if self._times_stages:
+                self._mapper.timers.begin()
         late_warnings: list[str] = []
 
         def report(progress: Progress, read: Callable[[], Frame]) -> None:

@@ -67,6 +67,7 @@ class RenderStatistics:
     noise: float = 0.0
     """Of the noisiest block, in the unit of the noise threshold; 0 where there is none."""
     stage_seconds: dict[str, float] = field(default_factory=dict)
+    """Of the device, if the renderer times stages."""
     memory_bytes: dict[str, int] = field(default_factory=dict)
     flux_watts: dict[str, float] = field(default_factory=dict)
     source_watts: dict[str, float] = field(default_factory=dict)

@@ -13,9 +13,13 @@ def test_software_stages_are_timed_by_the_clock(context):
     if not context.is_software:
         pytest.skip("the device is no software driver")
     timers = StageTimers(context)
+    with timers.stage("unasked"):
+        pass
+    timers.begin()
     for _ in range(2):
         with timers.stage("wait"):
             time.sleep(0.02)
+    assert timers.seconds.keys() == {"wait"}
     assert 0.04 <= timers.seconds["wait"] < 1.0
     timers.reset()
     assert timers.seconds == {}
@@ -25,7 +29,7 @@ def test_software_stages_follow_the_clock_that_is_given(context):
     if not context.is_software:
         pytest.skip("the device is no software driver")
     timers = StageTimers(context)
-    timers.clock = iter((1.0, 4.0, 10.0, 10.5)).__next__
+    timers.begin(iter((1.0, 4.0, 10.0, 10.5)).__next__)
     for _ in range(2):
         with timers.stage("work"):
             pass
@@ -35,6 +39,10 @@ def test_software_stages_follow_the_clock_that_is_given(context):
 def test_queries_are_used_again(context, monkeypatch):
     monkeypatch.setattr(Context, "is_software", property(lambda self: False))
     timers = StageTimers(context)
+    with timers.stage("unasked"):
+        pass
+    assert not timers._idle and not timers._pending
+    timers.begin()
     for _ in range(3):
         for name in ("first", "second"):
             with timers.stage(name):
