@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What is to be known once a GPU can be had for an hour, on a machine without network: GL tests, pictures beside
-# llvmpipe's, the figures of make bench, and seconds by stage.
+# llvmpipe's, seconds by stage, those of every program beside what was predicted (docs/benchmarks/predictions.md), and
+# the figures of make bench.
 #
 #   tools/gpu_run.sh prepare [FOLDER]          # here: wheels, scenes and llvmpipe's pictures into build/gpu
 #   tools/gpu_run.sh run [FOLDER] [RESULTS]    # there, in a copy of the checkout with FOLDER: results into out/gpu
@@ -91,12 +92,15 @@ run() {
     fi
     export RPPM_CACHE=${RPPM_CACHE:-$PWD/$results/programs}
     part device "$python" -m rppm_addon info --json "$results/device.json"
+    [ -n "${QUICK:-}" ] || part doctor "$python" -m rppm_addon doctor -o "$results/doctor.txt"
     # Cold first: what users wait for once; then as it is from then on, seconds by stage in the JSON.
     for scene in "${scenes[@]}"; do
         part "cold_$scene" render "$python" "$scene" "$results/$scene.exr" "$results/$scene.cold.json"
         part "warm_$scene" render "$python" "$scene" "$results/$scene.exr" "$results/$scene.json"
         part "pictures_$scene" compare "$python" "$scene"
     done
+    part predictions "$python" -m benchmarks.predictions.run "$folder/scenes/pool.npz" --measure \
+        ${QUICK:+--pixels 1024 --iterations 1}
     local tests=(tests/gl/test_gl_layer.py)
     [ -n "${QUICK:-}" ] || tests=(tests/gl)
     part tests "$python" -m pytest -q -p no:cacheprovider -m 'not long' "${tests[@]}"
@@ -113,7 +117,7 @@ export -f render compare
 case $verb in
 prepare | run) "$verb" ;;
 *)
-    sed -n '3,13s/^# \{0,1\}//p' "$0"
+    sed -n '3,14s/^# \{0,1\}//p' "$0"
     exit 2
     ;;
 esac

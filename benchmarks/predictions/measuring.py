@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seconds of each program of a render."""
+"""Seconds of each program of a render, beside what was predicted."""
 
 import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ComputeProgram, DrawProgram
+
+from .model import GPUS, RTX_2080_TI, Demand
 
 _METHODS = ((ComputeProgram, "run"), (ComputeProgram, "run_indirect"), (DrawProgram, "draw"))
 
@@ -58,3 +60,21 @@ class KernelTimes:
             self._seconds[name] = self._seconds.get(name, 0.0) + query.elapsed * 1e-9
         self._queries.clear()
         return dict(self._seconds)
+
+
+def comparison(device: str, pixels: int, stored: Mapping[str, Demand], seconds: Mapping[str, float]) -> str:
+    """What was predicted and what was measured, the longest first."""
+    gpu = next((gpu for gpu in GPUS if gpu.part_of_name in device), None)
+    lines = [
+        f"{device}, {pixels} pixels, {pixels // 4} photons; floor and waiting of {(gpu or RTX_2080_TI).name}",
+        f"{'program':48} {'measured ms':>12} {'floor':>9} {'least GB/s':>11} {'asked GB/s':>11}",
+    ]
+    for name, measured in sorted(seconds.items(), key=lambda pair: -pair[1]):
+        demand = stored.get(name)
+        row = f"{name[-48:]:48} {1e3 * measured:12.3f}"
+        if demand is not None:
+            floor = demand.seconds(gpu or RTX_2080_TI, pixels)
+            speeds = (line.at(pixels) / measured / 1e9 for line in (demand.least, demand.asked))
+            row += f" {1e3 * floor:9.3f} {' '.join(f'{speed:11.1f}' for speed in speeds)}"
+        lines.append(row)
+    return "\n".join([*lines, f"{'all':48} {1e3 * sum(seconds.values()):12.3f}"])

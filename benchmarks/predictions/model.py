@@ -77,7 +77,7 @@ class Demand:
         return max(self.least.at(pixels) / gpu.bytes_per_second, counters / gpu.clock)
 
     def waiting_seconds(self, gpu: Gpu, pixels: int, waves: float, width: int) -> float:
-        """The same and as long as loads take, each thread's one after the other, and atomics of a word of all threads."""
+        """The same, and loads and atomics of a word as long as each thread's take one after the other."""
         together = gpu.processors * waves * width
         loads, counters = self.loads.at(pixels) * LATENCY / together, self.counters.at(pixels) / gpu.clock
         return self.seconds(gpu, pixels) + loads + counters

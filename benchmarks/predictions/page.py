@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/benchmarks/predictions.md, and the same table beside what was measured."""
+"""docs/benchmarks/predictions.md."""
 
 from collections.abc import Mapping
 from pathlib import PurePosixPath
 
-from benchmarks.drivers.lab import DRIVERS, LabError, prepare
+from benchmarks.drivers.lab import DRIVERS, prepare
 from benchmarks.drivers.programs import all_programs
 from benchmarks.drivers.run import outcome_of
 from benchmarks.drivers.statistics import Statistics, worst
@@ -102,24 +102,6 @@ def write_page(stored: Mapping[str, Demand], pixels: int) -> None:
 def route_of(name: str) -> bool | None:
     """Whether a program belongs to the grid (True) or to splatting (False) alone."""
     return {"photon_grid": True, "splatting": False}.get(PurePosixPath(name).parts[0])
-
-
-def comparison(device: str, pixels: int, stored: Mapping[str, Demand], seconds: Mapping[str, float]) -> str:
-    """What was predicted and what was measured, the longest first."""
-    gpu = next((gpu for gpu in GPUS if gpu.part_of_name in device), None)
-    lines = [
-        f"{device}, {pixels} pixels, {pixels // 4} photons; floor and waiting of {(gpu or RTX_2080_TI).name}",
-        f"{'program':48} {'measured ms':>12} {'floor':>9} {'least GB/s':>11} {'asked GB/s':>11}",
-    ]
-    for name, measured in sorted(seconds.items(), key=lambda pair: -pair[1]):
-        demand = stored.get(name)
-        row = f"{name[-48:]:48} {1e3 * measured:12.3f}"
-        if demand is not None:
-            floor = demand.seconds(gpu or RTX_2080_TI, pixels)
-            speeds = (line.at(pixels) / measured / 1e9 for line in (demand.least, demand.asked))
-            row += f" {1e3 * floor:9.3f} {' '.join(f'{speed:11.1f}' for speed in speeds)}"
-        lines.append(row)
-    return "\n".join([*lines, f"{'all':48} {1e3 * sum(seconds.values()):12.3f}"])
 
 
 def _number(value: float) -> str:

@@ -20,9 +20,8 @@ from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DensityEstimation, RenderSettings, Scene, load_scene
 from rppm_addon.scene.errors import RppmError
 
-from .measuring import KernelTimes
+from .measuring import KernelTimes, comparison
 from .model import Demand, demands
-from .page import comparison, write_page
 from .recorder import Recorder
 
 FILE = Path(__file__).resolve().parent / "demands.json"
@@ -109,6 +108,8 @@ def main() -> int:
         if options.measure:
             print(measure(load_scene(options.scene), options.pixels, stored, options.iterations))
             return 0
+        from .page import write_page  # late: needs the lab of drivers
+
         if not options.page:
             stored = count(load_scene(options.scene))
             FILE.write_text(json.dumps({name: d.as_dict() for name, d in stored.items()}, indent=1) + "\n", "utf-8")

@@ -178,4 +178,3 @@ def _speed_lines(measured: Speed) -> list[str]:
 
 def _speed_line(name: str, first: float, sample: float, build: float) -> str:
     return f"          {name:34}{first:9.2f}{sample:10.3f}{build:9.4f}"
-

@@ -255,9 +255,7 @@ class SlicedRender:
 class Renderer:
     """Owns the GL context and the compiled programs; renders one scene after another."""
 
-    def __init__(
-        self, device: str | None = None, denoiser: Denoiser | None = None, times_stages: bool = False
-    ) -> None:
+    def __init__(self, device: str | None = None, denoiser: Denoiser | None = None, times_stages: bool = False) -> None:
         """Open the device (see Context.create). Raises DeviceError.
 
         denoiser: None is one by the libraries that are found here.

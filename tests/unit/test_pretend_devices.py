@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Devices as Mesa's drivers show them where drm-shim answers in the kernel's place, if benchmarks.drivers has fetched it."""
+"""Devices as Mesa's drivers show them where drm-shim answers in the kernel's place (benchmarks.drivers fetches it)."""
 
 import json
 import os
@@ -22,7 +22,7 @@ print(json.dumps([available, *map(dataclasses.asdict, devices)]))
 """
 
 
-@pytest.mark.skipif(SHIM is None or project_mesa.has_gpu(), reason="there is a GPU, or make drivers has fetched nothing")
+@pytest.mark.skipif(SHIM is None or project_mesa.has_gpu(), reason="a GPU, or no drm-shim of make drivers")
 @pytest.mark.parametrize(
     ("device", "kind", "name", "least_memory"),
     [
