@@ -149,6 +149,7 @@ def _device_lines(device: DeviceInformation | None) -> list[str]:
         f"Driver    {device.driver}{', of make setup' if device.driver_folder else ''}",
         f"OpenGL    {device.version}",
         *limits,
+        *(f"Warning   {warning}" for warning in device.warnings),
         f"Missing   {'; '.join(device.missing) or 'nothing'}",
         *(["Devices", *others] if others else []),
     ]
