@@ -66,7 +66,7 @@ def comparison(device: str, pixels: int, stored: Mapping[str, Demand], seconds: 
     """What was predicted and what was measured, the longest first."""
     gpu = next((gpu for gpu in GPUS if gpu.part_of_name in device), None)
     lines = [
-        f"{device}, {pixels} pixels, {pixels // 4} photons; floor and waiting of {(gpu or RTX_2080_TI).name}",
+        f"{device}, {pixels} pixels, {pixels // 4} photons; the floor is that of {(gpu or RTX_2080_TI).name}",
         f"{'program':48} {'measured ms':>12} {'floor':>9} {'least GB/s':>11} {'asked GB/s':>11}",
     ]
     for name, measured in sorted(seconds.items(), key=lambda pair: -pair[1]):
