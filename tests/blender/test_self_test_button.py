@@ -31,7 +31,7 @@ def test_a_process_writes_the_report(report, monkeypatch):
     while self_test._show_end() is not None and time.monotonic() < deadline:
         time.sleep(0.02)
     text = report.read_text()
-    assert "stopped: " in text and "'no device' is not a number" in text and "Not all is well" in text
+    assert "stopped: " in text and "there is no device 'no device'" in text and "Not all is well" in text
 
 
 def test_a_process_that_cannot_be_started(report, monkeypatch):
