@@ -48,7 +48,7 @@ def test_a_picture_that_differs_is_found():
 def test_a_device_that_is_not_there_is_told():
     found = run_self_test(lambda _fraction, _words: None, "no number")
     assert not found.passed and found.device is None
-    assert "stopped: device 'no number' is not a number" in report_text(found)
+    assert "stopped: there is no device 'no number'" in report_text(found)
 
 
 def test_the_report_names_no_home_and_says_what_failed(monkeypatch, context):
