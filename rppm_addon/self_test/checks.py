@@ -81,7 +81,7 @@ def _small_ball() -> Mesh:
 def energy(renderer: Renderer) -> list[Finding]:
     """Whether light is neither lost nor gained where its radiance is known. Raises the errors of scene/errors.py."""
     by_rays, by_photons = (
-        furnace(24, 4, direct_light=direct_light) for direct_light in (DirectLight.RAYS, DirectLight.PHOTONS)
+        furnace(24, 4, direct_light) for direct_light in (DirectLight.RAYS, DirectLight.PHOTONS)
     )
     bounced = 2.0 * (1.0 - 0.5**12)
     return [

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a device is tried with: a room with all stages of Algorithm 1, and scenes whose radiance is known."""
 
+from typing import Any
+
 import numpy as np
 
 from ..scene.camera import Camera
@@ -9,13 +11,13 @@ from ..scene.materials import Material
 from ..scene.meshes import Instance
 from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
-from ..scene.settings import RenderSettings
+from ..scene.settings import DirectLight, RenderSettings
 from .meshes import box_sides, looking, placed, sphere
 
 
-def _of_one_shader(name: str, kind: str, output: str = "bsdf", **inputs: object) -> Material:
+def _of_one_shader(name: str, kind: str, options: dict[str, object] | None = None, **inputs: Any) -> Material:
     graph = NodeGraph()
-    graph.surface = graph.add(kind, output, **inputs)
+    graph.surface = graph.add(kind, "bsdf", options=options, **inputs)
     return Material(name, graph)
 
 
@@ -42,7 +44,7 @@ def room(width: int, height: int, iterations: int, seed: int = 0) -> Scene:
     return Scene(camera, meshes, instances, materials, lights, World(np.array([0.2, 0.25, 0.3])), settings=settings)
 
 
-def furnace(size: int, iterations: int, **settings: object) -> Scene:
+def furnace(size: int, iterations: int, direct_light: DirectLight) -> Scene:
     """Inside a box that emits 1 W/(m^2 sr) and reflects a half: 2 everywhere, but for the bounces that are left out."""
     graph = NodeGraph()
     emission = graph.add("emission", "emission", color=(1.0, 1.0, 1.0), strength=1.0)
@@ -50,7 +52,7 @@ def furnace(size: int, iterations: int, **settings: object) -> Scene:
     graph.surface = graph.add("add_shader", "shader", shader=emission, shader_001=diffuse)
     instances = [Instance(mesh, np.eye(4), [0]) for mesh in range(6)]
     camera = Camera(looking((0.5, 0.3, 0.2), (-1.0, -0.4, -0.1)), (-0.8, 0.8, -0.8, 0.8), size, size)
-    wanted = RenderSettings(iterations=iterations, photons=16384, photon_path_length=11, **settings)
+    wanted = RenderSettings(iterations=iterations, photons=16384, photon_path_length=11, direct_light=direct_light)
     return Scene(camera, box_sides(), instances, [Material("glow", graph)], settings=wanted)
 
 
