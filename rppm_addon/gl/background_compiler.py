@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compute programs compiled on the processor's other cores, ahead of their first run.
 
-Mesa's llvmpipe generates a program's code when it is first dispatched: of one picture's programs half a minute of
-processor time, in a single thread. What another context has compiled it finds in its cache on the disk. So threads with
-contexts of their own take the longest programs that wait, while the renderer runs into the others one after the other.
+Threads with contexts of their own take the longest programs that wait, link them and keep their binaries, while the
+renderer runs into the others one after the other. Mesa's llvmpipe generates a program's code when it is first
+dispatched: of one picture's programs half a minute of processor time. They do that as well, and the renderer's context
+finds the code in Mesa's cache on the disk.
 """
 
 import contextlib
@@ -19,7 +20,9 @@ from dataclasses import dataclass
 import moderngl
 
 from ..processors import usable_cores
+from .binary_cache import BinaryCache
 from .context import Context
+from .linking import Linker
 from .sources import Source
 from .texel_buffers import TEXEL_SIZE, TexelBuffers, allocated_size
 from .textures import TextureKind
@@ -65,10 +68,40 @@ class EmptyDispatch:
             self._no_groups.release()
 
 
-def is_of_use(context: Context) -> bool:
-    """Whether a driver compiles programs at their first run and keeps them, and there is a core to spare."""
+def is_of_use(context: Context, cache: BinaryCache) -> bool:
+    """Whether the renderer's context can have what another one has compiled, and there is a core to spare."""
     kept = os.environ.get("MESA_SHADER_CACHE_DISABLE", "").lower() not in {"1", "true", "yes", "y", "t"}
-    return context.is_software and kept and usable_cores() > 1
+    return cache.available and (kept or not context.is_software) and usable_cores() > 1
+
+
+class CompilerContext:
+    """A context of the calling thread, in which programs are compiled and nothing is run."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._cache, self._linker, self._dispatch = BinaryCache(context), Linker(context), EmptyDispatch(context)
+        for unit, kind in TextureKind.by_unit.items():
+            kind.make(context.moderngl, (1, 1)).use(unit)
+        self._texels = context.moderngl.buffer(reserve=allocated_size(TEXEL_SIZE))
+
+    def compile(self, source: Source) -> None:
+        """Have a program's binary and, where drivers generate code late, its code. Raises CompileError."""
+        program = self._linker.new_program()
+        try:
+            if not self._cache.load(program, source.text):
+                self._linker.link(program, [source])
+                self._cache.store(program, source.text)
+            buffers = source.texel_buffers
+            TexelBuffers(self._context, buffers).bind(dict.fromkeys(buffers, self._texels))
+            self._dispatch.run(program)
+            if self._context.is_software:
+                time.sleep(_KEEPING_SECONDS)
+        finally:
+            self._linker.delete_program(program)
+
+    def release(self) -> None:
+        """Close the context."""
+        self._context.release()
 
 
 @dataclass(frozen=True)
@@ -86,7 +119,7 @@ class _Job:
 class BackgroundCompiler:
     """Compiles what is submitted until it is claimed, the longest first. Methods run in the renderer's thread."""
 
-    def __init__(self, open_context: Callable[[], Context]) -> None:
+    def __init__(self, open_context: Callable[[], CompilerContext]) -> None:
         """open_context: opens another context of the renderer's device, in the thread that calls it."""
         self._open_context = open_context
         self._condition = threading.Condition()
@@ -130,11 +163,16 @@ class BackgroundCompiler:
             self._threads[self._hurries] += 1
             threading.Thread(target=self._run, args=(self._hurries,), name="RPPM compiler").start()
 
-    def claim(self, source: Source) -> None:
-        """The program is about to be run: leave it alone, or be done with it on return."""
+    def settle(self, source: Source) -> None:
+        """The program is about to be linked: leave it alone, or be done with it on return. Submit it again after."""
         with self._condition:
             self._waiting = [job for job in self._waiting if job.source != source]
             self._condition.wait_for(lambda: source.text not in self._compiling)
+
+    def claim(self, source: Source) -> None:
+        """The program is about to be run: as settle, and for good."""
+        self.settle(source)
+        with self._condition:
             self._compiled.add(source.text)
 
     def stop(self) -> None:
@@ -152,15 +190,7 @@ class BackgroundCompiler:
             try:
                 if context is None:
                     context = self._open_context()
-                    for unit, kind in TextureKind.by_unit.items():
-                        kind.make(context.moderngl, (1, 1)).use(unit)
-                    dispatch = EmptyDispatch(context)
-                    texels = context.moderngl.buffer(reserve=allocated_size(TEXEL_SIZE))
-                program = context.moderngl.compute_shader(source.text)
-                TexelBuffers(context, source.texel_buffers).bind(dict.fromkeys(source.texel_buffers, texels))
-                dispatch.run(program.glo)
-                time.sleep(_KEEPING_SECONDS)
-                program.release()
+                context.compile(source)
             except Exception:
                 log.info("%s is not compiled in the background", source.files[0], exc_info=True)
             finally:

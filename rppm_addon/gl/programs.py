@@ -8,11 +8,12 @@ from typing import Any
 
 import moderngl
 
-from .background_compiler import BackgroundCompiler, EmptyDispatch, is_of_use
+from .background_compiler import BackgroundCompiler, CompilerContext, EmptyDispatch, is_of_use
 from .binary_cache import BinaryCache
 from .constants import Constants
 from .context import Context
-from .sources import CompileError, ShaderError, Source, expand
+from .linking import Linker
+from .sources import ShaderError, Source, expand
 from .texel_buffers import TexelBuffers
 
 log = logging.getLogger(__name__)
@@ -78,23 +79,13 @@ class _Program:
 class ComputeProgram(_Program):
     """A compute shader."""
 
-    def __init__(
-        self, context: Context, cache: BinaryCache, source: Source, background: "Background | None" = None
-    ) -> None:
-        """background: who may compile the program until it is run."""
+    def __init__(self, context: Context, maker: "ProgramMaker", source: Source, links_later: bool) -> None:
+        """links_later: where others may compile it in the background, it is linked when it is first run, and what is
+        wrong with it is raised then."""
         super().__init__(context, [source])
         self.local_size = source.local_size
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
-        if not cache.load(self._program.glo, source.text):
-            if background is not None:
-                background.compiler.submit(source)
-                self.before_dispatch = lambda: background.finish(source, self._program.glo)
-            self._program.release()
-            try:
-                self._program = context.moderngl.compute_shader(source.text)
-            except moderngl.Error as error:
-                raise CompileError(source.name_lines(str(error))) from error
-            cache.store(self._program.glo, source.text)
+        self.before_dispatch = maker.begin(self._program.glo, source, links_later)
 
     def run(self, threads: int, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None = None) -> None:
         """Run so many threads (rounded up to whole groups) and order their writes."""
@@ -125,31 +116,14 @@ class ComputeProgram(_Program):
 
 
 class DrawProgram(_Program):
-    """A vertex, optional geometry, and fragment shader; vertices are pulled from storage blocks."""
+    """A vertex and a fragment shader; vertices are pulled from storage blocks."""
 
-    def __init__(
-        self, context: Context, cache: BinaryCache, vertex: Source, fragment: Source, geometry: Source | None
-    ) -> None:
-        sources = [vertex, fragment] + ([geometry] if geometry else [])
+    def __init__(self, context: Context, maker: "ProgramMaker", vertex: Source, fragment: Source) -> None:
+        sources = [vertex, fragment]
         super().__init__(context, sources)
-        text = "".join(source.text for source in sources)
         gl = context.moderngl
         self._program = gl.program(vertex_shader=_EMPTY_VERTEX, fragment_shader=_EMPTY_FRAGMENT)
-        # A geometry shader changes what moderngl lets a program draw, so those are always compiled.
-        if geometry or not cache.load(self._program.glo, text):
-            self._program.release()
-            try:
-                self._program = gl.program(
-                    vertex_shader=vertex.text,
-                    fragment_shader=fragment.text,
-                    geometry_shader=geometry.text if geometry else None,
-                )
-            except moderngl.Error as error:
-                message = str(error)
-                culprit = next((s for s in sources if s.files[0].endswith(_stage_suffix(message))), vertex)
-                raise CompileError(culprit.name_lines(message)) from error
-            if not geometry:
-                cache.store(self._program.glo, text)
+        maker.make(self._program.glo, sources)
         self._vertex_array = gl.vertex_array(self._program, [])
 
     def draw(
@@ -186,30 +160,53 @@ class DrawProgram(_Program):
         self._program.release()
 
 
-def _stage_suffix(message: str) -> str:
-    """The file suffix of the stage that a moderngl compile error speaks of."""
-    for stage, suffix in (("vertex_shader", ".vert"), ("fragment_shader", ".frag"), ("geometry_shader", ".geom")):
-        if stage in message:
-            return suffix
-    return ".vert"
-
-
-class Background:
-    """What a library has to compile programs with while it waits for none of them."""
+class ProgramMaker:
+    """Links programs, takes them from the disk, or has them compiled while the renderer waits for none of them."""
 
     def __init__(self, context: Context) -> None:
-        self.compiler = BackgroundCompiler(context.another)
-        self._dispatch = EmptyDispatch(context)
+        self.cache = BinaryCache(context)
+        self._linker = Linker(context)
+        self.compiler: BackgroundCompiler | None = None
+        """Where there is a core to spare."""
+        if is_of_use(context, self.cache):
+            self.compiler = BackgroundCompiler(lambda: CompilerContext(context.another()))
+            self._dispatch = EmptyDispatch(context)
 
-    def finish(self, source: Source, program: int) -> None:
-        """Have the code of a program that is bound and about to be run."""
+    def make(self, program: int, sources: list[Source]) -> None:
+        """Have a GL program linked. Raises CompileError."""
+        text = "".join(source.text for source in sources)
+        if not self.cache.load(program, text):
+            self._linker.link(program, sources)
+            self.cache.store(program, text)
+
+    def begin(self, program: int, source: Source, links_later: bool) -> Callable[[], None] | None:
+        """Have a compute program linked, or see to it; returns what to call before it is first run, if anything.
+
+        Raises CompileError.
+        """
+        if self.cache.load(program, source.text):
+            return None
+        if self.compiler is None:
+            self.make(program, [source])
+            return None
+        if not links_later:
+            self.compiler.settle(source)
+            self.make(program, [source])
+        self.compiler.submit(source)
+        return lambda: self._finish(program, source, links_later)
+
+    def _finish(self, program: int, source: Source, links: bool) -> None:
+        """Have the code of a program that is about to be run."""
         self.compiler.claim(source)
+        if links:
+            self.make(program, [source])
         self._dispatch.run(program)
 
     def release(self) -> None:
         """Begin no other program."""
-        self.compiler.stop()
-        self._dispatch.release()
+        if self.compiler is not None:
+            self.compiler.stop()
+            self._dispatch.release()
 
 
 class ProgramLibrary:
@@ -218,11 +215,10 @@ class ProgramLibrary:
     def __init__(self, context: Context) -> None:
         self.context = context
         self._reads_texels = context.is_software
-        self._cache = BinaryCache(context)
-        self._background = Background(context) if is_of_use(context) else None
+        self._maker = ProgramMaker(context)
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
         self._sources: dict[tuple, Source] = {}
-        """Of programs that something stands in for."""
+        """Of programs that were expected."""
         self.made = 0
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
         self.started = 0
@@ -238,7 +234,8 @@ class ProgramLibrary:
     ) -> ComputeProgram:
         """The compute program of a .comp file; ``inserts`` are texts that stand for files that it includes.
 
-        Raises ShaderError with file and line; CompileError where it is the driver that refuses.
+        Raises ShaderError with file and line; CompileError where it is the driver that refuses, without
+        ``inserts`` maybe not before the program is first run.
         """
         key = (path, *(tuple(sorted((given or {}).items())) for given in (defines, inserts)))
         return self._get(key, lambda: self._compute(path, dict(defines or {}), dict(inserts or {})))
@@ -246,15 +243,23 @@ class ProgramLibrary:
     def has_stand_in(self, path: str, inserts: Mapping[str, str]) -> bool:
         """Whether a compute program that something can stand in for is still to be compiled, and is, in the background.
 
-        False where drivers compile when they are asked to, and once the program is there: then compute() takes no time.
+        False where there is no core to spare, and once the program is there: then compute() takes no time.
         """
-        if self._background is None or (path, (), tuple(sorted(inserts.items()))) in self._programs:
+        return self._expect(path, inserts, needed=False)
+
+    def expect(self, path: str, inserts: Mapping[str, str]) -> None:
+        """Have a compute program that will soon be asked for compiled in the background meanwhile."""
+        self._expect(path, inserts, needed=True)
+
+    def _expect(self, path: str, inserts: Mapping[str, str], needed: bool) -> bool:
+        compiler = self._maker.compiler
+        if compiler is None or (path, (), tuple(sorted(inserts.items()))) in self._programs:
             return False
-        source, compiler = self._expanded(path, inserts), self._background.compiler
+        source = self._expanded(path, inserts)
         if not compiler.knows(source):
-            if self._cache.holds(source.text):  # it has run before, so the driver has its code as well
+            if self._maker.cache.holds(source.text):  # it has run before, so the driver has its code as well
                 return False
-            compiler.submit(source, needed=False)
+            compiler.submit(source, needed)
         return not compiler.has_tried(source)
 
     def _expanded(self, path: str, inserts: Mapping[str, str]) -> Source:
@@ -266,15 +271,13 @@ class ProgramLibrary:
 
     def hurry(self, hurries: bool) -> None:
         """Whether anybody waits for what is compiled in the background."""
-        if self._background is not None:
-            self._background.compiler.hurry(hurries)
+        if self._maker.compiler is not None:
+            self._maker.compiler.hurry(hurries)
 
-    def draw(
-        self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None, geometry: str | None = None
-    ) -> DrawProgram:
-        """The program of a .vert, a .frag and maybe a .geom file. Raises ShaderError with file and line."""
-        key = (vertex, fragment, geometry, tuple(sorted((defines or {}).items())))
-        return self._get(key, lambda: self._draw(vertex, fragment, geometry, dict(defines or {})))
+    def draw(self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None) -> DrawProgram:
+        """The program of a .vert and a .frag file. Raises ShaderError with file and line."""
+        key = (vertex, fragment, tuple(sorted((defines or {}).items())))
+        return self._get(key, lambda: self._draw(vertex, fragment, dict(defines or {})))
 
     def _get(self, key: tuple, make: Callable[[], Any]) -> Any:
         if key not in self._programs:
@@ -292,18 +295,14 @@ class ProgramLibrary:
 
     def _compute(self, path: str, defines: dict, inserts: dict) -> ComputeProgram:
         source = expand(path, defines, inserts, self._reads_texels)
-        return ComputeProgram(self.context, self._cache, source, self._background)
+        return ComputeProgram(self.context, self._maker, source, links_later=not inserts)
 
-    def _draw(self, vertex: str, fragment: str, geometry: str | None, defines: dict) -> DrawProgram:
-        geometry_source = expand(geometry, defines) if geometry else None
-        return DrawProgram(
-            self.context, self._cache, expand(vertex, defines), expand(fragment, defines), geometry_source
-        )
+    def _draw(self, vertex: str, fragment: str, defines: dict) -> DrawProgram:
+        return DrawProgram(self.context, self._maker, expand(vertex, defines), expand(fragment, defines))
 
     def release(self) -> None:
         """Free what it has on the device."""
-        if self._background is not None:
-            self._background.release()
+        self._maker.release()
         for program in self._programs.values():
             program.release()
         self._programs.clear()

@@ -43,6 +43,11 @@ class Source:
     """By the names of the blocks that they stand for."""
 
     @property
+    def suffix(self) -> str:
+        """Of its file's name: which stage it is."""
+        return Path(self.files[0]).suffix
+
+    @property
     def blocks(self) -> dict[str, int]:
         """Binding of each storage block by the block's name, but for those that are texel buffers here."""
         return {name: int(binding) for binding, name in _BLOCK.findall(self.text) if name not in self.texel_buffers}

@@ -10,7 +10,6 @@ import pytest
 from rppm_addon.gl import background_compiler
 from rppm_addon.gl.background_compiler import BackgroundCompiler, EmptyDispatch
 from rppm_addon.gl.sources import Source
-from rppm_addon.gl.textures import TextureKind
 
 
 class Driver:
@@ -23,22 +22,18 @@ class Driver:
 
     def open(self):
         assert self.ready.wait(60.0)
-        gl = SimpleNamespace(compute_shader=self._compile, buffer=lambda *_, **__: SimpleNamespace(glo=1))
-        return SimpleNamespace(moderngl=gl, function=lambda *_: lambda *_: None, release=lambda: None)
+        return SimpleNamespace(compile=self._compile, release=lambda: None)
 
-    def _compile(self, text):
-        if text == "wrong":
-            raise ValueError(text)
-        self.compiled.append(text)
+    def _compile(self, source):
+        if source.text == "wrong":
+            raise ValueError(source.text)
+        self.compiled.append(source.text)
         self.done.release()
-        return SimpleNamespace(glo=2, release=lambda: None)
 
 
 @pytest.fixture
 def driver(monkeypatch):
     monkeypatch.setattr(background_compiler, "usable_cores", lambda: 2)
-    monkeypatch.setattr(background_compiler, "_KEEPING_SECONDS", 0.0)
-    monkeypatch.setattr(TextureKind, "by_unit", {})
     return Driver()
 
 

@@ -134,7 +134,10 @@ def test_programs_are_told_of_before_they_first_run(context, shader_folder):
 
 def test_a_spoiled_binary_is_compiled_again(context, shader_folder):
     (shader_folder / "scale.comp").write_text(PROGRAM)
-    ProgramLibrary(context).compute("scale.comp")
+    unused = context.moderngl.buffer(reserve=64)
+    ProgramLibrary(context).compute("scale.comp").run(
+        4, {"Values": unused}, {"factor": 1.0, "offset": (0, 0, 0), "turn": np.eye(4)}
+    )
     for path in binary_cache.cache_folder().glob("*.bin"):
         path.write_bytes(path.read_bytes()[:40])
     buffer = context.moderngl.buffer(np.ones(16, np.float32).tobytes())
@@ -150,12 +153,12 @@ def test_compile_errors_name_our_file_and_line(context, shader_folder):
         '#version 430 core\nlayout(local_size_x = 1) in;\n#include "part.glsl"\nvoid main() {}\n'
     )
     with pytest.raises(sources.ShaderError, match=r"part\.glsl:3"):
-        ProgramLibrary(context).compute("main.comp")
+        ProgramLibrary(context).compute("main.comp").run(1, {})
     (shader_folder / "main.comp").write_text(
         "#version 430 core\nlayout(local_size_x = 1) in;\n#include <Ray>\n\nvoid main() { wrong(); }\n"
     )
     with pytest.raises(sources.ShaderError, match=r"main\.comp:5"):
-        ProgramLibrary(context).compute("main.comp", {"ANY": 1})
+        ProgramLibrary(context).compute("main.comp", {"ANY": 1}).run(1, {})
 
 
 @pytest.mark.parametrize("line", ['#include "absent.glsl"', "#include <AbsentRecord>"])

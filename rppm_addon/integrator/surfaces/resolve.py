@@ -105,6 +105,8 @@ class Resolve(BufferSet):
         A program that the driver refuses is replaced by that of a gray surface, with a warning in scene.warnings.
         Raises DeviceError when the device cannot hold the attributes.
         """
+        for text in materials.programs:
+            self._library.expect(_STAGE, _inserts(text))
         self._programs = [self._program(text, scene, materials) for text in materials.programs]
         self._surface_attributes.build(scene, geometry, materials.attribute_names)
         self._buffers = {
