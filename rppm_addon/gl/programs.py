@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Programs from our shader files, run with named buffers and one block of parameters."""
 
+import ctypes
+import functools
 import logging
+import math
+import struct
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -13,6 +17,7 @@ from .binary_cache import BinaryCache
 from .constants import Constants
 from .context import Context
 from .linking import Linker
+from .pacing import Pace, Pacing
 from .sources import ShaderError, Source, expand
 from .texel_buffers import TexelBuffers
 
@@ -25,14 +30,20 @@ GROUP_SIZE = 64
 """Threads of a group, where shaders count groups."""
 GROUPS_PER_ROW = 65535
 """Groups of a dispatch along an axis that every device allows."""
+_QUAD = 6
+"""Vertices of two triangles: draws are cut between them."""
+FIRST_INVOCATION = "first_invocation"
+"""The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
 Constants("Dispatch", GROUP_SIZE=GROUP_SIZE, GROUPS_PER_ROW=GROUPS_PER_ROW)
 
 
 class _Program:
     """What compute and draw programs share: bindings by block name, texel buffers, and the parameter block."""
 
-    def __init__(self, context: Context, sources: list[Source]) -> None:
+    def __init__(self, context: Context, pacing: Pacing, sources: list[Source]) -> None:
         self.context = context
+        self._pacing = pacing
+        self._pace = Pace()
         self.before_first_run: Callable[[], None] | None = None
         self.before_dispatch: Callable[[], None] | None = None
         """Called once, when all is bound."""
@@ -82,7 +93,9 @@ class ComputeProgram(_Program):
     def __init__(self, context: Context, maker: "ProgramMaker", source: Source, links_later: bool) -> None:
         """links_later: where others may compile it in the background, it is linked when it is first run, and what is
         wrong with it is raised then."""
-        super().__init__(context, [source])
+        super().__init__(context, maker.pacing, [source])
+        self._set_uniform = maker.set_uniform
+        self._is_divisible = FIRST_INVOCATION in source.text
         self.local_size = source.local_size
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         self.before_dispatch = maker.begin(self._program.glo, source, links_later)
@@ -91,11 +104,10 @@ class ComputeProgram(_Program):
         """Run so many threads (rounded up to whole groups) and order their writes."""
         if threads <= 0:
             return
-        self._bind(buffers, parameters)
         groups = -(-threads // self.local_size)
         rows = -(-groups // GROUPS_PER_ROW)
-        self._program.run(min(groups, GROUPS_PER_ROW), rows)
-        self.context.barrier()
+        self._bind(buffers, parameters)
+        self._run(lambda: groups, lambda: self._program.run(min(groups, GROUPS_PER_ROW), rows))
 
     def run_indirect(
         self,
@@ -105,9 +117,29 @@ class ComputeProgram(_Program):
         parameters: Mapping | None = None,
     ) -> None:
         """Run as many groups as three uints at byte ``offset`` of ``arguments`` say."""
+
+        def groups() -> int:
+            return math.prod(struct.unpack("=3I", arguments.read(12, offset=offset)))
+
         self._bind(buffers, parameters)
-        self._program.run_indirect(arguments, offset)
+        self._run(groups, lambda: self._program.run_indirect(arguments, offset))
+
+    def _run(self, groups: Callable[[], int], whole: Callable[[], None]) -> None:
+        """What is bound, in pieces where it takes long, and order the writes."""
+        if self._is_divisible:
+            self._pacing.run(self._pace, groups, whole, self._run_groups)
+        else:
+            whole()
         self.context.barrier()
+
+    def _run_groups(self, first: int, count: int) -> None:
+        """So many groups from a first one on, without those that would only fill a row."""
+        while count > 0:
+            columns = min(count, GROUPS_PER_ROW)
+            self._set_uniform(self._program.glo, 0, first * self.local_size)
+            self._program.run(columns, 1)
+            first, count = first + columns, count - columns
+        self._set_uniform(self._program.glo, 0, 0)
 
     def release(self) -> None:
         """Free what it has on the device."""
@@ -120,7 +152,7 @@ class DrawProgram(_Program):
 
     def __init__(self, context: Context, maker: "ProgramMaker", vertex: Source, fragment: Source) -> None:
         sources = [vertex, fragment]
-        super().__init__(context, sources)
+        super().__init__(context, maker.pacing, sources)
         gl = context.moderngl
         self._program = gl.program(vertex_shader=_EMPTY_VERTEX, fragment_shader=_EMPTY_FRAGMENT)
         maker.make(self._program.glo, sources)
@@ -132,14 +164,13 @@ class DrawProgram(_Program):
         vertices: int | moderngl.Buffer,
         buffers: Mapping[str, moderngl.Buffer],
         parameters: Mapping | None = None,
-        mode: int = moderngl.TRIANGLES,
         viewport: tuple[int, int, int, int] | None = None,
         state: int = moderngl.NOTHING,
         depth_function: str = "<",
     ) -> None:
-        """Draw into a framebuffer and order the writes.
+        """Draw triangles into a framebuffer and order the writes.
 
-        ``vertices`` is their count, or a buffer of one indirect draw command (four uints).
+        ``vertices`` is their count, or a buffer of one indirect draw command (four uints) of whole quads.
         """
         self._bind(buffers, parameters)
         gl = self.context.moderngl
@@ -147,10 +178,21 @@ class DrawProgram(_Program):
         framebuffer.viewport = viewport or (0, 0, framebuffer.width, framebuffer.height)
         gl.enable_only(state)
         gl.depth_func = depth_function
+        array = self._vertex_array
         if isinstance(vertices, moderngl.Buffer):
-            self._vertex_array.render_indirect(vertices, mode, count=1)
+            quads = functools.partial(_quads_of, vertices)
+            whole = functools.partial(array.render_indirect, vertices, moderngl.TRIANGLES, count=1)
         else:
-            self._vertex_array.render(mode, vertices=vertices)
+            quads = functools.partial(int, -(-vertices // _QUAD))
+            whole = functools.partial(array.render, moderngl.TRIANGLES, vertices=vertices)
+
+        def part(first: int, count: int) -> None:
+            end = _QUAD * (first + count)
+            if not isinstance(vertices, moderngl.Buffer):
+                end = min(end, vertices)
+            array.render(moderngl.TRIANGLES, first=_QUAD * first, vertices=end - _QUAD * first)
+
+        self._pacing.run(self._pace, quads, whole, part)
         self.context.barrier()
 
     def release(self) -> None:
@@ -160,11 +202,20 @@ class DrawProgram(_Program):
         self._program.release()
 
 
+def _quads_of(command: moderngl.Buffer) -> int:
+    """That an indirect draw command asks for. Waits for the device."""
+    return struct.unpack("=I", command.read(4))[0] // _QUAD
+
+
 class ProgramMaker:
     """Links programs, takes them from the disk, or has them compiled while the renderer waits for none of them."""
 
     def __init__(self, context: Context) -> None:
         self.cache = BinaryCache(context)
+        self.pacing = Pacing(context)
+        unsigned = ctypes.c_uint
+        self.set_uniform = context.function("glProgramUniform1ui", None, unsigned, ctypes.c_int, unsigned)
+        """Of a program, at a location."""
         self._linker = Linker(context)
         self.compiler: BackgroundCompiler | None = None
         """Where there is a core to spare."""
@@ -268,6 +319,11 @@ class ProgramLibrary:
         if key not in self._sources:
             self._sources[key] = expand(path, {}, dict(inserts), self._reads_texels)
         return self._sources[key]
+
+    @property
+    def pacing(self) -> Pacing:
+        """How programs are run."""
+        return self._maker.pacing
 
     def hurry(self, hurries: bool) -> None:
         """Whether anybody waits for what is compiled in the background."""

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work that would keep a device for long is given to it in pieces.
+
+Drivers reset a device that one dispatch or draw keeps for seconds, and nobody else can use it meanwhile: windows do not
+move. How long a program takes is measured as it runs. What would take too long is cut into ranges of groups or
+vertices, which are waited for one after the other. Pictures do not depend on where the cuts are.
+"""
+
+import ctypes
+import functools
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .context import Context
+
+LONGEST_SECONDS = 0.2
+"""That the device may be kept by one piece."""
+LONGEST_SECONDS_BESIDE_WINDOW = 0.015
+"""The same, while somebody works in a window that the device draws."""
+_AIM = 0.5
+"""Of the longest: items differ in what they cost."""
+_FIRST_ITEMS = 64
+"""Of a program whose speed is not known."""
+_FEWEST_ITEMS = 16
+"""Fewer would leave parts of a device idle."""
+_FORGETTING = 0.97
+_TIMESTAMP, _QUERY_RESULT, _QUERY_RESULT_AVAILABLE = 0x8E28, 0x8866, 0x8867
+
+
+@dataclass
+class Pace:
+    """How fast a program has been."""
+
+    seconds_per_item: float | None = None
+    """None where nothing is known."""
+    most_seconds: float = 0.0
+    """Of all items, the longest lately."""
+    epoch: int = 0
+    """Of Pacing.forget."""
+    stopwatch: "_Stopwatch | None" = None
+
+    def learn(self, items: int | None, seconds: float) -> None:
+        """So many items, where that is known, took so long."""
+        self.most_seconds = max(seconds, _FORGETTING * self.most_seconds)
+        if items:
+            self.seconds_per_item = seconds / items
+
+
+class Pacing:
+    """Gives a device its work, in pieces where it would be kept for too long."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._flush = context.function("glFlush", None)
+        self._unflushed = 0.0
+        """Seconds that what the device was given since it was last told to begin will take."""
+        self._epoch = 0
+        self.most_seconds = LONGEST_SECONDS
+        """That the device may be kept by one piece."""
+        self.pieces = 0
+        """Of work that was cut, so far."""
+        self.between: Callable[[], None] | None = None
+        """Called before each piece but the first; what it raises leaves the rest undone."""
+
+    def forget(self) -> None:
+        """What comes may take longer than what has been measured."""
+        self._epoch += 1
+
+    def run(
+        self, pace: Pace, items: Callable[[], int], whole: Callable[[], None], part: Callable[[int, int], None]
+    ) -> None:
+        """Have a program run.
+
+        Args:
+            pace: the program's own.
+            items: tells how many there are, for which the device may have to be waited for.
+            whole: gives the device all of them.
+            part: gives it those from a first one on, so many.
+        """
+        if pace.epoch != self._epoch:
+            pace.epoch, pace.seconds_per_item = self._epoch, None
+        if self._context.is_software:
+            count = items()
+            if pace.seconds_per_item is not None and count * pace.seconds_per_item <= self._aim:
+                pace.learn(count, self._seconds_of(whole))
+            else:
+                self._run_parts(pace, count, part)
+        elif pace.seconds_per_item is not None and pace.most_seconds <= self._aim:
+            self._run_unwatched(pace, whole)
+        else:
+            self._run_parts(pace, items(), part)
+
+    @property
+    def _aim(self) -> float:
+        return _AIM * self.most_seconds
+
+    def _seconds_of(self, work: Callable[[], None]) -> float:
+        """Of the device, which has nothing else to do."""
+        start = time.perf_counter()
+        work()
+        self._context.finish()
+        return time.perf_counter() - start
+
+    def _run_parts(self, pace: Pace, count: int, part: Callable[[int, int], None]) -> None:
+        done, total, size, rate = 0, 0.0, _FIRST_ITEMS, pace.seconds_per_item
+        if rate is not None:
+            size = self._affordable(rate)
+        self._context.finish()
+        self._unflushed = 0.0
+        while done < count:
+            if done and self.between is not None:
+                self.between()
+            items = min(size, count - done)
+            seconds = self._seconds_of(functools.partial(part, done, items))
+            self.pieces += items < count
+            done, total, rate = done + items, total + seconds, seconds / items
+            size = min(2 * size, self._affordable(rate))
+        if count:
+            pace.learn(None, total)
+            pace.seconds_per_item = rate
+
+    def _affordable(self, rate: float) -> int:
+        """Items for which there is time, each taking so many seconds."""
+        return max(int(self._aim / max(rate, 1e-12)), _FEWEST_ITEMS)
+
+    def _run_unwatched(self, pace: Pace, whole: Callable[[], None]) -> None:
+        """Without waiting for the device; what it took is looked up later."""
+        pace.stopwatch = pace.stopwatch or _Stopwatch(self._context)
+        seconds = pace.stopwatch.seconds
+        if seconds is not None:
+            pace.learn(None, seconds)
+        if pace.stopwatch.is_running:
+            whole()
+        else:
+            pace.stopwatch.start()
+            whole()
+            pace.stopwatch.stop()
+        self._unflushed += pace.most_seconds
+        if self._unflushed > self._aim:
+            self._flush()
+            self._unflushed = 0.0
+
+
+class _Stopwatch:
+    """Seconds from one command to another, by the device's own clock. Stages' timers may run meanwhile."""
+
+    def __init__(self, context: Context) -> None:
+        unsigned, number = ctypes.c_uint, ctypes.POINTER(ctypes.c_uint64)
+        self._queries = (unsigned * 2)()
+        context.function("glGenQueries", None, ctypes.c_int, ctypes.POINTER(unsigned))(2, self._queries)
+        self._note = context.function("glQueryCounter", None, unsigned, unsigned)
+        self._read = context.function("glGetQueryObjectui64v", None, unsigned, unsigned, number)
+        self.is_running = False
+        """Whether the device has not come to its end."""
+
+    def start(self) -> None:
+        """From here."""
+        self._note(self._queries[0], _TIMESTAMP)
+
+    def stop(self) -> None:
+        """To here."""
+        self._note(self._queries[1], _TIMESTAMP)
+        self.is_running = True
+
+    @property
+    def seconds(self) -> float | None:
+        """That are not told yet; None as long as the device has not come to their end."""
+        if not self.is_running or not self._value(1, _QUERY_RESULT_AVAILABLE):
+            return None
+        self.is_running = False
+        return 1e-9 * (self._value(1, _QUERY_RESULT) - self._value(0, _QUERY_RESULT))
+
+    def _value(self, query: int, name: int) -> int:
+        value = ctypes.c_uint64(0)
+        self._read(self._queries[query], name, ctypes.byref(value))
+        return value.value
