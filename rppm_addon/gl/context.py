@@ -17,6 +17,7 @@ from typing import Any
 from ..scene.errors import DeviceError
 from .devices import Choice, Device, choose, list_devices
 from .kernel_devices import DeviceKind
+from .losses import LossWatch
 from .project_mesa import load_project_mesa
 from .requirements import NEEDS, refuse_small_devices
 
@@ -191,7 +192,11 @@ class Context:
         resolve.restype = ctypes.c_void_p
         resolve.argtypes = [ctypes.c_char_p]
         address = resolve(name.encode())
-        return prototype(result, *arguments)(address) if address else None
+        if address:
+            return prototype(result, *arguments)(address)
+        if sys.platform.startswith("linux") or not hasattr(library, name):
+            return None
+        return prototype(result, *arguments)((name, library))  # of GL 1.1, in the library itself on Windows
 
     @property
     def has_program_binaries(self) -> bool:
@@ -222,8 +227,6 @@ class Context:
         """glGetIntegerv of up to four numbers."""
         values = (ctypes.c_int * 4)()
         get_integer = self.function("glGetIntegerv", None, ctypes.c_uint, ctypes.POINTER(ctypes.c_int))
-        if get_integer is None:  # Windows resolves GL 1.1 functions from the library itself
-            get_integer = ctypes.WinDLL("opengl32.dll").glGetIntegerv  # type: ignore[attr-defined]
         get_integer(name, values)
         return list(values)
 
@@ -232,8 +235,14 @@ class Context:
         self.moderngl.memory_barrier()
 
     def finish(self) -> None:
-        """Wait until the device has done all it was given."""
+        """Wait until the device has done all it was given. Raises DeviceLostError where it was reset."""
         self.moderngl.finish()
+        self._losses.check()
+
+    @functools.cached_property
+    def _losses(self) -> LossWatch:
+        gl = self.moderngl
+        return LossWatch(self.function, gl.version_code, gl.extensions)
 
     def seconds_of(self, work: Callable[[], object]) -> float:
         """Seconds from an idle device until it has done what ``work`` gives it, by the wall clock."""

@@ -57,11 +57,16 @@ class Pacing:
         """Seconds that what the device was given since it was last told to begin will take."""
         self._epoch = 0
         self.most_seconds = LONGEST_SECONDS
-        """That the device may be kept by one piece."""
+        """That the device may be kept by one piece; share_with_window sets it."""
         self.pieces = 0
         """Of work that was cut, so far."""
         self.between: Callable[[], None] | None = None
         """Called before each piece but the first; what it raises leaves the rest undone."""
+
+    def share_with_window(self, shares: bool) -> None:
+        """Whether somebody works in a window meanwhile, which waits for the device unless that is the processor."""
+        waits = shares and not self._context.is_software
+        self.most_seconds = LONGEST_SECONDS_BESIDE_WINDOW if waits else LONGEST_SECONDS
 
     def forget(self) -> None:
         """What comes may take longer than what has been measured."""
@@ -80,7 +85,7 @@ class Pacing:
         """
         if pace.epoch != self._epoch:
             pace.epoch, pace.seconds_per_item = self._epoch, None
-        if self._context.is_software:
+        if self._is_waited_for:
             count = items()
             if pace.seconds_per_item is not None and count * pace.seconds_per_item <= self._aim:
                 pace.learn(count, self._seconds_of(whole))
@@ -90,6 +95,11 @@ class Pacing:
             self._run_unwatched(pace, whole)
         else:
             self._run_parts(pace, items(), part)
+
+    @property
+    def _is_waited_for(self) -> bool:
+        """Whether the device has always done what it was given: then counts and times cost nothing."""
+        return self._context.is_software
 
     @property
     def _aim(self) -> float:

@@ -22,6 +22,10 @@ class DeviceError(RppmError):
     """The graphics device or its driver cannot do what is asked."""
 
 
+class DeviceLostError(DeviceError):
+    """The driver has reset the graphics device: another context is needed, and all that was on the device again."""
+
+
 class DenoiserError(RppmError):
     """There is no library that denoises, or it cannot be used."""
 

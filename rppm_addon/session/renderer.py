@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the photon mapper on a scene and reports how it goes."""
 
+import contextlib
 import logging
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
@@ -14,10 +15,11 @@ from ..gl.programs import ProgramLibrary
 from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..integrator.stages.film import Film, exposed
+from ..scene.errors import DeviceLostError
 from ..scene.gate import check_scene
 from ..scene.passes import DEEP_CUBEMAP
 from ..scene.scene import Scene
-from .continuation import Continuation, Pause
+from .continuation import Continuation, GoingOn, Pause
 from .denoised_pictures import finished_frame, finished_result, wanted_frame
 from .frame_passes import frame_passes
 from .noise_threshold import NoiseThreshold
@@ -30,6 +32,14 @@ log = logging.getLogger(__name__)
 CENTER_TOLERANCE = 0.5
 """Radii of the scene by which the camera of an animation may leave the deep cubemap's center before it is built anew.
 Measured in a room of 100 k triangles, so far off rays cost a tenth more, building a third of an iteration."""
+FIRST_SAFEGUARD_SECONDS = 1.0
+"""What takes less is quickly done again."""
+SAFEGUARD_SECONDS = 5.0
+"""Least time from one safeguard of a render to the next, of which a lost device takes the iterations along."""
+SAFEGUARD_MOST_TIME = 0.02
+"""Of all time, that safeguards may take."""
+MOST_LOSSES = 3
+"""Of the device in one render; then something is wrong that another context does not change."""
 
 
 def read_combined(film: Film, exposure: float) -> np.ndarray:
@@ -64,10 +74,12 @@ class SlicedRender:
         self._mapper = mapper
         self._scene = scene
         self._on_progress = on_progress
-        self._pending = list(snapshots)
-        self._on_snapshot = on_snapshot
         self._continuation = continuation or Continuation()
-        self._start = self._kept = time.perf_counter()
+        self._pending = [mark for mark in snapshots if mark > self._continuation.seconds]
+        self._on_snapshot = on_snapshot
+        self._kept = time.perf_counter()
+        self._start = self._kept - self._continuation.seconds
+        self._safeguard_due = self._kept + FIRST_SAFEGUARD_SECONDS
         self._inspections: dict[str, np.ndarray] = {}
         """Passes that are computed once."""
         self._found = 0
@@ -101,7 +113,7 @@ class SlicedRender:
         yield from self._begin()
         self._measure_noise()
         self._report()
-        while not self._is_done and self._limit.allows_another(self._elapsed):
+        while not self._is_done and self._limit.allows_another(self.elapsed):
             yield
             if not (yield from self._iterate()):
                 break
@@ -110,6 +122,7 @@ class SlicedRender:
             self._take_snapshots()
             if time.perf_counter() - self._kept >= self._continuation.interval:
                 self.keep()
+            self._safeguard()
         if self.iterations < settings.iterations:
             self._take_snapshots(settings.time_limit)
 
@@ -123,7 +136,7 @@ class SlicedRender:
 
     def _iterate(self) -> Generator[None, None, bool]:
         """One more iteration; returns whether it has come to its end before time was up."""
-        began = self._elapsed
+        began = self.elapsed
         cuttable = self._limit.may_cut(began)
         if cuttable:
             self.keep()
@@ -131,17 +144,17 @@ class SlicedRender:
         self.between_iterations = False
         for _ in self._mapper.steps():
             yield
-            if cuttable and self._limit.has_passed(self._elapsed):
+            if cuttable and self._limit.has_passed(self.elapsed):
                 return False
         self._context.finish()
-        seconds = self._elapsed - began
+        seconds = self.elapsed - began
         self.iterations += 1
         self.between_iterations = True
         self._before = None
-        self._remaining.add(self._elapsed)
-        if self._limit.is_first_too_long(self._elapsed):
+        self._remaining.add(self.elapsed)
+        if self._limit.is_first_too_long(self.elapsed):
             self._late_warnings = [
-                f"the first sample ended after {self._elapsed:.1f} s, past the time limit of {self._limit.limit:g} s: "
+                f"the first sample ended after {self.elapsed:.1f} s, past the time limit of {self._limit.limit:g} s: "
                 "there would be no picture without it; fewer photons or pixels make samples shorter"
             ]
             log.warning("%s", self._late_warnings[0])
@@ -172,13 +185,27 @@ class SlicedRender:
     def keep(self) -> None:
         """Tell whoever keeps the render how to go on with it, once there is something to keep."""
         if self._continuation.keep is not None and self.between_iterations and self.iterations > 0:
-            mapper = self._mapper
-            device = self._context.information.label
-            self._continuation.keep(Pause(mapper.state(), device, mapper.splat_radii[0], self._inspections))
+            self._continuation.keep(self._pause())
         self._kept = time.perf_counter()
 
+    def _safeguard(self) -> None:
+        """The same for whoever begins again where this device or process is lost, as far as that costs little."""
+        start = time.perf_counter()
+        if self._continuation.safeguard is not None and start >= self._safeguard_due:
+            self._continuation.safeguard(self._pause(), self.elapsed)
+            now = time.perf_counter()
+            self._safeguard_due = now + max(SAFEGUARD_SECONDS, (now - start) / SAFEGUARD_MOST_TIME)
+
+    def _pause(self) -> Pause:
+        """Between two iterations. Raises DeviceLostError for one that was read of a lost device."""
+        mapper = self._mapper
+        pause = Pause(mapper.state(), self._context.information.label, mapper.splat_radii[0], self._inspections)
+        self._context.finish()
+        return pause
+
     @property
-    def _elapsed(self) -> float:
+    def elapsed(self) -> float:
+        """Seconds since the render began."""
         return time.perf_counter() - self._start
 
     def _report(self) -> None:
@@ -187,7 +214,7 @@ class SlicedRender:
 
     def _take_snapshots(self, until: float = 0.0) -> None:
         """Those whose time has come, and those of a time up to which there will be no other picture."""
-        while self._pending and max(self._elapsed, until) >= self._pending[0]:
+        while self._pending and max(self.elapsed, until) >= self._pending[0]:
             mark = self._pending.pop(0)
             if self._on_snapshot is not None:
                 self._on_snapshot(mark, self.frame())
@@ -200,11 +227,11 @@ class SlicedRender:
         return Progress(
             self.iterations,
             settings.iterations,
-            self._elapsed,
+            self.elapsed,
             self._mapper.photons_emitted(self.iterations),
             settings.time_limit,
             noise.expected_iterations,
-            self._remaining.seconds(iterations - self.iterations, self._elapsed, settings.time_limit),
+            self._remaining.seconds(iterations - self.iterations, self.elapsed, settings.time_limit),
             noise.noise,
             noise.threshold,
             sum(self._mapper.memory_bytes.values()),
@@ -214,7 +241,9 @@ class SlicedRender:
         """The picture so far, with its noise and all passes of the film."""
         if self._before is not None:
             return self._before.frame
-        return read_frame(self._mapper.film, self._scene.exposure, self._inspections)
+        frame = read_frame(self._mapper.film, self._scene.exposure, self._inspections)
+        self._context.finish()  # a lost device would give no picture
+        return frame
 
     def result(self, stopped: bool) -> RenderResult:
         """The picture and the figures; ``stopped`` says whether slices() was left before its end."""
@@ -222,9 +251,9 @@ class SlicedRender:
             return empty_result(self._scene, self._context.information.label)
         if self._before is not None:
             statistics = self._before.statistics
-            statistics.seconds, statistics.stage_seconds = self._elapsed, self._mapper.timers.seconds
+            statistics.seconds, statistics.stage_seconds = self.elapsed, self._mapper.timers.seconds
             return RenderResult(self._before.frame, statistics, stopped)
-        mapper, seconds, warnings = self._mapper, self._elapsed, [*self._scene.warnings, *self._late_warnings]
+        mapper, seconds, warnings = self._mapper, self.elapsed, [*self._scene.warnings, *self._late_warnings]
         balance = {}
         if self.between_iterations and self.iterations > self._found:
             balance = mapper.flux_balance()
@@ -261,6 +290,7 @@ class Renderer:
         denoiser: None is one by the libraries that are found here.
         times_stages: whether statistics tell the seconds of stages, for which the device is waited for.
         """
+        self._wish = device
         self._context = Context.create(device)
         self._denoiser = denoiser or Denoiser(library_places())
         self._library = ProgramLibrary(self._context)
@@ -295,10 +325,28 @@ class Renderer:
         iteration is done in any case so that there is a picture. ``on_snapshot`` gets the picture
         as each of the ascending ``snapshots`` (seconds since the call) has passed. ``continuation``
         says where to begin and who keeps the render, for those that do not just begin and end.
+        Where the device is lost the render goes on in another context, after the last iteration that was safeguarded.
         Raises the errors of scene/errors.py.
         """
-        with self._context.moderngl:  # another context may be current in this thread
-            return self._render(scene, on_progress, should_stop, snapshots, on_snapshot, continuation)
+        going_on = GoingOn(continuation)
+        while True:
+            try:
+                with self._context.moderngl:  # another context may be current in this thread
+                    return self._render(scene, on_progress, should_stop, snapshots, on_snapshot, going_on.continuation)
+            except DeviceLostError as error:
+                if going_on.losses == MOST_LOSSES:
+                    raise
+                going_on.lose(scene, error)
+                self._open_anew()
+
+    def _open_anew(self) -> None:
+        """Have another context in place of a lost one."""
+        self._mapper = None  # whose buffers are gone
+        with contextlib.suppress(Exception):  # whatever drivers say to those who tidy up
+            self._library.release()
+            self._context.release()
+        self._context = Context.create(self._wish)
+        self._library = ProgramLibrary(self._context)
 
     def _render(
         self,
@@ -325,13 +373,20 @@ class Renderer:
 
         render = SlicedRender(self._context, self._mapper, scene, report, snapshots, hand_out, continuation)
         stopped = False
-        for _ in render.slices():
-            may_stop = render.getting_ready or (render.between_iterations and render.iterations > 0)
-            stopped = should_stop is not None and may_stop and should_stop()
-            if stopped:
-                break
-        render.keep()
-        return finished_result(render.result(stopped), scene.settings, self._denoiser)
+        try:
+            for _ in render.slices():
+                may_stop = render.getting_ready or (render.between_iterations and render.iterations > 0)
+                stopped = should_stop is not None and may_stop and should_stop()
+                if stopped:
+                    break
+            render.keep()
+            result = render.result(stopped)
+        except DeviceLostError:
+            raise
+        except Exception:
+            self._context.finish()  # which says so where it is because the device is lost
+            raise
+        return finished_result(result, scene.settings, self._denoiser)
 
     def compile(self, scene: Scene, on_program: Callable[[int, int], None]) -> int:
         """Have the driver compile the programs that pictures of a scene need, and keep them on the disk.

@@ -6,8 +6,8 @@ layout(std430, binding = 14) readonly buffer LivingPaths { LivingPathsHeader liv
 
 const uint NO_PATH = 0xffffffffu;  // more than any count of paths
 
-// The number of the path at a place of the list, or NO_PATH behind its end.
-uint living_path_at(uint place) { return place < living.count ? living_paths[place] : NO_PATH; }
-
-// The number of the path that is this thread's.
-uint living_path() { return living_path_at(invocation_index()); }
+// The number of the path that is this thread's, or NO_PATH behind the list's end.
+uint living_path() {
+    uint place = invocation_index();
+    return place < living.count ? living_paths[place] : NO_PATH;
+}

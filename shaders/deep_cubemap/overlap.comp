@@ -23,9 +23,9 @@ uint job_of_cell(uint number) {
 
 void main() {
     uint thread = gl_LocalInvocationIndex;
-    uint group_start = parameters.first_job + invocation_index() - thread;
+    uint group_start = invocation_index() - thread;
     uint cells = 0u;
-    if (group_start + thread < parameters.end_job) {
+    if (group_start + thread < parameters.job_count) {
         ivec4 rectangle = job_rectangle(overlap_jobs[group_start + thread]);
         cells = uint((rectangle.z - rectangle.x + 1) * (rectangle.w - rectangle.y + 1));
     }

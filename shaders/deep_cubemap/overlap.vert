@@ -14,7 +14,7 @@ flat out uint job_number;
 flat out ivec2 tile_origin;
 
 void main() {
-    job_number = parameters.first_job + uint(gl_VertexID) / 6u;
+    job_number = uint(gl_VertexID) / 6u;
     uvec4 job = overlap_jobs[job_number];
     // tiles of other drawings lie outside of the picture and are clipped
     int tile = int(job_tile(job)) - int(parameters.first_tile), row_tiles = int(parameters.picture_side) / 4;

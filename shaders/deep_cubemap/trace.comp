@@ -5,14 +5,12 @@
 // The nearest hit of each ray.
 layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
-#include <TraceParameters>
-layout(std140, binding = 0) uniform Parameters { TraceParameters parameters; };
 #include "deep_cubemap/traverse.glsl"
 
 layout(std430, binding = 1) restrict readonly buffer Rays;
 layout(std430, binding = 2) restrict writeonly buffer Hits;
 
 void main() {
-    uint index = living_path_at(parameters.first_place + invocation_index());
+    uint index = living_path();
     if (index != NO_PATH) hits[index] = deep_cubemap_hit(rays[index]);
 }

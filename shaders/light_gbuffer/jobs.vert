@@ -11,7 +11,7 @@ flat out uint job_number;
 flat out ivec2 view_corner;
 
 void main() {
-    job_number = parameters.first_job + uint(gl_VertexID) / 6u;
+    job_number = uint(gl_VertexID) / 6u;
     uvec4 job = light_jobs[job_number];
     view_corner = ivec2(parameters.side * uvec2(job.y % parameters.columns, job.y / parameters.columns));
     ivec2 corner = CORNERS[gl_VertexID % 6];

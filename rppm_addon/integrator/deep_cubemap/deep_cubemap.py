@@ -109,7 +109,7 @@ Constants("CellKinds", CELL=CellKind)
 Constants("DepthBins", signed=True, JOIN_MOST=JOIN_MOST)
 StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
 BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
-Record("OverlapDraw", first_job="uint", end_job="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
+Record("OverlapDraw", job_count="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
 CELLS_OF_A_TILE = 16
 """Told to shaders as a number that drivers do not know: loops of so few rounds are written out and compile for long."""
 Record(
@@ -122,7 +122,6 @@ Record(
     tile_cells="uint",
 )
 Record("MergeLevel", first_cell="uint", end_cell="uint", tile_cells="uint")
-Record("TraceParameters", first_place="uint")
 
 FINEST_RESOLUTION = 1 << 14
 
@@ -140,10 +139,6 @@ _PICTURE_SIDE = 4096
 
 # Triangles to try both routes with.
 _TRIAL_LEAST, _TRIAL_MOST = 1000, 16384
-
-# Work per submission, so that no driver watchdog mistakes it for a hang.
-_RAYS_PER_DISPATCH = 1 << 18
-_JOBS_PER_DRAW = 1 << 16
 
 _READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
 
@@ -304,13 +299,7 @@ class DeepCubemap(BufferSet):
             self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS
         )
         program = self._library.compute(kernel, {TEXEL_BUFFERS: 1} if as_texels else {})
-        buffers = {**self.traversal_buffers, **buffers}
-        if living.most <= _RAYS_PER_DISPATCH:
-            living.run(program, buffers, {"first_place": 0})
-            return
-        for first in range(0, living.most, _RAYS_PER_DISPATCH):
-            threads = min(_RAYS_PER_DISPATCH, living.most - first)
-            program.run(threads, {**buffers, "LivingPaths": living.buffer}, {"first_place": first})
+        living.run(program, {**self.traversal_buffers, **buffers})
 
     def _read_state(self) -> np.void:
         return self._state.read(STATE.dtype, 1)[0].copy()
@@ -480,13 +469,10 @@ class DeepCubemap(BufferSet):
     ) -> None:
         side = self._picture_side() if self._rasterize else 1 << 30
         for picture_tile in range(first_tile, end_tile, (side // 4) ** 2):
-            for first in range(0, jobs, _JOBS_PER_DRAW):
-                end = min(first + _JOBS_PER_DRAW, jobs)
-                parameters = {
-                    "first_job": first, "end_job": end, "side_exponent": side_exponent, "first_tile": picture_tile,
-                    "picture_side": side,
-                }  # fmt: skip
-                self._overlap(end - first, buffers, parameters)
+            parameters = {
+                "job_count": jobs, "side_exponent": side_exponent, "first_tile": picture_tile, "picture_side": side,
+            }  # fmt: skip
+            self._overlap(jobs, buffers, parameters)
 
     def _overlap(self, jobs: int, buffers: Mapping[str, moderngl.Buffer], parameters: dict[str, int]) -> None:
         if not self._rasterize:

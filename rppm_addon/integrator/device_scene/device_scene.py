@@ -33,6 +33,7 @@ class DeviceScene:
 
     def __init__(self, context: Context, library: ProgramLibrary, timers: StageTimers) -> None:
         self._timers = timers
+        self._pacing = library.pacing
         self.geometry = Geometry(context, library)
         self.materials = MaterialTables(context, library)
         self.lights = Lights(context, library)
@@ -84,6 +85,8 @@ class DeviceScene:
         which changes no picture. Raises SceneError or DeviceError; what is built then is built anew the next time.
         """
         changes = changes_between(self._uploaded_scene, scene)
+        if changes.geometry or changes.materials:
+            self._pacing.forget()
         self._take(scene)
         self._moving = MovingScene(scene) if scene.shutter is not None else None
         swept = swept_bounds(scene)

@@ -48,7 +48,6 @@ Record(
     view_count="uint",
     triangle_count="uint",
     job_capacity="uint",
-    first_job="uint",
     columns="uint",
     rows="uint",
 )
@@ -69,7 +68,6 @@ _COARSEST_SIDE, _FINEST_SIDE, _TEXELS = 128, 512, 1 << 19
 _MOST_TESTS = 1 << 24
 """Views times triangles: beyond this only the first light has views."""
 _PICTURE_SIDE = 4096
-_JOBS_PER_DRAW = 1 << 16
 _WIDEST_MARGIN = 1.0 / 128.0
 """Of the scene's radius: lights with more extent have no view that is of use."""
 _WIDEST_CONE = math.radians(60.0)
@@ -181,7 +179,7 @@ class LightGBuffer(BufferSet):
         rows = -(-views // columns)
         self._parameters = {
             "side": self._side, "view_count": views, "triangle_count": geometry.triangle_count, "job_capacity": 0,
-            "first_job": 0, "columns": columns, "rows": rows,
+            "columns": columns, "rows": rows,
         }  # fmt: skip
         size = (self._side * columns, self._side * rows)
         if self._framebuffer is None or self._framebuffer.size != size:
@@ -217,9 +215,7 @@ class LightGBuffer(BufferSet):
                 return jobs
 
     def _draw(self, program: DrawProgram, jobs: int, blocks: dict[str, moderngl.Buffer]) -> None:
-        for first in range(0, jobs, _JOBS_PER_DRAW):
-            vertices = 6 * min(_JOBS_PER_DRAW, jobs - first)
-            program.draw(known(self._framebuffer), vertices, blocks, self._parameters | {"first_job": first})
+        program.draw(known(self._framebuffer), 6 * jobs, blocks, self._parameters)
 
     def find(
         self,

@@ -11,9 +11,11 @@ from ...scene.scene import Scene
 from ..results import Progress, RenderStatistics
 from .arrays import unpack
 from .frames import FrameReader, SharedFrame
+from .kept_renders import KeptRender
 from .protocol import ProtocolError
 from .received import received
 from .sessions import SessionKind, SessionStatus
+from .shared_memory import SharedBlock
 
 
 class SessionOwner(Protocol):
@@ -23,6 +25,8 @@ class SessionOwner(Protocol):
     """Guards all that sessions and the process share."""
     sessions: dict[int, "Session"]
     """The open ones by their numbers."""
+    error: str
+    """Why the process before has ended, if it did."""
 
     def post(self, kind: str, **content: object) -> None:
         """Have a message sent to the process, if there is one."""
@@ -187,18 +191,23 @@ class RenderSession(Session):
         self._checkpoint = ""
         self._stopping = False
         self._generation = 0
+        self._kept: KeptRender | None = None
+        """What another process is to go on with."""
+        self._given: SharedBlock | None = None
+        """What that process reads it from."""
 
     def begin(self, scene: Scene) -> None:
         """Render a scene to its end; no other one may be under way. What it shares with the scene before stays."""
         with self.process.changed:
             self._stopping = False
+            self._kept = None
             self._generation += 1
             self.show(scene, self._generation, False)
 
     def rest(self) -> None:
         """The scene is rendered: a process that is started anew need not begin again with it."""
         with self.process.changed:
-            self._snapshot = None
+            self._snapshot = self._kept = None
             self._due = False
 
     def expect_snapshots(self, seconds: tuple[float, ...]) -> None:
@@ -231,9 +240,36 @@ class RenderSession(Session):
         self.introduced = True
         self.process.post("expect_snapshots", session=self.number, seconds=self._snapshots)
         self.process.post("keep_still", session=self.number, path=self._checkpoint)
+        self._hand_on()
         if self._stopping:
             self.process.post("stop", session=self.number, generation=self._generation)
         self.events.put(("started", {}))
+
+    def _hand_on(self) -> None:
+        """Have a new process go on with what the one before has kept."""
+        if self._kept is None:
+            return
+        try:
+            content, self._given = self._kept.message(self.process.error)
+        except OSError:  # there is no memory: it begins again
+            return
+        self.process.post("go_on", session=self.number, **content)
+
+    def snapshot_taken(self, number: int) -> None:
+        """As Session has it; what was handed on before is read as well."""
+        super().snapshot_taken(number)
+        self._take_back()
+
+    def release(self) -> None:
+        """As Session has it."""
+        super().release()
+        self._kept = None
+        self._take_back()
+
+    def _take_back(self) -> None:
+        if self._given is not None:
+            self._given.close()
+            self._given = None
 
     def fail(self, text: str) -> None:
         """As Session has it."""
@@ -241,7 +277,7 @@ class RenderSession(Session):
 
     def receive(self, kind: str, content: dict) -> None:
         """As Session has it."""
-        if kind not in ("progress", "picture", "snapshot", "result", "failed"):
+        if kind not in ("progress", "picture", "snapshot", "kept", "result", "failed"):
             raise ProtocolError(f"a render has no message {kind!r}")
         if "progress" in content:
             content["progress"] = received(Progress, content["progress"])
@@ -253,7 +289,15 @@ class RenderSession(Session):
             if "block" in description:
                 with self.process.changed:
                     self.process.post("received", session=self.number)
-        self.events.put((kind, content))
+        if kind == "kept":
+            self._keep(**content)
+        else:
+            self.events.put((kind, content))
+
+    def _keep(self, document: dict, arrays: list, generation: int, seconds: float) -> None:
+        with self.process.changed:
+            if generation == self._generation and self._snapshot is not None:
+                self._kept = KeptRender(document, arrays, seconds)
 
 
 class PreparationSession(Session):

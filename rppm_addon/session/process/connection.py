@@ -149,6 +149,11 @@ class Connection:
             with owner.changed:
                 owner.devices_listed(devices)
             return
+        if kind == "lost":
+            with owner.changed:
+                self.reason, self.ended = str(message["text"]), True
+                owner.changed.notify_all()
+            return
         if "session" not in message:
             raise ProtocolError(f"{kind!r} came after the greeting")
         number = message.pop("session")

@@ -8,7 +8,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.surfaces.resolve import has_stand_in
-from ...scene.errors import RppmError
+from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
 from .known_programs import text_of
 
@@ -39,6 +39,8 @@ class Preparation:
         try:
             if self._slices is not None and next(self._slices, self) is not self:
                 return
+        except DeviceLostError:
+            raise
         except RppmError:  # whoever renders says so
             pass
         self._slices = None

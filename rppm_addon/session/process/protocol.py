@@ -33,6 +33,8 @@ TO_CHILD: dict[str, _Fields] = {
     "expect_snapshots": _SESSION | {"seconds": list},
     # Renders go on from this checkpoint and are kept in it; "" is none.
     "keep_still": _SESSION | {"path": str},
+    # The render of the next scene goes on where one stood that a process kept which has ended for this reason.
+    "go_on": _SESSION | _PACKED | {"seconds": (float, int), "reason": str},
     # A render is to send its picture once.
     "want_picture": _SESSION,
     # The render's oldest frame is copied: its shared memory is free.
@@ -69,12 +71,16 @@ FROM_CHILD: dict[str, _Fields] = {
     "picture": _SESSION | {"arrays": dict, "passes": list, "progress": dict},
     # As it was expected.
     "snapshot": _SESSION | {"arrays": dict, "passes": list, "seconds": (float, int)},
+    # What it takes to go on with a render (kept_renders.py).
+    "kept": _SESSION | _PACKED | {"generation": int, "seconds": (float, int)},
     # The last; statistics are RenderStatistics.
     "result": _SESSION | {"arrays": dict, "passes": list, "statistics": dict, "stopped": bool},
     # The render has ended with an error of this name.
     "failed": _SESSION | {"error": str, "text": str},
     # The programs of a scene are compiled, or will be.
     "prepared": _SESSION,
+    # The driver has reset the device: the child ends.
+    "lost": {"text": str},
     "pong": {},
     # As they were asked for; each is a Device.
     "devices": {"devices": list},

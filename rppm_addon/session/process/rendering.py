@@ -11,14 +11,16 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...pictures import PictureError
-from ...scene.errors import RppmError
+from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
+from ..continuation import Continuation, Pause, place_of
 from ..denoised_pictures import finished_frame, wanted_frame
 from ..renderer import SlicedRender, log
 from ..results import Frame, RenderResult
 from ..still_keeper import StillKeeper, continued_still
 from .arrays import pack
 from .background_denoising import BackgroundFinish
+from .kept_renders import described
 from .shared_memory import SharedBlock
 
 
@@ -37,6 +39,8 @@ class Rendering:
         self._send = send
         self._snapshots: Sequence[float] = ()
         self._checkpoint = ""
+        self._handed_on: tuple[Pause, float, str] | None = None
+        """Where the next scene goes on, the seconds that it has taken, and why the process before ended."""
         self._keeper: StillKeeper | None = None
         self._scene: Scene | None = None
         self._mapper: ProgressivePhotonMapper | None = None
@@ -58,6 +62,10 @@ class Rendering:
     def keep_still(self, path: str) -> None:
         """Go on from this checkpoint and keep the render in it, "" for none; to be said before the scene is shown."""
         self._checkpoint = path
+
+    def go_on(self, pause: Pause | None, seconds: float, reason: str) -> None:
+        """Go on where a process has left the scene that is shown next. None: begin anew."""
+        self._handed_on = None if pause is None else (pause, seconds, reason)
 
     def show(self, scene: Scene, generation: int, navigating: bool) -> None:
         """Render this scene."""
@@ -95,6 +103,7 @@ class Rendering:
 
     def run_slice(self) -> None:
         """Render a bounded while."""
+        self._library.pacing.share_with_window(False)
         try:
             if self._slices is None:
                 self._begin()
@@ -108,17 +117,20 @@ class Rendering:
             finished = self._finish.take(self._stopping)
             if finished is not None:
                 self._end(finished)
-        except BrokenPipeError:
+        except (BrokenPipeError, DeviceLostError):
             raise
         except Exception as error:
+            self._context.finish()  # which says so where it is because the device is lost
             self._fail(error)
 
     def _begin(self) -> None:
         self._library.hurry(True)
         self._mapper = self._mapper or ProgressivePhotonMapper(self._context, self._library)
-        self._keeper, continuation = None, None
+        self._keeper, continuation = None, Continuation()
         if self._checkpoint:
             self._keeper, continuation = continued_still(Path(self._checkpoint), self._scene)
+        continuation.safeguard = self._send_kept
+        self._take_up(continuation)
         self._render = SlicedRender(
             self._context,
             self._mapper,
@@ -129,6 +141,27 @@ class Rendering:
             continuation=continuation,
         )
         self._slices = self._render.slices()
+
+    def _take_up(self, continuation: Continuation) -> None:
+        """Go on where another process stood, unless the checkpoint is further."""
+        if self._handed_on is None:
+            return
+        (pause, seconds, reason), self._handed_on = self._handed_on, None
+        kept = continuation.begin
+        if kept is None or kept.state.iteration < pause.state.iteration:
+            continuation.begin = pause
+        continuation.seconds = seconds
+        self._scene.warn(f"{reason}; the render went on {place_of(continuation.begin)} in another process")
+
+    def _send_kept(self, pause: Pause, seconds: float) -> None:
+        try:
+            document, description, block = described(pause)
+        except OSError as error:
+            log.warning("the render is not kept for another process: %s", error)
+            return
+        if block is not None:
+            self._blocks.append(block)
+        self._send("kept", document=document, arrays=description, generation=self._generation, seconds=seconds)
 
     def _keep(self) -> None:
         """Write the checkpoint of a render that ends."""

@@ -16,7 +16,7 @@ from ...integrator.first_look import FirstLook
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
 from ...integrator.viewport.pictures import ViewportPictures, demands_of
-from ...scene.errors import DenoiserError, RppmError
+from ...scene.errors import DenoiserError, DeviceLostError, RppmError
 from ...scene.scene import Scene
 from ..frame_passes import frame_passes
 from ..noise_threshold import NoiseThreshold
@@ -137,6 +137,7 @@ class Viewing:
 
     def run_slice(self) -> None:
         """Render a bounded while."""
+        self._library.pacing.share_with_window(True)
         if self._shown is not None and not (self._slices is not None and self._first_picture_pending):
             self._slices = self._render(*self._shown)
             self._shown = None
@@ -147,9 +148,10 @@ class Viewing:
                 self._library.on_start = self._while_compiling
             if next(self._slices, self) is self:  # ended
                 self._slices = None
-        except BrokenPipeError:
+        except (BrokenPipeError, DeviceLostError):
             raise
         except Exception as error:
+            self._context.finish()  # which says so where it is because the device is lost
             self._fail(error)
         finally:
             self._library.on_start = None
@@ -331,6 +333,8 @@ class Viewing:
             if self._first_look is None:
                 self._first_look = FirstLook(self._context, self._library, self._mapper.device_scene.geometry)
             combined = self._first_look.draw(scene)
+        except DeviceLostError:
+            raise
         except (RppmError, ShaderError):
             log.info("there is no first look", exc_info=True)
             return

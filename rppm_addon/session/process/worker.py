@@ -16,9 +16,10 @@ from ...denoising.denoiser import Denoiser
 from ...denoising.places import LibraryPlace, Source
 from ...gl.context import Context, open_others
 from ...gl.programs import ProgramLibrary
-from ...scene.errors import RppmError
+from ...scene.errors import DeviceLostError, RppmError
 from .arrays import unpack
 from .fair_share import FairShare
+from .kept_renders import pause_of
 from .known_programs import KnownPrograms
 from .preparation import Preparation
 from .protocol import TO_CHILD, VERSION, ProtocolError, check_message, read_message, write_message
@@ -29,7 +30,9 @@ from .viewing import Viewing
 
 log = logging.getLogger(__name__)
 
-_FOR_SESSIONS = frozenset(("show", "pause", "expect_snapshots", "keep_still", "want_picture", "received", "stop"))
+_FOR_SESSIONS = frozenset(
+    ("show", "pause", "expect_snapshots", "keep_still", "go_on", "want_picture", "received", "stop")
+)
 LEAVE_SECONDS = 1.0
 """How long what the device is at may take to end once Blender has left."""
 
@@ -49,7 +52,11 @@ def work(hello: dict, reader: BinaryIO, writer: BinaryIO) -> int:
     write_message(writer, "ready", version=VERSION, device=asdict(context.information))
     with contextlib.suppress(BrokenPipeError):
         places = [LibraryPlace(Source[source], Path(path)) for source, path in hello["denoisers"]]
-        Worker(context, Denoiser(places), reader, writer).run()
+        try:
+            Worker(context, Denoiser(places), reader, writer).run()
+        except DeviceLostError as error:
+            log.error("%s", error)
+            return 1
     return 0
 
 
@@ -74,12 +81,15 @@ class Worker:
         self._left = threading.Event()
 
     def run(self) -> None:
-        """Render until Blender leaves."""
+        """Render until Blender leaves. Raises DeviceLostError."""
         threading.Thread(target=self._read, name="RPPM messages", daemon=True).start()
         try:
             while self._handle_messages():
                 self._whole.wait()
                 self._run_slice()
+        except DeviceLostError as error:
+            self._send("lost", text=str(error))
+            raise
         finally:
             for number in list(self._sessions):
                 self._close(number)
@@ -122,6 +132,8 @@ class Worker:
                 session.expect(message["scene"], message["generation"])
             self._send("taken", session=message["session"], number=message.pop("number"))
             self._whole.set()
+        elif kind == "go_on":
+            message["pause"] = pause_of(message.pop("document"), unpack(message.pop("arrays")))
         self._receiver.forget(message.pop("dead", ()))
 
     # In the main thread.
