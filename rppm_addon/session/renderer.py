@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 CENTER_TOLERANCE = 0.5
 """Radii of the scene by which the camera of an animation may leave the deep cubemap's center before it is built anew.
 Measured in a room of 100 k triangles, so far off rays cost a tenth more, building a third of an iteration."""
-FIRST_SAFEGUARD_SECONDS = 1.0
+FIRST_SAFEGUARD_SECONDS = 0.25
 """What takes less is quickly done again."""
 SAFEGUARD_SECONDS = 5.0
 """Least time from one safeguard of a render to the next, of which a lost device takes the iterations along."""

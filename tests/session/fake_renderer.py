@@ -124,6 +124,13 @@ def is_killed_amid_a_frame(pipes):
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+def loses_the_device(pipes):
+    pipes.greet()
+    pipes.take()
+    pipes.say("lost", text="the driver has reset the graphics device")
+    wait_for_leave(pipes)
+
+
 def dies_with_each_scene(pipes):
     pipes.greet()
     pipes.take()

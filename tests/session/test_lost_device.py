@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders that go on where the device is lost, or the process that renders them."""
+
+import dataclasses
+import os
+import signal
+
+import numpy as np
+import pytest
+
+from rppm_addon.gl.losses import LossWatch
+from rppm_addon.scene.errors import DeviceLostError
+from rppm_addon.session import renderer as renderer_module
+from rppm_addon.session.process.client import ProcessState
+from rppm_addon.session.process.remote_rendering import RemoteRenderer
+from rppm_addon.session.process.sessions import SessionKind
+from rppm_addon.session.render_job import RenderJob
+from rppm_addon.session.renderer import MOST_LOSSES, Renderer
+
+from .conftest import children, scene_of, wait_until
+
+SAMPLES = 6
+
+
+class Losses:
+    """Has the next look at the device find it lost, once ``due`` is set."""
+
+    def __init__(self, monkeypatch):
+        self.due = False
+        monkeypatch.setattr(LossWatch, "check", self._check)
+        monkeypatch.setattr(renderer_module, "FIRST_SAFEGUARD_SECONDS", 0.0)
+        monkeypatch.setattr(renderer_module, "SAFEGUARD_SECONDS", 0.0)
+        monkeypatch.setattr(renderer_module, "SAFEGUARD_MOST_TIME", 1e6)
+
+    def _check(self):
+        if self.due:
+            self.due = False
+            raise DeviceLostError("the driver has reset the graphics device")
+
+
+def driver(status=0, error=0, version=430, extensions=()):
+    functions = {"glGetGraphicsResetStatus": lambda: status, "glGetError": lambda: error}
+    return LossWatch(lambda name, *_: functions.get(name), version, set(extensions))
+
+
+@pytest.mark.parametrize(
+    "lost",
+    [
+        driver(status=0x8253, version=450),
+        driver(status=0x8254, extensions=["GL_KHR_robustness"]),
+        driver(error=0x0507),  # where the driver has no word for it
+    ],
+)
+def test_a_lost_context_is_found(lost):
+    with pytest.raises(DeviceLostError, match="reset"):
+        lost.check()
+
+
+def test_other_errors_are_no_loss():
+    driver(version=450).check()
+    driver(error=0x0502).check()
+
+
+def test_a_render_goes_on_in_another_context(monkeypatch):
+    scene, seen = scene_of(SAMPLES), []
+    losses = Losses(monkeypatch)
+    with Renderer() as renderer:
+        whole = renderer.render(scene).frame.combined
+
+    def lose_after_three(progress, _):
+        seen.append(progress.iteration)
+        losses.due = seen == [0, 1, 2, 3]
+
+    with Renderer() as renderer:
+        result = renderer.render(scene, lose_after_three, snapshots=(0.0,), on_snapshot=lambda *_: None)
+    assert seen == [0, 1, 2, 3, 2, 3, 4, 5, 6] or seen == [0, 1, 2, 3, 3, 4, 5, 6]
+    np.testing.assert_array_equal(result.frame.combined, whole)
+    assert any("reset" in text and "after sample" in text for text in result.statistics.warnings)
+
+
+def test_a_device_that_is_lost_again_and_again_ends_the_render(monkeypatch):
+    losses, began = Losses(monkeypatch), []
+
+    def lose(*_):
+        began.append(1)
+        losses.due = True
+
+    with Renderer() as renderer, pytest.raises(DeviceLostError):
+        renderer.render(scene_of(SAMPLES), lose)
+    assert len(began) == MOST_LOSSES + 1
+
+
+class KillingJob(RenderJob):
+    """Kills the process once it has handed over what another one needs, if ``process`` is given."""
+
+    def __init__(self, process=None):
+        self.process, self.iterations = process, []
+
+    def on_progress(self, progress):
+        self.iterations.append(progress.iteration)
+        if self.process is not None:
+            (session,) = self.process.sessions.values()
+            if session._kept is not None:
+                self.process = None
+                os.kill(children().pop(), signal.SIGKILL)
+        return False
+
+
+def test_another_process_goes_on_with_a_render(start):
+    scene = scene_of(200)
+    process = start()
+    remote = RemoteRenderer(process, SessionKind.FINAL)
+    whole = remote.render(scene, RenderJob())
+    killing = KillingJob(process)
+    again = remote.render(dataclasses.replace(scene, warnings=[]), killing)
+    assert process.restarts == 1 and process.state is ProcessState.RUNNING
+    begun = [
+        later for earlier, later in zip(killing.iterations, killing.iterations[1:], strict=False) if later <= earlier
+    ]
+    assert len(begun) == 1 and begun[0] > 0
+    np.testing.assert_array_equal(again.frame.combined, whole.frame.combined)
+    assert any(f"after sample {begun[0]} in another process" in text for text in again.statistics.warnings)
+
+
+def test_a_process_that_loses_the_device_says_so(start):
+    process = start("loses_the_device")
+    process.open(SessionKind.VIEWPORT).show(scene_of(), 1, False)
+    wait_until(lambda: process.state is ProcessState.FAILED)
+    assert "reset the graphics device" in process.error
