@@ -68,6 +68,11 @@ class PictureSet(RenderObserver):
         return len(self.finished) < len(self.names) or any(recorder.stopped for recorder in self.recorders)
 
     @property
+    def has_samples(self) -> bool:
+        """Whether there are some of any picture."""
+        return any(recorder.has_samples for recorder in self.recorders)
+
+    @property
     def scene_time(self) -> float:
         """When the first scene was there."""
         return self.recorders[0].scene_time if self.recorders else 0.0

@@ -73,6 +73,13 @@ class RenderRecorder(RenderObserver):
         self._write_png_file = write_png_file
         self._keeper = keeper
         self._progress: Progress | None = None
+        self._first_iteration: int | None = None
+        """Where the render has begun."""
+
+    @property
+    def has_samples(self) -> bool:
+        """Whether there are some of this render."""
+        return self._progress is not None and self._progress.iteration > (self._first_iteration or 0)
 
     def on_scene(self, scene: Scene) -> bool:
         """As RenderObserver has it."""
@@ -100,6 +107,8 @@ class RenderRecorder(RenderObserver):
     def on_progress(self, progress: "Progress") -> None:
         """As RenderObserver has it."""
         self._progress = progress
+        if self._first_iteration is None:
+            self._first_iteration = progress.iteration
         words = f"sample {progress.iteration}"
         fraction = progress.fraction
         elapsed = time.perf_counter() - self.scene_time

@@ -57,14 +57,16 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
         recorder: RenderRecorder | PictureSet
         report: dict[str, object] = {"scene": str(options.file)}
         if blend_request:
-            recorder = recorded_pictures(request, bar, lambda: interruption.asked, keeper)
+            recorder = pictures = recorded_pictures(request, bar, lambda: interruption.asked, keeper)
+            interruption.has_work = lambda: pictures.has_samples
             blender_report = blend_file.render_blend_file(blend_request, recorder, show_output=options.debug)
             report["blender"] = dataclasses.asdict(blender_report)
         else:
             from .saved_scene import render_saved_scene
 
             refuse_blend_options(options, data_values)
-            recorder = RenderRecorder(request, bar, lambda: interruption.asked, True, keeper)
+            recorder = still = RenderRecorder(request, bar, lambda: interruption.asked, True, keeper)
+            interruption.has_work = lambda: still.has_samples
             render_saved_scene(options.file, recorder, options.resolution)
     bar.clear()
     if options.json is not None:
