@@ -147,7 +147,7 @@ class Viewport:
         elif starting:
             text = "Starting the renderer"
         elif not status.iterations and status.programs_started:
-            text = f"Compiling {status.programs_started} of {status.programs}"
+            text = f"Compiling {status.programs_started} of {status.programs}: {status.program}"
         elif not status.iterations:
             text = "Compiling shaders and building the scene"
         else:

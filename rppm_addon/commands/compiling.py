@@ -29,7 +29,8 @@ def compile_programs(options: argparse.Namespace, bar: ProgressBar) -> int:
     start, processor_start = time.perf_counter(), time.process_time()
     with Renderer() as renderer:
         count = renderer.compile(
-            scene, lambda number, known: bar.show((number - 1) / known, f"Compiling {number} of {known}")
+            scene,
+            lambda number, known, name: bar.show((number - 1) / known, f"Compiling {number} of {known}: {name}"),
         )
         device = renderer.device.label
     bar.clear()

@@ -60,8 +60,6 @@ class Pacing:
         """That the device may be kept by one piece; share_with_window sets it."""
         self.pieces = 0
         """Of work that was cut, so far."""
-        self.between: Callable[[], None] | None = None
-        """Called before each piece but the first; what it raises leaves the rest undone."""
 
     def share_with_window(self, shares: bool) -> None:
         """Whether somebody works in a window meanwhile, which waits for the device unless that is the processor."""
@@ -119,8 +117,6 @@ class Pacing:
         self._context.finish()
         self._unflushed = 0.0
         while done < count:
-            if done and self.between is not None:
-                self.between()
             items = min(size, count - done)
             seconds = self._seconds_of(functools.partial(part, done, items))
             self.pieces += items < count

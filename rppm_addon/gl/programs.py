@@ -8,6 +8,7 @@ import math
 import struct
 import time
 from collections.abc import Callable, Mapping
+from pathlib import PurePosixPath
 from typing import Any
 
 import moderngl
@@ -207,6 +208,11 @@ def _quads_of(command: moderngl.Buffer) -> int:
     return struct.unpack("=I", command.read(4))[0] // _QUAD
 
 
+def _name(path: str) -> str:
+    """A program's, for people: resolve/resolve.comp is "resolve", light_tree/build.comp "light tree, build"."""
+    return ", ".join(dict.fromkeys(PurePosixPath(path).with_suffix("").parts)).replace("_", " ")
+
+
 class ProgramMaker:
     """Links programs, takes them from the disk, or has them compiled while the renderer waits for none of them."""
 
@@ -274,8 +280,8 @@ class ProgramLibrary:
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
         self.started = 0
         """Programs that have run; llvmpipe for one generates their code only then."""
-        self.on_start: Callable[[], None] | None = None
-        """Called before a program runs for the first time, with ``started`` counting it already."""
+        self.on_start: Callable[[str], None] | None = None
+        """Called with its name before a program runs for the first time; ``started`` counts it already."""
 
     def compute(
         self,
@@ -339,15 +345,15 @@ class ProgramLibrary:
         if key not in self._programs:
             start = time.perf_counter()
             self._programs[key] = make()
-            self._programs[key].before_first_run = self._start
+            self._programs[key].before_first_run = functools.partial(self._start, _name(key[0]))
             self.made += 1
             log.debug("%s ready in %.3f s", key[0], time.perf_counter() - start)
         return self._programs[key]
 
-    def _start(self) -> None:
+    def _start(self, name: str) -> None:
         self.started += 1
         if self.on_start is not None:
-            self.on_start()
+            self.on_start(name)
 
     def _compute(self, path: str, defines: dict, inserts: dict) -> ComputeProgram:
         source = expand(path, defines, inserts, self._reads_texels)

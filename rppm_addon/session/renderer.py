@@ -388,15 +388,16 @@ class Renderer:
             raise
         return finished_result(result, scene.settings, self._denoiser)
 
-    def compile(self, scene: Scene, on_program: Callable[[int, int], None]) -> int:
+    def compile(self, scene: Scene, on_program: Callable[[int, int, str], None]) -> int:
         """Have the driver compile the programs that pictures of a scene need, and keep them on the disk.
 
         The scene is rendered, as drivers compile for the state in which programs run: make it small. ``on_program`` is
-        notified before each program that runs for the first time the how many-th it is, and how many there are so far.
+        notified before each program that runs for the first time the how many-th it is, how many there are so far, and
+        its name.
         Returns their number. Raises the errors of scene/errors.py.
         """
         library = self._library
-        library.on_start = lambda: on_program(library.started, library.made)
+        library.on_start = lambda name: on_program(library.started, library.made, name)
         try:
             self.render(scene)
         finally:

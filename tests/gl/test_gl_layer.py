@@ -123,12 +123,12 @@ def test_programs_are_told_of_before_they_first_run(context, shader_folder):
     (shader_folder / "scale.comp").write_text(PROGRAM)
     buffer = context.moderngl.buffer(np.ones(16, np.float32).tobytes())
     library, told = ProgramLibrary(context), []
-    library.on_start = lambda: told.append((library.started, library.made))
+    library.on_start = lambda name: told.append((library.started, library.made, name))
     first, second = library.compute("scale.comp"), library.compute("scale.comp", {"UNUSED": 1})
     assert told == []
     for program in (second, first, second):
         program.run(4, {"Values": buffer}, {"factor": 1.0, "offset": (0, 0, 0), "turn": np.eye(4)})
-    assert told == [(1, 2), (2, 2)]
+    assert told == [(1, 2, "scale"), (2, 2, "scale")]
     library.release()
 
 

@@ -75,22 +75,6 @@ def test_what_becomes_slow_is_cut_finer(monkeypatch):
     assert max(count for _, count in given) * device.seconds_per_item <= pacing.most_seconds
 
 
-def test_what_is_raised_between_pieces_leaves_the_rest(monkeypatch):
-    device = Device(monkeypatch, 1e-3)
-    pacing = Pacing(device)
-
-    class Stop(Exception):
-        pass
-
-    def stop():
-        raise Stop
-
-    pacing.between = stop
-    with pytest.raises(Stop):
-        device.run(pacing, Pace(), 1000)
-    assert device.given == [(0, 64)]
-
-
 def picture(mapper, library, longest):
     """That of two iterations, with so many seconds for a piece, and the number of pieces."""
     pacing = library.pacing

@@ -20,6 +20,8 @@ class SessionStatus:
 
     generation: int = 0
     """Of the scene that this is about."""
+    program: str = ""
+    """The name of the last that is being compiled."""
     programs_started: int = 0
     """Until the first iteration: programs that are compiled."""
     programs: int = 0

@@ -340,7 +340,7 @@ class Viewing:
             return
         self._send_frame(combined, generation, 0.0)
 
-    def _while_compiling(self) -> None:
+    def _while_compiling(self, name: str) -> None:
         """Between two programs of the first frame: follow the view, and say how far it is."""
         if self._first_look is not None and self._coming is not None:
             scene, generation = self._coming
@@ -349,7 +349,8 @@ class Viewing:
         now = time.perf_counter()
         if now - self._told_at >= COMPILING_SECONDS:
             self._told_at = now
-            self._tell(SessionStatus(programs_started=self._library.started, programs=self._library.made))
+            library = self._library
+            self._tell(SessionStatus(program=name, programs_started=library.started, programs=library.made))
 
     def _give_out(self, combined: np.ndarray, scene: Scene, generation: int, last: bool = False) -> None:
         """Send a picture, which is changed, unless a newer view was looked at meanwhile."""
