@@ -89,7 +89,7 @@ class Pacing:
                 pace.learn(count, self._seconds_of(whole))
             else:
                 self._run_parts(pace, count, part)
-        elif pace.seconds_per_item is not None and pace.most_seconds <= self._aim:
+        elif self._is_quick(pace):
             self._run_unwatched(pace, whole)
         else:
             self._run_parts(pace, items(), part)
@@ -130,12 +130,18 @@ class Pacing:
         """Items for which there is time, each taking so many seconds."""
         return max(int(self._aim / max(rate, 1e-12)), _FEWEST_ITEMS)
 
+    def _is_quick(self, pace: Pace) -> bool:
+        """Whether all of a program's items have taken no longer than they may, of late."""
+        seconds = pace.stopwatch.seconds if pace.stopwatch is not None else None
+        if seconds is not None:
+            pace.learn(None, seconds)
+            if seconds > self._aim:  # of how many items is not known
+                pace.seconds_per_item = None
+        return pace.seconds_per_item is not None and pace.most_seconds <= self._aim
+
     def _run_unwatched(self, pace: Pace, whole: Callable[[], None]) -> None:
         """Without waiting for the device; what it took is looked up later."""
         pace.stopwatch = pace.stopwatch or _Stopwatch(self._context)
-        seconds = pace.stopwatch.seconds
-        if seconds is not None:
-            pace.learn(None, seconds)
         if pace.stopwatch.is_running:
             whole()
         else:

@@ -75,6 +75,39 @@ def test_what_becomes_slow_is_cut_finer(monkeypatch):
     assert max(count for _, count in given) * device.seconds_per_item <= pacing.most_seconds
 
 
+def test_a_device_that_is_not_waited_for_is_asked_afterward(monkeypatch):
+    device = Device(monkeypatch, 1e-7)
+    device.is_software = False
+
+    class Stopwatch:
+        def __init__(self, _):
+            self.is_running, self._start, self._end = False, 0.0, 0.0
+
+        def start(self):
+            self._start = device.clock
+
+        def stop(self):
+            self._end, self.is_running = device.clock, True
+
+        @property
+        def seconds(self):
+            told, self.is_running = self.is_running, False
+            return self._end - self._start if told else None
+
+    monkeypatch.setattr(pacing_module, "_Stopwatch", Stopwatch)
+    pacing, pace = Pacing(device), Pace()
+    assert device.run(pacing, pace, 10_000)[0] == (0, 64)
+    for _ in range(2):
+        assert device.run(pacing, pace, 10_000) == [(..., 10_000)]
+    device.seconds_per_item = 1e-4
+    assert device.run(pacing, pace, 10_000) == [(..., 10_000)]  # nobody could know
+    for _ in range(2):
+        given = device.run(pacing, pace, 10_000)
+        assert sum(count for _, count in given) == 10_000
+        assert max(count for _, count in given) * device.seconds_per_item <= pacing.most_seconds
+    assert given[0] != (0, 64)  # its speed is known by then
+
+
 def picture(mapper, library, longest):
     """That of two iterations, with so many seconds for a piece, and the number of pieces."""
     pacing = library.pacing
