@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 
 from rppm_addon.gl import sources
-from rppm_addon.gl.binary_cache import BinaryCache
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.gl.programs import ComputeProgram
+from rppm_addon.gl.programs import ComputeProgram, ProgramMaker
 from rppm_addon.gl.records import Record
 from rppm_addon.gl.sources import expand
 from rppm_addon.gl.storage_blocks import StorageBlock
@@ -68,7 +67,7 @@ def test_texels_have_the_bits_of_blocks(context, shader, tmp_path, monkeypatch):
     for reads_texels in (False, True):
         source = expand(shader, {"COUNT": f"{COUNT}u"}, reads_texels=reads_texels)
         assert set(source.texel_buffers) == (set(contents) if reads_texels else set())
-        program = ComputeProgram(context, BinaryCache(context), source)
+        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
         assert program.blocks == buffers.keys()
         buffers["Found"].clear()
         program.run(COUNT, {name: buffer.buffer for name, buffer in buffers.items()})
