@@ -47,6 +47,8 @@ class Continuation:
     process is lost."""
     seconds: float = 0.0
     """That a render which begins again has taken before: its time limit and snapshots count them."""
+    snapshots_taken: int = 0
+    """That were handed out before."""
 
 
 class GoingOn:

@@ -75,7 +75,7 @@ class SlicedRender:
         self._scene = scene
         self._on_progress = on_progress
         self._continuation = continuation or Continuation()
-        self._pending = [mark for mark in snapshots if mark > self._continuation.seconds]
+        self._pending = list(snapshots[self._continuation.snapshots_taken :])
         self._on_snapshot = on_snapshot
         self._kept = time.perf_counter()
         self._start = self._kept - self._continuation.seconds
@@ -329,10 +329,16 @@ class Renderer:
         Raises the errors of scene/errors.py.
         """
         going_on = GoingOn(continuation)
+
+        def hand_out(seconds: float, frame: Frame) -> None:
+            going_on.continuation.snapshots_taken += 1
+            if on_snapshot is not None:
+                on_snapshot(seconds, frame)
+
         while True:
             try:
                 with self._context.moderngl:  # another context may be current in this thread
-                    return self._render(scene, on_progress, should_stop, snapshots, on_snapshot, going_on.continuation)
+                    return self._render(scene, on_progress, should_stop, snapshots, hand_out, going_on.continuation)
             except DeviceLostError as error:
                 if going_on.losses == MOST_LOSSES:
                     raise
@@ -354,8 +360,8 @@ class Renderer:
         on_progress: Callable[[Progress, Callable[[], Frame]], None] | None,
         should_stop: Callable[[], bool] | None,
         snapshots: Sequence[float],
-        on_snapshot: Callable[[float, Frame], None] | None,
-        continuation: Continuation | None,
+        on_snapshot: Callable[[float, Frame], None],
+        continuation: Continuation,
     ) -> RenderResult:
         if self._mapper is None:
             self._mapper = ProgressivePhotonMapper(self._context, self._library)
@@ -368,8 +374,7 @@ class Renderer:
                 on_progress(progress, lambda: wanted_frame(read(), scene.settings))
 
         def hand_out(seconds: float, frame: Frame) -> None:
-            if on_snapshot is not None:
-                on_snapshot(seconds, finished_frame(frame, scene.settings, self._denoiser, late_warnings))
+            on_snapshot(seconds, finished_frame(frame, scene.settings, self._denoiser, late_warnings))
 
         render = SlicedRender(self._context, self._mapper, scene, report, snapshots, hand_out, continuation)
         stopped = False

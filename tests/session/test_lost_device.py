@@ -62,7 +62,7 @@ def test_other_errors_are_no_loss():
 
 
 def test_a_render_goes_on_in_another_context(monkeypatch):
-    scene, seen = scene_of(SAMPLES), []
+    scene, seen, handed_out = scene_of(SAMPLES), [], []
     losses = Losses(monkeypatch)
     with Renderer() as renderer:
         whole = renderer.render(scene).frame.combined
@@ -72,10 +72,14 @@ def test_a_render_goes_on_in_another_context(monkeypatch):
         losses.due = seen == [0, 1, 2, 3]
 
     with Renderer() as renderer:
-        result = renderer.render(scene, lose_after_three, snapshots=(0.0,), on_snapshot=lambda *_: None)
+        marks = (0.0, 1e6)
+        result = renderer.render(
+            scene, lose_after_three, snapshots=marks, on_snapshot=lambda mark, _: handed_out.append(mark)
+        )
     assert seen == [0, 1, 2, 3, 2, 3, 4, 5, 6] or seen == [0, 1, 2, 3, 3, 4, 5, 6]
     np.testing.assert_array_equal(result.frame.combined, whole)
     assert any("reset" in text and "after sample" in text for text in result.statistics.warnings)
+    assert handed_out == [0.0]  # once
 
 
 def test_a_device_that_is_lost_again_and_again_ends_the_render(monkeypatch):

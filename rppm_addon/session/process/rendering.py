@@ -151,6 +151,7 @@ class Rendering:
         if kept is None or kept.state.iteration < pause.state.iteration:
             continuation.begin = pause
         continuation.seconds = seconds
+        continuation.snapshots_taken = sum(mark <= seconds for mark in self._snapshots)
         self._scene.warn(f"{reason}; the render went on {place_of(continuation.begin)} in another process")
 
     def _send_kept(self, pause: Pause, seconds: float) -> None:
