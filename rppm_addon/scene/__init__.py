@@ -3,6 +3,7 @@
 
 from .camera import Aperture, Camera, Panorama, PanoramaKind, Texels
 from .images import Image
+from .light_linking import ALL_SETS, LIGHT_SETS, LightLinking
 from .lights import Light, LightKind, Mist, World
 from .materials import Material
 from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
@@ -14,6 +15,8 @@ from .settings import DensityEstimation, DirectLight, FirstPhotonHits, PixelFilt
 from .storage import load_scene, save_scene
 
 __all__ = [
+    "ALL_SETS",
+    "LIGHT_SETS",
     "AovOutput",
     "Aperture",
     "AttributeDomain",
@@ -27,6 +30,7 @@ __all__ = [
     "Instance",
     "Light",
     "LightKind",
+    "LightLinking",
     "Link",
     "Material",
     "Mesh",

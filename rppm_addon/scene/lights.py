@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .declared import declared
+from .light_linking import LightLinking
 from .meshes import RayVisibility
 from .node_graphs import NodeGraph
 
@@ -58,6 +59,10 @@ class Light:
     """Weight of this light when photons are allocated (paper section 4.3), on top of its power."""
     light_group: str = ""
     """Whose pass its light belongs to (RenderSettings.light_groups); "" is none."""
+    linking: LightLinking | None = None
+    """None: it shines on all objects, and all cast shadows."""
+    casts_shadow: bool = True
+    """Whether objects cast shadows in its light at all; without, it passes through them straight from the light."""
 
 
 @dataclass

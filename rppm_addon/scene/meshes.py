@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .declared import declared
+from .light_linking import LightLinking
 
 
 class AttributeDomain(enum.Enum):
@@ -111,3 +112,5 @@ class Instance:
     """Values of attributes that the object or its instancer has as a whole, in place of those of the mesh."""
     light_group: str = ""
     """Whose pass the light belongs to that it emits (RenderSettings.light_groups); "" is none."""
+    linking: LightLinking | None = None
+    """None: all lights shine on it, and it stops them."""

@@ -114,6 +114,7 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
     for (int k = 0; k < closure_lobes(closure); ++k)
         looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
     if (!looks) return NOTHING_ARRIVES;
+    uint light_set = light_set_at(closure.triangle);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec2 disk = sample_disk(scrambled_sobol(parameters.light_sample, pcg4d(choices + 1u)));
     Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
@@ -125,7 +126,7 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
         PassedLights passed = passed_lights(closure.position, sampled.direction, INFINITY_DISTANCE, RAY_GLOSSY, 0.0,
-                                            candidates.u);
+                                            light_set, candidates.u);
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
@@ -133,7 +134,7 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
         add_candidate(candidates, largest(radiance),
                       Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE, ALL_GLOSSY));
         uint emissive;
-        Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, emissive);
+        Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         reflected *= exp(-path_absorption(flags) * hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
@@ -162,7 +163,8 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure)),
+    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure),
+                                                  light_set_at(closure.triangle)),
                                          environment_irradiance, u.x, u.y);
     if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
     Light light = lights[choice.light];
@@ -181,6 +183,15 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
                     choice.light, sampled.triangle,
                     Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered)));
+}
+
+// The LightLink by which a shadow ray meets what is in its way. Reflections of lights without shadows are hidden like
+// others.
+uint arriving_link(Arriving arriving, bool reflected) {
+    if (parameters.links_lights == 0u) return 0u;
+    if (arriving.triangle != NO_TRIANGLE) return emitter_traits(arriving.triangle) >> EMITTER_LINK_SHIFT;
+    Light light = lights[arriving.light];
+    return reflected && (light.flags & LIGHT_SHADOWLESS) != 0u ? 0u : light.link;
 }
 
 void main() {
@@ -207,16 +218,18 @@ void main() {
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(closure, throughput, shares, viewer, flags, choices);
     // One ray for both: by what they would add.
+    bool takes_reflected = false;
     float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);
     if (!(weight + reflected_weight > 0.0)) return;
     if (reflected_weight > 0.0) {
         float total = weight + reflected_weight;
         float u = scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).y;
-        bool takes_reflected = takes_candidate(reflected_weight, total, u);
+        takes_reflected = takes_candidate(reflected_weight, total, u);
         if (takes_reflected) arriving = reflected;
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
     }
-    contributions[index] = vec4(parameters.sample_weight * arriving.radiance, gathered ? 1.0 : 0.0);
+    uint link = arriving_link(arriving, takes_reflected);
+    contributions[index] = vec4(parameters.sample_weight * arriving.radiance, signed_code(gathered, link));
     light_triangles[index] = arriving.triangle;
     if (parameters.splits_light != 0u)
         light_splits[index] = LightSplit(arriving.parts.glossy, arriving.light, arriving.parts.transmission, 0.0);

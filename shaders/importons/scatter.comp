@@ -247,7 +247,8 @@ void main() {
     vec3 lights_passed = vec3(0.0);
     if (!gathered && (path.flags & PATH_LIGHTS_FOUND) == 0u)
         lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE,
-                                      camera_ray_kind(path.flags), path.scatter_pdf);
+                                      camera_ray_kind(path.flags), path.scatter_pdf,
+                                      light_set_at(ray.source_triangle));
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);
     if (!hit) {
         radiances[index] += seen + seen_environment(path, world, shadow_ray_pdf, largest(lights_passed) <= 0.0);

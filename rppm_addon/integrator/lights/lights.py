@@ -16,7 +16,7 @@ from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..common.records import LIGHT, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
+from ..common.records import LIGHT, LIGHT_LINK, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
@@ -24,6 +24,7 @@ from .emitters import Emitters
 from .environment import Environment
 from .guide import Guide
 from .light_entry import light_entry
+from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .sources import ENVIRONMENT, SURFACES, source_name
@@ -47,6 +48,7 @@ LIGHT_PARAMETERS = {
     "mesh_light": "uint",
     "world_light": "uint",
     **LIGHT_TREE_PARAMETERS,
+    "links_lights": "uint",
     "seed": "uint",
     "iteration": "uint",
     "direct_world_flux": "float",
@@ -54,7 +56,7 @@ LIGHT_PARAMETERS = {
 """Parameters of every program that includes shaders/lights/lights.glsl. ``mesh_selection`` and
 ``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
 weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
-give, W/m^2, ``direct_world_flux`` Iteration's."""
+give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights`` Lights'."""
 
 
 def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
@@ -85,6 +87,8 @@ class Lights(BufferSet):
     light_maps = Part(LightMaps)
     guide = Part(Guide)
     _light_tree = Part(LightTree)
+    links = StorageBuffer("light links", LIGHT_LINK)
+    """By number, where ``links_lights``."""
     group_table = StorageBuffer("table of light groups", "uint")
     """LightGroupTable, where there are any."""
 
@@ -99,6 +103,8 @@ class Lights(BufferSet):
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
+        self.links_lights = False
+        """Whether any light does not shine on everything, or is not stopped by everything."""
         self._power, self._photons, self._most_photons = 0.0, 1, 1
         self.scene_radius = 0.0
         """Meters, a little more than the geometry's."""
@@ -176,6 +182,7 @@ class Lights(BufferSet):
         powers: list[float] = []
         weights: list[float] = []
         groups: list[str] = []
+        links = LightLinkTable()
 
         def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0, group: str = "") -> None:
             if np.isfinite(power).all() and np.max(power) > 0:
@@ -189,6 +196,7 @@ class Lights(BufferSet):
             self.light_maps.build(scene.lights, scene.images, materials)
         for index, light in enumerate(scene.lights):
             entry, power = light_entry(light, radius)
+            entry["link"] = links.of_light(light)
             nodes = self.light_maps.nodes.get(index)
             if nodes is not None:
                 entry["strength"] *= nodes.scale
@@ -197,7 +205,7 @@ class Lights(BufferSet):
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
             add(source_name(light.name), entry, power, light.photon_weight, light.light_group)
-        self.emitters.build(scene, geometry, materials, resolve)
+        self.emitters.build(scene, geometry, materials, resolve, links)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
         add(SURFACES, entry, self.emitters.power)
@@ -238,7 +246,11 @@ class Lights(BufferSet):
         self.targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
         self._list_groups(scene, [*groups, *(placed.instance.light_group for placed in geometry.placements)])
-        self._light_tree.build(table, self.emitters.leaves)
+        self.links_lights = links.any
+        self.links.upload(links.records)
+        sets = links.records["light_sets"]
+        self.emitters.leaves["light_sets"] = sets[self.emitters.links]
+        self._light_tree.build(table, self.emitters.leaves, sets)
         self._parameters = {
             "scene_center": geometry.center,
             "scene_radius": radius,
@@ -253,6 +265,7 @@ class Lights(BufferSet):
             "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
+            "links_lights": self.links_lights,
         }
 
     def _list_groups(self, scene: Scene, names: list[str]) -> None:

@@ -91,7 +91,10 @@ class DirectLight(BufferSet):
                     living,
                     iteration.number,
                 )
-                context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living)
+                linking = None
+                if context.lights.links_lights:
+                    linking = {"Contributions": self.contributions.buffer, "LightLinks": context.lights.links.buffer}
+                context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living, linking)
                 living.run(
                     self._add,
                     {

@@ -31,6 +31,7 @@ from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
 from .photon_emission import PhotonEmission
 from .photon_groups import PhotonGroups
+from .photon_links import PhotonLinks
 
 Record(
     "ScatterPhotonsParameters",
@@ -70,6 +71,7 @@ class Photons(BufferSet):
     _living = PathList("living photon paths", photon_paths, to_keep=True)
     first_hits = Part(FirstHits)
     _groups = Part(PhotonGroups)
+    _links = Part(PhotonLinks)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -105,6 +107,7 @@ class Photons(BufferSet):
             directions, differentials = self.world_directions.buffer, self._differentials.buffer
             self._emission.emit(context.lights, rays, paths, directions, differentials, self.photon_count, iteration)
             self._groups.find(context, rays, self.photon_count)
+            self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
                 context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
             )
@@ -138,6 +141,7 @@ class Photons(BufferSet):
                 photon_paths=self._paths.buffer,
                 has_adjoint_queries=has_adjoint_queries,
             )
+            self._links.link(context, self._closures.buffer, self._paths.buffer, self._living)
 
     def scatter(self, context: StageContext, iteration: Iteration, segment: int) -> None:
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
