@@ -40,10 +40,6 @@ def _has_hair(source: bpy.types.Object) -> bool:
     )
 
 
-def _links(source: bpy.types.Object, name: str) -> bool:
-    return getattr(getattr(source, "light_linking", None), name, None) is not None
-
-
 def _is_light(source: bpy.types.Object) -> bool:
     return source.type == "LIGHT"
 
@@ -61,27 +57,6 @@ OF_OBJECTS = (
         "strands are not rendered, only objects and collections that stand for them",
         ("particle_systems",),
         _has_hair,
-    ),
-    Omission(
-        "Light Linking",
-        "the light shines on everything",
-        ("light_linking.receiver_collection",),
-        lambda source: _links(source, "receiver_collection"),
-    ),
-    Omission(
-        "Shadow Linking",
-        "everything casts shadows in the light",
-        ("light_linking.blocker_collection",),
-        lambda source: _links(source, "blocker_collection"),
-    ),
-    Omission(
-        "Lights without Cast Shadow",
-        "they cast shadows",
-        ("data.use_shadow", "data.cycles.cast_shadow"),
-        lambda source: (
-            _is_light(source)
-            and not (getattr(source.data, "use_shadow", True) and _cycles(source.data, "cast_shadow", True))
-        ),
     ),
     Omission(
         "Max Bounces of lights",

@@ -15,6 +15,7 @@ from ...scene.sharing import share
 from .context import ExportContext
 from .layers import overrides_of, world_of
 from .libraries import warn_of_missing
+from .light_linking import LightLinks
 from .lights.world import export_world
 from .objects.assets import export_asset_names
 from .objects.object_pass import Placed
@@ -123,6 +124,7 @@ class SceneSync:
         self._frame: float | None = None
         self._overrides: tuple[object, ...] = ()
         """What the view layer made of the scene."""
+        self._light_links = LightLinks()
 
     @collector_paused()
     def update(
@@ -200,10 +202,16 @@ class SceneSync:
         other attributes of meshes."""
         edits = read_edits(depsgraph)
         overrides = overrides_of(depsgraph)
-        if edits.images or overrides != self._overrides or 0 < self._most_images < len(self._images.images):
+        links = self._light_links
+        if edits.others or edits.looks or any(source.type == "LIGHT" for source in edits.objects.values()):
+            links = LightLinks(depsgraph.view_layer)
+        known = overrides == self._overrides and links.state == self._light_links.state
+        if edits.images or not known or 0 < self._most_images < len(self._images.images):
             self._begin()
-            self._overrides = overrides
+            self._overrides, self._light_links = overrides, links
         self._context.read_from(depsgraph)
+        self._context.light_links = self._light_links
+        self._light_links.tell(self._report)
         self._advance(depsgraph.scene_eval, depsgraph, edits)
         # Not any(): each is to be exported.
         asked = [self._objects.materials.renew(material) for material in edits.materials]

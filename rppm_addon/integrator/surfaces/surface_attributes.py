@@ -11,6 +11,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
+from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
@@ -39,11 +40,12 @@ SHADING_INSTANCE = Record(
     particle_location="vec3",
     unused1="float",
     particle_velocity="vec3",
-    unused2="float",
+    light_sets0="uint",
     particle_angular_velocity="vec3",
-    unused3="float",
+    light_sets1="uint",
 )
-"""An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell."""
+"""An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell;
+the words of the bits of the light sets that it shines on."""
 
 StorageBlock("ShadingInstances", "ShadingInstance shading_instances[];")
 
@@ -129,10 +131,16 @@ def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, 
     for name in ("color", "random", "object_index", "holdout", "shadow_catcher"):
         records[name] = _column(instances, name)
     records["visibility"] = [int(instance.visibility) for instance in instances]
+    memberships = np.array([_light_sets(instance) for instance in instances], np.int64).view(np.uint64)
+    records["light_sets0"], records["light_sets1"] = memberships & 0xFFFFFFFF, memberships >> np.uint64(32)
     multiplied = np.flatnonzero([instance.particle is not None for instance in instances])
     particles = [instances[index].particle for index in multiplied]
     for name in _PARTICLE if particles else ():
         records[f"particle_{name}"][multiplied] = _column(particles, name)
+
+
+def _light_sets(instance: Instance) -> int:
+    return ALL_SETS if instance.linking is None else instance.linking.light_set_membership
 
 
 def _column(members: list, name: str) -> np.ndarray:

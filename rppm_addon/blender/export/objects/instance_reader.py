@@ -6,7 +6,7 @@ import functools
 import bpy
 import numpy as np
 
-from ....scene import Instance, Light, RayVisibility
+from ....scene import Instance, Light, LightLinking, RayVisibility
 from ..context import ExportContext
 from ..layers import light_group_of
 from ..lights.lights import export_light
@@ -68,14 +68,20 @@ class InstanceReader:
             source.is_shadow_catcher,
             self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
             self._light_group(source),
+            self.linking(source),
         )
 
-    def light(self, source: bpy.types.Object, matrix: np.ndarray) -> Light | None:
-        """A light object placed by a matrix (4, 4); None when it gives no light."""
+    def light(
+        self, source: bpy.types.Object, matrix: np.ndarray, instancer: bpy.types.Object | None = None
+    ) -> Light | None:
+        """A light object placed by a matrix (4, 4); None when it gives no light. instancer: what multiplies it."""
         if not np.isfinite(matrix).all():
             self.report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
             return None
-        return export_light(source, matrix, self._context)
+        light = export_light(source, matrix, self._context)
+        if light is not None:
+            light.linking = self.linking(instancer or source)
+        return light
 
     def shading(
         self,
@@ -98,10 +104,15 @@ class InstanceReader:
             "shadow_catcher": source.is_shadow_catcher,
             "attributes": self.attribute_values(source, materials, instancer),
             "light_group": self._light_group(source),
+            "linking": self.linking(instancer or source),
         }
 
     def _light_group(self, source: bpy.types.Object) -> str:
         return light_group_of(source) if self._context.has_light_groups else ""
+
+    def linking(self, owner: bpy.types.Object) -> LightLinking | None:
+        """The light linking of what an object brings, itself or what it multiplies."""
+        return self._context.light_links.of(owner)
 
     @property
     def use_surfaces(self) -> bool:

@@ -234,6 +234,7 @@ class ObjectPass:
             shading["shadow_catcher"],
             shading["attributes"],
             shading["light_group"],
+            self._reader.linking(parent),
         )
         if kind.asks_instancer:
             placed.attributes = self._reader.attribute_values(source, placed.materials, parent)
@@ -272,7 +273,7 @@ class ObjectPass:
         """owner: the session_uid of what brings it. instance, instancer: of what is multiplied."""
         kind = source.type
         if kind == "LIGHT":
-            light = self._reader.light(source, matrix)
+            light = self._reader.light(source, matrix, instancer)
             if light is not None:
                 self._result.lights_alone[source.original.session_uid] = len(self._result.lights)
                 self._result.lights.append(light)
