@@ -4,7 +4,7 @@
 from .camera import Aperture, Camera, Panorama, PanoramaKind, Texels
 from .images import Image
 from .light_linking import ALL_SETS, LIGHT_SETS, LightLinking
-from .lights import Light, LightKind, Mist, World
+from .lights import UNLIMITED_BOUNCES, Light, LightKind, Mist, World
 from .materials import Material
 from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
 from .motion import CameraMovement, Deformation, Movement, Shutter
@@ -17,6 +17,7 @@ from .storage import load_scene, save_scene
 __all__ = [
     "ALL_SETS",
     "LIGHT_SETS",
+    "UNLIMITED_BOUNCES",
     "AovOutput",
     "Aperture",
     "AttributeDomain",

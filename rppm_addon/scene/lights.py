@@ -21,6 +21,10 @@ class LightKind(enum.Enum):
     AREA = "area"
 
 
+UNLIMITED_BOUNCES = 1024
+"""Of light, as Blender has it."""
+
+
 @dataclass
 class Light:
     """A light object. It shines along its local -Z axis, as Blender's lights do."""
@@ -63,6 +67,8 @@ class Light:
     """None: it shines on all objects, and all cast shadows."""
     casts_shadow: bool = True
     """Whether objects cast shadows in its light at all; without, it passes through them straight from the light."""
+    max_bounces: int = field(default=UNLIMITED_BOUNCES, metadata=declared(minimum=0, maximum=UNLIMITED_BOUNCES))
+    """How often its light is scattered beyond the surface that it falls on; 0 is direct light alone."""
 
 
 @dataclass
@@ -85,3 +91,7 @@ class World:
     mist: Mist = field(default_factory=Mist)
     light_group: str = ""
     """As of a light."""
+    visibility: RayVisibility = RayVisibility.ALL
+    """What sees it or is lit by it, as of a light."""
+    max_bounces: int = field(default=UNLIMITED_BOUNCES, metadata=declared(minimum=0, maximum=UNLIMITED_BOUNCES))
+    """As of a light, where the world is not even; the light of one that is has no limit, as in Cycles."""

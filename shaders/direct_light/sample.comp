@@ -168,6 +168,7 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
                                          environment_irradiance, u.x, u.y);
     if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
     Light light = lights[choice.light];
+    if (((path.flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces) return NOTHING_ARRIVES;
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return NOTHING_ARRIVES;
     float side = dot(geometric, sampled.direction);

@@ -6,7 +6,7 @@ import pytest
 from blender_scenes import add_light, add_mesh, export
 
 from rppm_addon.blender.export.sync import SceneSync
-from rppm_addon.scene import ALL_SETS, LightLinking
+from rppm_addon.scene import ALL_SETS, UNLIMITED_BOUNCES, LightLinking, RayVisibility
 
 
 def collection(*objects, state="INCLUDE", child=None):
@@ -125,3 +125,20 @@ def test_cast_shadow(scene, lit):
     _, (light, _) = lit
     light.data.use_shadow = False
     assert [member.casts_shadow for member in export(scene).lights] == [False, True]
+
+
+def test_max_bounces(scene, lit):
+    _, (light, _) = lit
+    light.data.cycles.max_bounces = 3
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.cycles.max_bounces = 2
+    exported = export(scene)
+    assert [member.max_bounces for member in exported.lights] == [3, UNLIMITED_BOUNCES]
+    assert exported.world.max_bounces == 2
+
+
+def test_rays_that_see_the_world(scene):
+    scene.world = bpy.data.worlds.new("World")
+    assert export(scene).world.visibility == RayVisibility.ALL
+    scene.world.cycles_visibility.glossy = scene.world.cycles_visibility.camera = False
+    assert export(scene).world.visibility == RayVisibility.ALL & ~RayVisibility.GLOSSY & ~RayVisibility.CAMERA

@@ -37,20 +37,6 @@ def add_hair(scene):
     the(scene, "MESH").particle_systems[0].settings.type = "HAIR"
 
 
-def hide_world(scene):
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.cycles_visibility.glossy = False
-
-
-def limit_world(scene):
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.cycles.max_bounces = 2
-
-
-def limit_light(scene):
-    set_of_cycles(the(scene, "LIGHT").data, "max_bounces", 3)
-
-
 def set_of_cycles(block, name, value):
     """As the window does: Python's own changes of what add-ons add are not told to depsgraphs."""
     setattr(block.cycles, name, value)
@@ -92,13 +78,10 @@ def look_around_with_both_eyes(scene):
 
 USES = {
     "Hair of particle systems": add_hair,
-    "Max Bounces of lights": limit_light,
     "Adaptive Subdivision": subdivide,
     "Shading Offset of the shadow terminator": lambda scene: setattr(
         the(scene, "MESH"), "shadow_terminator_shading_offset", 0.2
     ),
-    "Ray Visibility of the world": hide_world,
-    "Max Bounces of the world": limit_world,
     "Culling (Simplify)": simplify("use_camera_cull", True),
     "Texture Limit (Simplify)": simplify("texture_limit_render", "512"),
     "Rolling Shutter": roll,

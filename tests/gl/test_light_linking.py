@@ -4,6 +4,8 @@
 Against Cycles: tests/parity/features/light_linking.py.
 """
 
+import dataclasses
+
 import numpy as np
 import pytest
 import scenes
@@ -112,3 +114,18 @@ def test_each_object_gets_its_light(mapper):
     }
     for name, values in expected.items():
         np.testing.assert_allclose(found[name], values, rtol=1e-3, atol=1e-6, err_msg=name)
+
+
+@pytest.mark.parametrize("mode", DirectLight)
+def test_light_without_bounces_is_direct_light(mapper, mode):
+    """The same random numbers, so the same picture as of paths that end where the light comes first."""
+    scene = shaded_floor(mode, lamp(), None)
+    scene.settings = scene.settings.with_values(use_final_gather=False)
+    scene.lights = [dataclasses.replace(scene.lights[0], max_bounces=0)]
+    limited = picture(mapper, scene, 2)
+    scene.lights = [lamp()]
+    scattered = picture(mapper, scene, 2)
+    scene.settings = scene.settings.with_values(camera_path_length=1, photon_path_length=1)
+    direct = picture(mapper, scene, 2)
+    np.testing.assert_allclose(limited, direct, rtol=1e-5, atol=1e-7)
+    assert scattered.mean() > 1.005 * direct.mean()

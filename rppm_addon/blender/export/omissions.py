@@ -11,9 +11,6 @@ import bpy
 
 from .report import Report, listed
 
-_CYCLES_BOUNCES = 1024
-"""Of lights and of the world, Cycles' default: no limit."""
-
 
 @dataclass(frozen=True)
 class Omission:
@@ -40,10 +37,6 @@ def _has_hair(source: bpy.types.Object) -> bool:
     )
 
 
-def _is_light(source: bpy.types.Object) -> bool:
-    return source.type == "LIGHT"
-
-
 def _subdivides_adaptively(source: bpy.types.Object) -> bool:
     modifiers = (modifier for modifier in source.modifiers if modifier.type == "SUBSURF")
     return bool(_cycles(source, "use_adaptive_subdivision", False)) or any(
@@ -57,12 +50,6 @@ OF_OBJECTS = (
         "strands are not rendered, only objects and collections that stand for them",
         ("particle_systems",),
         _has_hair,
-    ),
-    Omission(
-        "Max Bounces of lights",
-        "their light is scattered as often as the scene's Max Bounces say",
-        ("data.cycles.max_bounces",),
-        lambda source: _is_light(source) and _cycles(source.data, "max_bounces", _CYCLES_BOUNCES) < _CYCLES_BOUNCES,
     ),
     Omission(
         "Adaptive Subdivision",
@@ -86,12 +73,6 @@ OF_OBJECTS = (
 """By what an evaluated object uses."""
 
 
-def _world_is_hidden(scene: bpy.types.Scene) -> bool:
-    visibility = getattr(scene.world, "cycles_visibility", None)
-    names = ("camera", "diffuse", "glossy", "transmission")
-    return visibility is not None and not all(getattr(visibility, name, True) for name in names)
-
-
 def _culls(scene: bpy.types.Scene) -> bool:
     return scene.render.use_simplify and bool(
         _cycles(scene, "use_camera_cull", False) or _cycles(scene, "use_distance_cull", False)
@@ -105,20 +86,6 @@ def _is_spherical_stereo(scene: bpy.types.Scene) -> bool:
 
 
 OF_SCENES = (
-    Omission(
-        "Ray Visibility of the world",
-        "all rays see the world",
-        ("world.cycles_visibility",),
-        _world_is_hidden,
-    ),
-    Omission(
-        "Max Bounces of the world",
-        "its light is scattered as often as the scene's Max Bounces say",
-        ("world.cycles.max_bounces",),
-        lambda scene: (
-            scene.world is not None and _cycles(scene.world, "max_bounces", _CYCLES_BOUNCES) < _CYCLES_BOUNCES
-        ),
-    ),
     Omission(
         "Culling (Simplify)",
         "objects far away or outside the camera's view are rendered",

@@ -162,10 +162,11 @@ PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl)."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
-WORLD_DIRECTION = Record("WorldDirection", radiance="float", pdf="float")
+PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
-from where no gathering ray stands for them, 1/sr. 0 for photons of other lights."""
-StorageBlock("WorldDirections", "WorldDirection world_directions[];")
+from where no gathering ray stands for them, 1/sr; both 0 for photons of other lights. And the light's ``max_bounces``:
+how often what it lights may have scattered on the way to the camera."""
+StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
 
 PHOTON_DIFFERENTIAL = Record(
     "PhotonDifferential",
@@ -435,13 +436,15 @@ LIGHT = Record(
     map_extent="float",
     map="vec4",
     link="uint",
+    max_bounces="uint",
 )
 """A light as integrator/lights/light_entry.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
 unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
 ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
 ``first_cell`` those of lights/guide.py; ``map`` where its map lies among the lights' maps, left, bottom, width
 and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
-``map_extent`` the tangent of half of what a cone's map shows, ``link`` its LightLink."""
+``map_extent`` the tangent of half of what a cone's map shows, ``link`` its LightLink,
+``max_bounces`` PhotonOrigin's."""
 
 EMISSIVE_TRIANGLE = Record(
     "EmissiveTriangle",

@@ -52,6 +52,7 @@ def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarr
     entry["flags"] = (
         int(light.visibility) | (LIGHT_SOFT if soft else 0) | (0 if light.casts_shadow else LIGHT_SHADOWLESS)
     )
+    entry["max_bounces"] = light.max_bounces
     if light.kind is LightKind.POINT:
         entry["kind"] = LightShape.POINT
         return entry, 4 * math.pi * strength

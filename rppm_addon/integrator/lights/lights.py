@@ -12,6 +12,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.errors import SceneError
+from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
@@ -49,6 +50,8 @@ LIGHT_PARAMETERS = {
     "world_light": "uint",
     **LIGHT_TREE_PARAMETERS,
     "links_lights": "uint",
+    "world_visibility": "uint",
+    "world_bounces": "uint",
     "seed": "uint",
     "iteration": "uint",
     "direct_world_flux": "float",
@@ -56,7 +59,8 @@ LIGHT_PARAMETERS = {
 """Parameters of every program that includes shaders/lights/lights.glsl. ``mesh_selection`` and
 ``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
 weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
-give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights`` Lights'."""
+give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights`` Lights', ``world_visibility`` the rays that see
+the world, ``world_bounces`` its max_bounces."""
 
 
 def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
@@ -105,10 +109,14 @@ class Lights(BufferSet):
         self.has_falloff = False
         self.links_lights = False
         """Whether any light does not shine on everything, or is not stopped by everything."""
+        self.limits_bounces = False
+        """Whether the light of any is scattered less often than the paths allow."""
         self._power, self._photons, self._most_photons = 0.0, 1, 1
         self.scene_radius = 0.0
         """Meters, a little more than the geometry's."""
         self.times_built = 0
+        self.world_visibility = RayVisibility.ALL
+        """The rays that see the world."""
         self.world_group = NO_LIGHT_GROUP
         """The world's light group by number."""
 
@@ -208,11 +216,15 @@ class Lights(BufferSet):
         self.emitters.build(scene, geometry, materials, resolve, links)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
+        entry["max_bounces"] = UNLIMITED_BOUNCES
         add(SURFACES, entry, self.emitters.power)
         if not keep_world:
             self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"], entry["flags"] = LightShape.WORLD, int(RayVisibility.ALL)
+        self.world_visibility = scene.world.visibility
+        entry["kind"], entry["flags"] = LightShape.WORLD, int(self.world_visibility)
+        world_bounces = UNLIMITED_BOUNCES if self.environment.is_even else scene.world.max_bounces
+        entry["max_bounces"] = world_bounces
         power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
         add(ENVIRONMENT, entry, power, group=scene.world.light_group)
         if not entries:
@@ -266,7 +278,10 @@ class Lights(BufferSet):
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
             "links_lights": self.links_lights,
+            "world_visibility": int(self.world_visibility),
+            "world_bounces": world_bounces,
         }
+        self.limits_bounces = bool((table["max_bounces"] < UNLIMITED_BOUNCES).any())
 
     def _list_groups(self, scene: Scene, names: list[str]) -> None:
         """names: of the light groups of the lights and the instances."""

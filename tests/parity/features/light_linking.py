@@ -86,16 +86,3 @@ LINKS["Light Linking"]["glowing mesh, not on a glossy ground"] = _seen_in(0.3)
 for _group, _rows in LINKS.items():
     for _name, _make in _rows.items():
         lights(_group, _name, _make, effort=2 if "glowing" in _name or "area" in _name else 1)
-
-
-def _without_shadow(kind, energy=60.0, **properties):
-    def make() -> None:
-        _lamp(kind, energy, use_shadow=False, **properties)()
-        _second()
-
-    return make
-
-
-lights("Cast Shadow", "off, point", _without_shadow("POINT", shadow_soft_size=0.0))
-lights("Cast Shadow", "off, sun", _without_shadow("SUN", 2.0, angle=0.0))
-lights("Cast Shadow", "off, area", _without_shadow("AREA", size=0.8))

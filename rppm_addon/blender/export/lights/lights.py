@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ....materials.emitted import Emits, emits, light_variation
-from ....scene import Light, LightKind, NodeGraph
+from ....scene import UNLIMITED_BOUNCES, Light, LightKind, NodeGraph
 from ..context import ExportContext
 from ..layers import light_group_of
 from ..nodes.graphs import GraphExporter
@@ -38,6 +38,7 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
         photon_weight=data.rppm.photon_weight if hasattr(data, "rppm") else 1.0,
         light_group=light_group_of(light_object),
         casts_shadow=_casts_shadow(data),
+        max_bounces=max_bounces_of(data),
     )
     normalize = getattr(data, "normalize", True)
     if light.kind in {LightKind.POINT, LightKind.SPOT}:
@@ -53,6 +54,11 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
             report.warn(f'Light "{name}": its area is 0, so it gives no light; give it a size and a scale')
             return None
     return light
+
+
+def max_bounces_of(data: bpy.types.Light | bpy.types.World) -> int:
+    """Cycles' limit of how often light is scattered; none where Cycles is switched off."""
+    return min(getattr(getattr(data, "cycles", None), "max_bounces", UNLIMITED_BOUNCES), UNLIMITED_BOUNCES)
 
 
 def _casts_shadow(data: bpy.types.Light) -> bool:
