@@ -89,6 +89,25 @@ class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
             mask.prop(thing, "is_shadow_catcher")
 
 
+class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "world"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and hasattr(
+            context.world, "cycles_visibility"
+        )  # None has none, nor without Cycles
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        for name in ("camera", "diffuse", "glossy", "transmission"):
+            column.prop(context.world.cycles_visibility, name)
+        column.separator()
+        column.prop(context.world.cycles, "max_bounces")
+
+
 def _draw_light_group(column: bpy.types.UILayout, owner: bpy.types.ID, layer: bpy.types.ViewLayer) -> None:
     """The group of an object or a world, and a button that gives the view layer such a group."""
     row = column.row(align=True)
@@ -136,6 +155,7 @@ CLASSES = (
     RPPM_PT_world_preview,
     RPPM_PT_world_surface,
     RPPM_PT_ray_visibility,
+    RPPM_PT_world_ray_visibility,
     RPPM_PT_object_light_group,
     RPPM_PT_world_light_group,
 )
