@@ -114,3 +114,7 @@ class Instance:
     """Whose pass the light belongs to that it emits (RenderSettings.light_groups); "" is none."""
     linking: LightLinking | None = None
     """None: all lights shine on it, and it stops them."""
+    terminator_geometry_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
+    """Up to which cosine shadow rays begin on the surface that the normals tell of, not on its triangles."""
+    terminator_shading_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
+    """How much earlier than at the horizon the light of lights fades out; 1 is at 45 degrees."""

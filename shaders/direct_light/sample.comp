@@ -160,10 +160,10 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     if (!can_be_lit(closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
                   scrambled_sobol(parameters.light_sample, pcg4d(choices)));
-    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    vec3 facing = lit_normal(closure);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure),
+    LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(closure),
                                                   light_set_at(closure.triangle)),
                                          environment_irradiance, u.x, u.y);
     if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
@@ -171,7 +171,7 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     if (((path.flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces) return NOTHING_ARRIVES;
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return NOTHING_ARRIVES;
-    float side = dot(geometric, sampled.direction);
+    float side = dot(facing, sampled.direction);
     if (side == 0.0) return NOTHING_ARRIVES;
     // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
     float light_pdf = sampled.pdf * light.selection_probability;
@@ -236,7 +236,7 @@ void main() {
         light_splits[index] = LightSplit(arriving.parts.glossy, arriving.light, arriving.parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec3 origin = offset_from_surface(closure.position,
-                                      dot(geometric, arriving.direction) > 0.0 ? geometric : -geometric);
+                                      dot(lit_normal(closure), arriving.direction) > 0.0 ? geometric : -geometric);
     Ray shadow = Ray(origin, closure.triangle, arriving.direction, INFINITY_DISTANCE);
     if (arriving.distance < INFINITY_DISTANCE) {
         // From the moved origin to the light, and just short of it: its own surface must not hide it.

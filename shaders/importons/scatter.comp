@@ -199,7 +199,8 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     if (diffuse) {
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
-        found_weight = diffuse_factor(closure, facing, viewer, event.direction);
+        found_weight = diffuse_factor(closure, facing, viewer, event.direction)
+                     * terminator_factor(closure.flags, facing, event.direction);
     } else if (u < shares.x) event = straight_event(path, closure, ray.direction, shares);
     else event = lobe_event(path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
     if (event.probability <= 0.0) return;

@@ -149,7 +149,7 @@ void main() {
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
     builder.closure.shading_normal = pack_unit_vector(builder.shading);
-    builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT;
+    builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT | instance.terminator_flags;
     make_usable(builder.closure);
     closures[index] = builder.closure;
 }

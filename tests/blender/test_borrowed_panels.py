@@ -71,6 +71,8 @@ COUNTERPARTS = {
     # world
     "CYCLES_WORLD_PT_preview": "RPPM_PT_world_preview",
     "CYCLES_WORLD_PT_ray_visibility": "RPPM_PT_world_ray_visibility",
+    # object
+    "OBJECT_PT_shadow_terminator": "RPPM_PT_shadow_terminator",
     "CYCLES_WORLD_PT_surface": "RPPM_PT_world_surface",
 }
 """Panels of Cycles, and those that stand in their place."""
@@ -100,7 +102,6 @@ EXCLUDED = {
     "CYCLES_RENDER_PT_volumes": OF_CYCLES,
     "CYCLES_WORLD_PT_mist": f"the mist pass: {NOT_RENDERED}",
     "CYCLES_WORLD_PT_volume": NOT_RENDERED,
-    "OBJECT_PT_shadow_terminator": OF_CYCLES,
 }
 """Panels of Cycles that RPPM has nothing for, and why."""
 OLDER = {

@@ -137,6 +137,14 @@ def test_max_bounces(scene, lit):
     assert exported.world.max_bounces == 2
 
 
+def test_shadow_terminator(scene, lit):
+    """Of objects alone and of what is multiplied."""
+    meshes, _ = lit
+    meshes[1].shadow_terminator_geometry_offset, meshes[1].shadow_terminator_shading_offset = 0.25, 0.5
+    offsets = [(one.terminator_geometry_offset, one.terminator_shading_offset) for one in export(scene).instances]
+    assert offsets == [(pytest.approx(0.1), 0.0), (0.25, 0.5), (pytest.approx(0.1), 0.0)]
+
+
 def test_rays_that_see_the_world(scene):
     scene.world = bpy.data.worlds.new("World")
     assert export(scene).world.visibility == RayVisibility.ALL

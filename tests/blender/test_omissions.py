@@ -79,9 +79,6 @@ def look_around_with_both_eyes(scene):
 USES = {
     "Hair of particle systems": add_hair,
     "Adaptive Subdivision": subdivide,
-    "Shading Offset of the shadow terminator": lambda scene: setattr(
-        the(scene, "MESH"), "shadow_terminator_shading_offset", 0.2
-    ),
     "Culling (Simplify)": simplify("use_camera_cull", True),
     "Texture Limit (Simplify)": simplify("texture_limit_render", "512"),
     "Rolling Shutter": roll,

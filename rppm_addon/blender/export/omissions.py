@@ -57,18 +57,6 @@ OF_OBJECTS = (
         ("cycles.use_adaptive_subdivision", "modifiers"),
         _subdivides_adaptively,
     ),
-    Omission(
-        "Shading Offset of the shadow terminator",
-        "shadows may show the faces of a smooth surface; subdivide it",
-        ("shadow_terminator_shading_offset", "cycles.shadow_terminator_offset"),
-        lambda source: (
-            max(
-                getattr(source, "shadow_terminator_shading_offset", 0.0),
-                _cycles(source, "shadow_terminator_offset", 0.0),
-            )
-            > 0.0
-        ),
-    ),
 )
 """By what an evaluated object uses."""
 

@@ -89,6 +89,24 @@ class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
             mask.prop(thing, "is_shadow_catcher")
 
 
+class RPPM_PT_shadow_terminator(RppmPanel, bpy.types.Panel):
+    bl_label = "Shadow Terminator"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_shading"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        thing = context.object
+        is_there = thing is not None and thing.type in _VISIBLE_TYPES - {"LIGHT"}
+        return super().poll(context) and is_there and hasattr(thing, "shadow_terminator_shading_offset")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        column.prop(context.object, "shadow_terminator_geometry_offset", text="Geometry Offset")
+        column.prop(context.object, "shadow_terminator_shading_offset", text="Shading Offset")
+
+
 class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_options = {"DEFAULT_CLOSED"}
@@ -155,6 +173,7 @@ CLASSES = (
     RPPM_PT_world_preview,
     RPPM_PT_world_surface,
     RPPM_PT_ray_visibility,
+    RPPM_PT_shadow_terminator,
     RPPM_PT_world_ray_visibility,
     RPPM_PT_object_light_group,
     RPPM_PT_world_light_group,

@@ -158,6 +158,17 @@ comes with its tint (MicrofacetKind), the diffuse roughness with the albedo that
 interreflection takes (common/bsdf/diffuse.glsl)."""
 StorageBlock("Closures", "Closure closures[];")
 
+CLOSURE_CURVED = 32
+"""Of a closure's flags: shadow rays begin on the surface that the normals tell of."""
+TERMINATOR_SHIFT, TERMINATOR_STEPS = 10, 63
+"""Where in them, and in how many steps, the shading offset of the shadow terminator stands."""
+Constants(
+    "Terminators",
+    CLOSURE_CURVED=CLOSURE_CURVED,
+    TERMINATOR_SHIFT=TERMINATOR_SHIFT,
+    TERMINATOR_STEPS=TERMINATOR_STEPS,
+)
+
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl)."""

@@ -10,6 +10,7 @@ from . import (  # noqa: F401
     lights,
     profiles,
     shaders,
+    shadow_terminator,
     values,
     worlds,
 )

@@ -69,6 +69,7 @@ class InstanceReader:
             self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
             self._light_group(source),
             self.linking(source),
+            *_terminator_offsets(source),
         )
 
     def light(
@@ -94,6 +95,7 @@ class InstanceReader:
         instancer: what multiplies the object.
         """
         materials = self._material_slots(source)
+        geometry_offset, shading_offset = _terminator_offsets(source)
         visibility, holdout = self.masked(instancer or source, visibility, source.is_holdout)
         return {
             "materials": materials,
@@ -105,6 +107,8 @@ class InstanceReader:
             "attributes": self.attribute_values(source, materials, instancer),
             "light_group": self._light_group(source),
             "linking": self.linking(instancer or source),
+            "terminator_geometry_offset": geometry_offset,
+            "terminator_shading_offset": shading_offset,
         }
 
     def _light_group(self, source: bpy.types.Object) -> str:
@@ -175,6 +179,18 @@ class InstanceReader:
 def shaded_instance(mesh: int, source: bpy.types.Object, matrix: np.ndarray, shading: dict[str, object]) -> Instance:
     """An instance of a mesh with what InstanceReader.shading gives."""
     return Instance(mesh, matrix, object_name=source.name, object_index=source.pass_index, **shading)
+
+
+def _terminator_offsets(source: bpy.types.Object) -> tuple[float, float]:
+    """Geometry Offset and Shading Offset of the shadow terminator; before Blender 5 properties of Cycles."""
+    if hasattr(source, "shadow_terminator_shading_offset"):
+        geometry, shading = source.shadow_terminator_geometry_offset, source.shadow_terminator_shading_offset
+        return min(geometry, 1.0), min(shading, 1.0)
+    cycles = getattr(source, "cycles", None)
+    return (
+        getattr(cycles, "shadow_terminator_geometry_offset", 0.0),
+        getattr(cycles, "shadow_terminator_offset", 0.0),
+    )
 
 
 @functools.lru_cache(1 << 16)

@@ -235,6 +235,8 @@ class ObjectPass:
             shading["attributes"],
             shading["light_group"],
             self._reader.linking(parent),
+            shading["terminator_geometry_offset"],
+            shading["terminator_shading_offset"],
         )
         if kind.asks_instancer:
             placed.attributes = self._reader.attribute_values(source, placed.materials, parent)
