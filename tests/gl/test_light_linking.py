@@ -129,3 +129,13 @@ def test_light_without_bounces_is_direct_light(mapper, mode):
     direct = picture(mapper, scene, 2)
     np.testing.assert_allclose(limited, direct, rtol=1e-5, atol=1e-7)
     assert scattered.mean() > 1.005 * direct.mean()
+
+
+@pytest.mark.parametrize(("name", "alpha"), {"plain": 1.0, "passes the sheet": 0.0, "casts no shadow": 0.0}.items())
+def test_shadow_catchers_ask_who_casts_shadows(mapper, name, alpha):
+    scene = shaded_floor(DirectLight.RAYS, *CASES[name])
+    scene.settings = scene.settings.with_values(film_transparent=True)
+    scene.instances[0].shadow_catcher = True
+    picture(mapper, scene, 2)
+    found = mapper.film.read_radiance()[..., 3][around(scene.camera, SHADE, 0)]
+    np.testing.assert_allclose(found, alpha, atol=1e-5)

@@ -135,6 +135,10 @@ class Lights(BufferSet):
         """Storage blocks of lights/light_tree.glsl."""
         return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
 
+    def linking_blocks(self, contributions: moderngl.Buffer) -> dict[str, moderngl.Buffer] | None:
+        """Storage blocks of shadow rays that ask what may be in their way; None where everything is."""
+        return {"Contributions": contributions, "LightLinks": self.links.buffer} if self.links_lights else None
+
     @property
     def source_watts(self) -> dict[str, float]:
         """Power within the scene, the channels' mean, by source: lights (source_name), SURFACES and ENVIRONMENT."""

@@ -94,9 +94,7 @@ class DirectLight(BufferSet):
                     living,
                     iteration.number,
                 )
-                linking = None
-                if context.lights.links_lights:
-                    linking = {"Contributions": self.contributions.buffer, "LightLinks": context.lights.links.buffer}
+                linking = context.lights.linking_blocks(self.contributions.buffer)
                 context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living, linking)
                 living.run(
                     self._add,
