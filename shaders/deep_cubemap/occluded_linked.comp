@@ -5,8 +5,6 @@
 // Whether each ray is free (1) or meets something (0) that may be in the way of the light that it goes to.
 layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
-#include <TraceParameters>
-layout(std140, binding = 0) uniform Parameters { TraceParameters parameters; };
 #include "common/light_sets.glsl"
 #include <LightLink>
 uvec2 shadow_sets;  // bits of those that are in the ray's way
@@ -19,7 +17,7 @@ layout(std430, binding = 3) restrict readonly buffer Contributions;
 layout(std430, binding = 4) restrict readonly buffer LightLinks;
 
 void main() {
-    uint index = living_path_at(parameters.first_place + invocation_index());
+    uint index = living_path();
     if (index == NO_PATH) return;
     shadow_sets = light_links[code_number(contributions[index].w)].shadow_sets;
     if (shadow_sets == uvec2(0u)) visibility[index] = 1u;
