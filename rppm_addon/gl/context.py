@@ -32,7 +32,11 @@ _LIMITS = (
     "GL_MAX_TEXTURE_SIZE",
     "GL_MAX_VIEWPORT_DIMS",
 )
-_NUM_PROGRAM_BINARY_FORMATS = 0x87FE
+_NUM_PROGRAM_BINARY_FORMATS, _MAX_TEXTURE_BUFFER_SIZE, _MAX_VERTEX_IMAGE_UNIFORMS = 0x87FE, 0x8C2B, 0x90CA
+TEXEL_SIZE = 16
+"""Bytes of a texel, at most."""
+LARGEST_BUFFER = (1 << 32) - TEXEL_SIZE
+"""Bytes that shaders and drivers count in 32 bits."""
 _AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87FC}
 _DEDICATED_KIBIBYTES = 0x9047
 """Of GL_NVX_gpu_memory_info."""
@@ -179,7 +183,22 @@ class Context:
     @property
     def storage_block_limit(self) -> int:
         """Bytes that one storage block may span."""
-        return int(str(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"]))
+        return min(int(str(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])), LARGEST_BUFFER)
+
+    @functools.cached_property
+    def most_texels(self) -> int:
+        """That one texel buffer may span."""
+        return self.integers(_MAX_TEXTURE_BUFFER_SIZE)[0]
+
+    @functools.cached_property
+    def vertex_images(self) -> int:
+        """That a vertex shader may read."""
+        return self.integers(_MAX_VERTEX_IMAGE_UNIFORMS)[0]
+
+    @property
+    def array_limit(self) -> int:
+        """Bytes of an array that programs read as texels where it is larger than a storage block."""
+        return max(self.storage_block_limit, min(TEXEL_SIZE * self.most_texels, LARGEST_BUFFER))
 
     def function(self, name: str, result: Any, *arguments: Any) -> Any:
         """A GL function that moderngl does not wrap, as a ctypes function; None if the driver lacks it."""

@@ -4,28 +4,37 @@
 llvmpipe fetches the texels of all threads at once, but the words of storage blocks thread by thread, each behind a
 branch of its own: of 40 loads it takes 2 s to make code, and more with the square of their number; of 40 fetches
 0.1 s. The bits are the same.
+
+And on any driver arrays that are larger than it allows a storage block to be, 128 MiB on some: of texels of 16 bytes
+these have 2 GiB.
 """
 
 import ctypes
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import moderngl
 
-from .context import Context
+from .context import TEXEL_SIZE, Context
 from .records import KINDS, Record, stride
 
 DEFINE = "TEXEL_BUFFERS"
 """Shaders that are given it declare texel buffers in place of storage blocks of the same names."""
-TEXEL_SIZE = 16
-"""Bytes of a texel, at most."""
 MOST_IMAGES = 16
 """Images of a compute shader that llvmpipe has had at all times."""
-_TEXTURE_BUFFER, _MAX_TEXTURE_BUFFER_SIZE, _READ_ONLY = 0x8C2A, 0x8C2B, 0x88B8
+IMAGES_FOR_LARGE = 8
+"""And those that every device has: the most arrays of a program that are larger than a storage block."""
+MOST_ADDED = TEXEL_SIZE + 256
+"""Bytes that allocated_size adds, at most."""
+_TEXTURE_BUFFER, _READ_ONLY = 0x8C2A, 0x88B8
 _FORMATS = {"r32ui": 0x8236, "rg32ui": 0x823C, "rgba32ui": 0x8D70, "rgba32f": 0x8814}
 """By their names in shaders."""
 _FORMAT_BY_WORDS = {1: "r32ui", 2: "rg32ui", 4: "rgba32ui"}
+_BYTES = {0x8236: 4, 0x823C: 8, 0x8D70: 16, 0x8814: 16}
+"""Of a texel, by format."""
+_WORDS = 4
+"""Of the largest."""
 
 _IMAGE = re.compile(
     r"layout\s*\(\s*(\w+)\s*,\s*binding\s*=\s*(\d+)\s*\)\s*restrict\s+readonly\s+uniform\s+u?imageBuffer\s+(\w+)"
@@ -39,11 +48,6 @@ _BRACKET = re.compile(r"//.*|[\[\]]")
 """And comments, whose brackets are none."""
 _WORD_BEFORE = re.compile(r"\b\w+$")
 _LONGEST_NAME = 64
-
-
-def most_texels(context: Context) -> int:
-    """Texels that one texel buffer may span."""
-    return context.integers(_MAX_TEXTURE_BUFFER_SIZE)[0]
 
 
 def allocated_size(size: int) -> int:
@@ -65,31 +69,43 @@ class TexelBuffer:
     unit: int
     format: int
 
+    @property
+    def texel_bytes(self) -> int:
+        """Of one texel."""
+        return _BYTES[self.format]
+
 
 def declared_texel_buffers(text: str) -> dict[str, TexelBuffer]:
     """Those that a shader with DEFINE declares, by the names of the blocks that they stand for."""
     return {name: TexelBuffer(int(unit), _FORMATS[kind]) for kind, unit, name in _IMAGE.findall(text)}
 
 
-def read_as_texels(text: str, declared: Mapping[str, TexelBuffer]) -> tuple[str, dict[str, TexelBuffer]]:
+def read_as_texels(
+    text: str, declared: Mapping[str, TexelBuffer], large: Collection[str] = (), others: bool = True
+) -> tuple[str, dict[str, TexelBuffer]]:
     """A shader's text with texel buffers in place of the storage blocks that it only reads, as far as these are arrays
     and there are units, and all of its texel buffers. Those that it has ``declared`` stay.
 
     ``lights[i]`` becomes ``fetched_lights(i)``, which puts an item together from its texels. They are images and not
     textures: for these llvmpipe has code by the samplers that other programs have left behind as well.
+    large: names of blocks whose texels are to be the largest, each of which has the same unit in all shaders of a
+    program; others: whether there are any besides.
     """
     found = dict(declared)
     taken = {buffer.unit for buffer in declared.values()}
     units = [unit for unit in range(MOST_IMAGES) if unit not in taken]
+    large_units = dict(zip(sorted(large), units, strict=False))
+    units = units[len(large_units) :]
     arrays: set[str] = set()
 
     def declare(match: re.Match) -> str:
         block, item, array = match["block"], match["item"], match["array"]
-        if not units or block in found or not (item in Record.registry or item in KINDS):
+        is_wanted = block in large_units or (others and bool(units))
+        if not is_wanted or block in found or not (item in Record.registry or item in KINDS):
             return match[0]
         if re.search(rf"\b{array}\s*\.\s*length\b", text):  # which texel buffers do not tell
             return match[0]
-        unit, words = units.pop(0), _words_of_a_texel(item)
+        unit, words = (large_units[block], _WORDS) if block in large_units else (units.pop(0), _words_of_a_texel(item))
         kind = _FORMAT_BY_WORDS[words]
         found[block] = TexelBuffer(unit, _FORMATS[kind])
         arrays.add(array)
@@ -109,20 +125,30 @@ def _fetch_function(block: str, item: str, array: str, words: int) -> str:
     """GLSL that gives an item by its number, on one line so that line numbers stay those of the file."""
     record = Record.registry.get(item)
     members = [(member.kind, member.offset // 4) for member in record.members] if record else [(item, 0)]
-    texels = stride(record or item) // (4 * words)
-    fetches = " ".join(f"uvec4 t{k} = imageLoad({block}, first + {k});" for k in range(texels))
-    values = ", ".join(_value(kind, first, words) for kind, first in members)
+    size = stride(record or item) // 4
+    if size % words == 0:
+        names = [f"t{word // words}.{'xyzw'[word % words]}" for word in range(size)]
+        fetches = f"int first = int(item) * {size // words}; " + " ".join(
+            f"uvec4 t{k} = imageLoad({block}, first + {k});" for k in range(size // words)
+        )
+    else:  # items begin anywhere in texels
+        names = [f"t{word}" for word in range(size)]
+        fetches = f"uint first = item * {size}u; " + " ".join(
+            f"uint t{k} = imageLoad({block}, int((first + {k}u) / {words}u))[(first + {k}u) % {words}u];"
+            for k in range(size)
+        )
+    values = ", ".join(_value(kind, names[first:]) for kind, first in members)
     made = f"{item}({values})" if record else values
-    return f"{item} fetched_{array}(uint item) {{ int first = int(item) * {texels}; {fetches} return {made}; }}"
+    return f"{item} fetched_{array}(uint item) {{ {fetches} return {made}; }}"
 
 
-def _value(kind: str, first: int, words: int) -> str:
-    """GLSL for a member from its first word on."""
+def _value(kind: str, names: Sequence[str]) -> str:
+    """GLSL for a member, by the names of its words and of those behind."""
     if kind == "mat4":
-        return f"mat4({', '.join(_value('vec4', first + 4 * k, words) for k in range(4))})"
+        return f"mat4({', '.join(_value('vec4', names[4 * k :]) for k in range(4))})"
     element, _, _, size = KINDS[kind]
     count = size // 4
-    parts = [f"t{word // words}.{'xyzw'[word % words]}" for word in range(first, first + count)]
+    parts = names[:count]
     bits = parts[0] if count == 1 else f"uvec{count}({', '.join(parts)})"
     if element == "<f4":
         return f"uintBitsToFloat({bits})"

@@ -6,11 +6,12 @@ import pytest
 
 from rppm_addon.gl import sources
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.gl.programs import ComputeProgram, ProgramMaker
+from rppm_addon.gl.programs import ComputeProgram, ProgramLibrary, ProgramMaker
 from rppm_addon.gl.records import Record
 from rppm_addon.gl.sources import expand
 from rppm_addon.gl.storage_blocks import StorageBlock
-from rppm_addon.gl.texel_buffers import MOST_IMAGES, allocated_size
+from rppm_addon.gl.texel_buffers import MOST_ADDED, MOST_IMAGES, allocated_size
+from rppm_addon.scene.errors import DeviceError
 
 COUNT = 37
 """No multiple of the words of a texel."""
@@ -50,34 +51,83 @@ def shader(tmp_path, monkeypatch):
     return "own.comp"
 
 
-def test_texels_have_the_bits_of_blocks(context, shader, tmp_path, monkeypatch):
+@pytest.fixture
+def buffers(context, shader, tmp_path, monkeypatch):
+    """What the shader reads and writes."""
     monkeypatch.setenv("RPPM_CACHE", str(tmp_path))
     random = np.random.default_rng(1)
     size = Record.registry["Thing"].size
     contents = {
-        "Things": random.integers(0, 1 << 32, COUNT * size // 4, np.uint32),  # denormal and infinite numbers, and none
+        "Things": random.integers(0, 1 << 32, 2 * COUNT * size // 4, np.uint32),  # denormal, infinite, and none
         "Pairs": random.integers(0, 1 << 32, 2 * COUNT, np.uint32),
         "Order": random.permutation(COUNT).astype(np.uint32),
     }
-    buffers = {name: GrowingBuffer(context, name) for name in (*contents, "Found")}
+    buffers = {name: GrowingBuffer(context, name, exceeds_blocks=True) for name in (*contents, "Found")}
     for name, array in contents.items():
         buffers[name].upload(array)
     buffers["Found"].require(COUNT * 24 * 4)
-    found = {}
-    for reads_texels in (False, True):
-        source = expand(shader, {"COUNT": f"{COUNT}u"}, reads_texels=reads_texels)
-        assert set(source.texel_buffers) == (set(contents) if reads_texels else set())
-        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
-        assert program.blocks == buffers.keys()
-        buffers["Found"].clear()
-        program.run(COUNT, {name: buffer.buffer for name, buffer in buffers.items()})
-        found[reads_texels] = buffers["Found"].read(np.uint32, COUNT * 24)
-        program.release()
-    assert np.array_equal(found[True], found[False])
-    things = contents["Things"].reshape(COUNT, -1)[contents["Order"][contents["Order"]]]
-    assert np.array_equal(found[True].reshape(COUNT, 24)[:, :16], things[:, :16])
+    yield buffers
     for buffer in buffers.values():
         buffer.release()
+
+
+def found_by(program, buffers):
+    assert program.blocks == buffers.keys()
+    buffers["Found"].clear()
+    program.run(COUNT, {name: buffer.buffer for name, buffer in buffers.items()})
+    return buffers["Found"].read(np.uint32, COUNT * 24)
+
+
+def test_texels_have_the_bits_of_blocks(context, shader, buffers):
+    found = []
+    for reads_texels, large in ((False, ()), (True, ()), (False, ("Pairs", "Order", "Found")), (True, ("Things",))):
+        source = expand(shader, {"COUNT": f"{COUNT}u"}, reads_texels=reads_texels, large=large)
+        assert set(source.texel_buffers) == ({"Things", "Pairs", "Order"} if reads_texels else {*large} - {"Found"})
+        assert all(source.texel_buffers[name].texel_bytes == 16 for name in large if name != "Found")
+        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
+        found.append(found_by(program, buffers))
+        program.release()
+    for one in found:
+        np.testing.assert_array_equal(one, found[0])
+    things, order = (buffers[name].read(np.uint32, buffers[name].size // 4) for name in ("Things", "Order"))
+    order = order[:COUNT]
+    things = things.reshape(2 * COUNT, -1)[order[order]]
+    assert np.array_equal(found[0].reshape(COUNT, 24)[:, :16], things[:, :16])
+
+
+@pytest.mark.parametrize("is_software", [False, True])
+def test_arrays_that_are_larger_than_a_block_are_read_as_texels(context, shader, buffers, monkeypatch, is_software):
+    monkeypatch.setattr(context, "is_software", is_software)
+    library, defines = ProgramLibrary(context), {"COUNT": f"{COUNT}u"}
+    program = library.compute(shader, defines)
+    expected = found_by(program, buffers)
+    assert library.made == 1
+    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", buffers["Found"].size)  # Things have more
+    assert buffers["Things"].buffer.size > buffers["Found"].size + MOST_ADDED
+    np.testing.assert_array_equal(found_by(program, buffers), expected)
+    assert library.made == (1 if is_software else 2)
+    if is_software:  # of one word each there are no so many texels
+        monkeypatch.setattr(context, "most_texels", (buffers["Things"].buffer.size - 512) // 16)
+        with pytest.raises(DeviceError, match="takes more of Things at once than the device"):
+            found_by(program, buffers)
+    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 64)
+    with pytest.raises(DeviceError, match="takes more of .*Found.* at once than the device .* simplify the scene"):
+        found_by(program, buffers)
+    library.release()
+
+
+def test_words_that_are_more_than_texels_lie_four_in_one(context, shader, buffers, monkeypatch):
+    monkeypatch.setattr(context, "is_software", True)
+    library = ProgramLibrary(context)
+    program = library.compute(shader, {"COUNT": f"{COUNT}u"})
+    expected = found_by(program, buffers)
+    order = GrowingBuffer(context, "long order", exceeds_blocks=True)
+    order.upload(np.resize(buffers["Order"].read(np.uint32, COUNT), 800))
+    monkeypatch.setattr(context, "most_texels", 490)  # those of Things are 444
+    np.testing.assert_array_equal(found_by(program, {**buffers, "Order": order}), expected)
+    assert library.made == 2
+    order.release()
+    library.release()
 
 
 def test_what_has_no_unit_stays_a_block(shader, tmp_path):

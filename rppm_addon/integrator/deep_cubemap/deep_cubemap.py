@@ -29,12 +29,11 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
-from ...gl.context import Context
+from ...gl.context import TEXEL_SIZE, Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...gl.texel_buffers import DEFINE as TEXEL_BUFFERS
-from ...gl.texel_buffers import TEXEL_SIZE, most_texels
 from ...scene.errors import DeviceError
 from ..common import records  # noqa: F401  the kernels include Ray and Hit
 from ..common.known import known
@@ -195,7 +194,7 @@ class DeepCubemap(BufferSet):
         self._library = library
         self._least_gain, self._most_bins = least_gain, most_bins
         self._texel_buffers = context.is_software if texel_buffers is None else texel_buffers
-        self._most_texel_bytes = TEXEL_SIZE * most_texels(context)
+        self._most_texel_bytes = TEXEL_SIZE * context.most_texels
 
         self._lists = {
             "job": self._jobs,

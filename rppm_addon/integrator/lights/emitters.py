@@ -23,6 +23,7 @@ from ..surfaces.resolve import Resolve
 from .light_tree import triangle_leaves
 
 Record("EmittersParameters", photons="uint")
+Record("MarkParameters", count="uint", first_triangle="uint", triangle_count="uint")
 
 _POINTS = 8
 """Places of a triangle, on either side in turn, where an emission that varies is asked for."""
@@ -42,7 +43,7 @@ class Emitters(BufferSet):
     are theirs of the light tree.
     """
 
-    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE)
+    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, exceeds_blocks=True)
     _rays = StorageBuffer("rays to emitters", RAY)
     _hits = StorageBuffer("places on emitters", HIT)
     _closures = StorageBuffer("closures of emitters", CLOSURE)
@@ -89,11 +90,12 @@ class Emitters(BufferSet):
             records["cumulated"] = np.cumsum(steps) / _STEPS
             records["traits"] = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
         self.triangles.upload(records if self.count else EMISSIVE_TRIANGLE.zeros(1))
-        self._mark.run(
-            self.count,
-            {"EmissiveTriangles": self.triangles.buffer, "Triangles": geometry.triangles.buffer},
-            {"count": self.count},
-        )
+        for part in geometry.triangles.ranges(geometry.triangle_count):
+            self._mark.run(
+                self.count,
+                {"EmissiveTriangles": self.triangles.buffer, "Triangles": part},
+                {"count": self.count, "first_triangle": part.first, "triangle_count": part.count},
+            )
 
     def _ask(
         self, records: np.ndarray, corners: np.ndarray, kinds: np.ndarray, varying: np.ndarray, resolve: Resolve

@@ -17,6 +17,7 @@ from ...scene.passes import VECTOR
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
 from ..common.iteration import Iteration
+from ..common.records import TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
 from ..surfaces.geometry import Geometry, Placement
@@ -43,8 +44,8 @@ class MotionVectors(BufferSet):
 
     remedy = "switch off the pass Vector"
     _vectors = FilmBuffer("motion vectors", "vec4", _is_wanted)
-    _before = StorageBuffer("triangles of the frame before", "vec4")
-    _after = StorageBuffer("triangles of the next frame", "vec4")
+    _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, exceeds_blocks=True)
+    _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, exceeds_blocks=True)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)

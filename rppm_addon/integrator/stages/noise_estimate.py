@@ -106,9 +106,7 @@ class NoiseEstimate(BufferSet):
                 },
             )
 
-    def measure(
-        self, context: StageContext, film: FilmParts, exposure: float, skipped: int, iteration: int
-    ) -> float:
+    def measure(self, context: StageContext, film: FilmParts, exposure: float, skipped: int, iteration: int) -> float:
         """The noise of the noisiest block of a film, (pixels, 4) float32, of the iterations after ``skipped`` up to
         ``iteration``; infinite while one of the halves is empty. Waits for the device."""
         program = self._measure
