@@ -75,6 +75,7 @@ class GrowingBuffer:
         self._context = context
         self._buffer: moderngl.Buffer | None = None
         self._size = 0
+        self._is_large = False
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -124,6 +125,8 @@ class GrowingBuffer:
         try:
             self._buffer = self._context.moderngl.buffer(reserve=allocated_size(max(least, SMALLEST)))
             self._size = max(size, SMALLEST)
+            self._is_large = size > self._context.whole_limit
+            self._context.large_buffers += self._is_large
         except moderngl.Error as error:
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}"
@@ -156,3 +159,5 @@ class GrowingBuffer:
             release_textures(self._context, self._buffer)
             self._buffer.release()
             self._buffer, self._size = None, 0
+            self._context.large_buffers -= self._is_large
+            self._is_large = False

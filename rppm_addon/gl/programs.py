@@ -76,7 +76,7 @@ class _Program:
 
         Raises DeviceError where there is none.
         """
-        large = self.too_large(buffers)
+        large = self.too_large(buffers) if self.context.large_buffers else frozenset()
         if not large:
             return None
         other = self.with_large(large) if self.with_large is not None and len(large) <= IMAGES_FOR_LARGE else None
