@@ -103,8 +103,9 @@ class StorageBuffer(Declared[GrowingBuffer]):
 
     def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
         """Declared.refuse_large."""
+        limit = context.array_limit if self._exceeds_blocks else None
         for name, size in self.expected_bytes(sizes).items():
-            refuse_large_block(context, name, size, self._remedy or remedy, self._exceeds_blocks)
+            refuse_large_block(context, name, size, self._remedy or remedy, limit)
 
     def _count_for(self, sizes: object) -> int:
         return self._count(sizes) if callable(self._count) else self._count or 0

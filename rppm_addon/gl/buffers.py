@@ -18,12 +18,12 @@ SMALLEST = 64
 REMEDY = "simplify the scene"
 
 
-def refuse_large_block(context: Context, name: str, size: int, remedy: str, exceeds_blocks: bool = False) -> None:
+def refuse_large_block(context: Context, name: str, size: int, remedy: str, limit: int | None = None) -> None:
     """Raise DeviceError, with the numbers and the remedy, for more bytes than the device allows in one buffer.
 
-    exceeds_blocks: that of GrowingBuffer.
+    limit: those, where these are not what a storage block may span.
     """
-    limit = context.array_limit if exceeds_blocks else context.storage_block_limit
+    limit = context.storage_block_limit if limit is None else limit
     if size > limit:
         raise DeviceError(
             f"{name} needs {size / 2**20:.0f} MiB but the device {context.information.name} "
@@ -112,7 +112,8 @@ class GrowingBuffer:
         """
         if size <= self.size:
             return False
-        refuse_large_block(self._context, self.name, size, self.remedy, self._exceeds_blocks)
+        limit = self._context.array_limit if self._exceeds_blocks else None
+        refuse_large_block(self._context, self.name, size, self.remedy, limit)
         available = self._context.available_memory
         if available is not None and size > available + self.size:
             raise DeviceError(

@@ -27,7 +27,7 @@ IMAGES_FOR_LARGE = 8
 """And those that every device has: the most arrays of a program that are larger than a storage block."""
 MOST_ADDED = TEXEL_SIZE + 256
 """Bytes that allocated_size adds, at most."""
-_TEXTURE_BUFFER, _READ_ONLY = 0x8C2A, 0x88B8
+_TEXTURE_BUFFER, _READ_ONLY, _WRITE_ONLY = 0x8C2A, 0x88B8, 0x88B9
 _FORMATS = {"r32ui": 0x8236, "rg32ui": 0x823C, "rgba32ui": 0x8D70, "rgba32f": 0x8814}
 """By their names in shaders."""
 _FORMAT_BY_WORDS = {1: "r32ui", 2: "rg32ui", 4: "rgba32ui"}
@@ -44,10 +44,14 @@ _READ_ARRAY = re.compile(
     r"\{\s*(?P<item>\w+)\s+(?P<array>\w+)\s*\[\s*\]\s*;\s*\}\s*;"
 )
 """A block that is an array and nothing else, and is only read."""
+_WRITTEN_ARRAY = re.compile(_READ_ARRAY.pattern.replace("readonly", "writeonly"))
+_ASSIGNMENT = re.compile(r"\s*=(?!=)")
 _BRACKET = re.compile(r"//.*|[\[\]]")
 """And comments, whose brackets are none."""
 _WORD_BEFORE = re.compile(r"\b\w+$")
 _LONGEST_NAME = 64
+_MARK = "\0"
+"""In place of what is put together later."""
 
 
 def allocated_size(size: int) -> int:
@@ -68,6 +72,7 @@ class TexelBuffer:
 
     unit: int
     format: int
+    access: int = _READ_ONLY
 
     @property
     def texel_bytes(self) -> int:
@@ -89,7 +94,8 @@ def read_as_texels(
     ``lights[i]`` becomes ``fetched_lights(i)``, which puts an item together from its texels. They are images and not
     textures: for these llvmpipe has code by the samplers that other programs have left behind as well.
     large: names of blocks whose texels are to be the largest, each of which has the same unit in all shaders of a
-    program; others: whether there are any besides.
+    program; such a one may be one that is only written, item by item: ``lights[i] = light;``. others: whether there are
+    any besides.
     """
     found = dict(declared)
     taken = {buffer.unit for buffer in declared.values()}
@@ -112,13 +118,26 @@ def read_as_texels(
         declaration = f"layout({kind}, binding = {unit}) restrict readonly uniform uimageBuffer {block};"
         return f"{declaration} {_fetch_function(block, item, array, words)}"
 
+    for match in _WRITTEN_ARRAY.finditer(text) if large_units else ():
+        block, item, array = match["block"], match["item"], match["array"]
+        stored = _with_stores(text.replace(match[0], _MARK), array) if block in large_units else None
+        if stored is not None:
+            words = _words_of_a_texel(item)
+            kind, unit = _FORMAT_BY_WORDS[words], large_units[block]
+            found[block] = TexelBuffer(unit, _FORMATS[kind], _WRITE_ONLY)
+            declaration = f"layout({kind}, binding = {unit}) restrict writeonly uniform uimageBuffer {block};"
+            text = stored.replace(_MARK, f"{declaration} {_store_function(block, item, array, words)}")
     text = _READ_ARRAY.sub(declare, text)
     return _with_calls(text, arrays), found
 
 
+def texel_bytes(item_size: int) -> int:
+    """Of the largest texels, so many of which make an item of so many bytes."""
+    return next(size for size in (16, 8, 4) if item_size % size == 0)
+
+
 def _words_of_a_texel(item: str) -> int:
-    size = stride(Record.registry.get(item, item))
-    return next(words for words in (4, 2, 1) if size % (4 * words) == 0)
+    return texel_bytes(stride(Record.registry.get(item, item))) // 4
 
 
 def _fetch_function(block: str, item: str, array: str, words: int) -> str:
@@ -153,6 +172,44 @@ def _value(kind: str, names: Sequence[str]) -> str:
     if element == "<f4":
         return f"uintBitsToFloat({bits})"
     return f"{kind}({bits})"
+
+
+def _store_function(block: str, item: str, array: str, words: int) -> str:
+    """GLSL that writes an item by its number, on one line."""
+    record = Record.registry.get(item)
+    members = [(f"value.{m.name}", m.kind, m.offset // 4) for m in record.members] if record else [("value", item, 0)]
+    written = ["0u"] * (stride(record or item) // 4)
+    for name, kind, first in members:
+        element, shape, _, _ = KINDS[kind]
+        places = [f".{c}" for c in "xyzw"[: sum(shape)]] or [""]
+        if kind == "mat4":
+            places = [f"[{k // 4}][{k % 4}]" for k in range(16)]
+        for k, place in enumerate(places):
+            written[first + k] = f"floatBitsToUint({name}{place})" if element == "<f4" else f"uint({name}{place})"
+    stores = []
+    for texel in range(len(written) // words):
+        parts = [*written[words * texel : words * (texel + 1)], *["0u"] * (4 - words)]
+        stores.append(f"imageStore({block}, first + {texel}, uvec4({', '.join(parts)}));")
+    texels = len(written) // words
+    return f"void stored_{array}(uint item, {item} value) {{ int first = int(item) * {texels}; {' '.join(stores)} }}"
+
+
+def _with_stores(text: str, array: str) -> str | None:
+    """The text with a call wherever an item of an array is assigned; None where it stands elsewhere as well."""
+    pieces, begin = [], 0
+    for match in re.finditer(rf"\b{array}\s*\[", text):
+        depth, end = 1, match.end()
+        while depth:
+            depth += {"[": 1, "]": -1}.get(text[end], 0)
+            end += 1
+        assignment = _ASSIGNMENT.match(text, end)
+        if assignment is None:
+            return None
+        stop = text.index(";", assignment.end())
+        index, value = text[match.end() : end - 1], text[assignment.end() : stop]
+        pieces += [text[begin : match.start()], f"stored_{array}(uint({index}),{value})"]
+        begin = stop
+    return "".join([*pieces, text[begin:]])
 
 
 def _with_calls(text: str, arrays: set[str]) -> str:
@@ -191,7 +248,7 @@ class TexelBuffers:
         """Have each buffer at its unit."""
         for name, buffer in self._buffers.items():
             texture = self._texture(contents[name], buffer.format)
-            self._bind_image(buffer.unit, texture, 0, 0, 0, _READ_ONLY, buffer.format)
+            self._bind_image(buffer.unit, texture, 0, 0, 0, buffer.access, buffer.format)
 
     def _texture(self, contents: moderngl.Buffer, number: int) -> int:
         """A buffer's texture of a format, made when it is first asked for."""

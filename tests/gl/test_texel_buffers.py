@@ -83,8 +83,8 @@ def test_texels_have_the_bits_of_blocks(context, shader, buffers, monkeypatch):
     found = []
     for reads_texels, large in ((False, ()), (True, ()), (False, ("Pairs", "Order", "Found")), (True, ("Things",))):
         source = expand(shader, {"COUNT": f"{COUNT}u"}, reads_texels=reads_texels, large=large)
-        assert set(source.texel_buffers) == ({"Things", "Pairs", "Order"} if reads_texels else {*large} - {"Found"})
-        assert all(source.texel_buffers[name].texel_bytes == 16 for name in large if name != "Found")
+        assert set(source.texel_buffers) == ({"Things", "Pairs", "Order"} if reads_texels else {*large})
+        assert all(source.texel_buffers[name].texel_bytes == (4 if name == "Found" else 16) for name in large)
         program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
         with monkeypatch.context() as patch:  # llvmpipe binds what is larger than a block all the same
             patch.setattr(context, "large_buffers", 0)
@@ -128,13 +128,59 @@ def test_words_that_are_more_than_texels_lie_four_in_one(context, shader, buffer
     library.release()
 
 
-def test_what_is_written_takes_no_more_than_a_block(context, shader, buffers):
+def test_what_is_written_takes_no_more_than_texels_of_its_items(context, shader, buffers, monkeypatch):
     with pytest.raises(DeviceError, match="found needs .* in one buffer"):
         GrowingBuffer(context, "found").require(context.storage_block_limit + 1)
     library, program = library_with(context, shader)
+    monkeypatch.setattr(context, "most_texels", 1000)
     with pytest.raises(DeviceError, match="takes more of Found at once"):
         program.run(1, {name: buffers["Things" if name == "Found" else name].buffer for name in program.blocks})
     library.release()
+
+
+COPY = """#version 430 core
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Things;
+layout(std430, binding = 1) readonly buffer Order { uint order[]; };
+layout(std430, binding = 2) restrict writeonly buffer Copies { Thing copies[]; };
+layout(std430, binding = 3) writeonly buffer Sizes { float sizes[]; };
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= COUNT) return;
+    Thing thing = things[index];
+    copies[order[order[index]]] = thing;
+    if (index != order[index]) sizes[order[index]] = thing.place[uint(index) % 3u];
+    else sizes[index] = 2.0;
+}
+"""
+
+
+def test_items_of_what_is_only_written_are_stored(context, shader, buffers, tmp_path, monkeypatch):
+    (tmp_path / "copy.comp").write_text(COPY)
+    copies, sizes = (GrowingBuffer(context, name, exceeds_blocks=True) for name in ("copies", "sizes"))
+    copies.require(buffers["Things"].size)
+    sizes.require(4 * COUNT)
+    found = []
+    for large in ((), ("Copies", "Sizes", "Things")):
+        copies.clear()
+        source = expand("copy.comp", {"COUNT": f"{COUNT}u"}, large=large)
+        assert source.texel_buffers.keys() == set(large)
+        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
+        blocks = {"Things": buffers["Things"], "Order": buffers["Order"], "Copies": copies, "Sizes": sizes}
+        with monkeypatch.context() as patch:
+            patch.setattr(context, "large_buffers", 0)
+            program.run(COUNT, {name: buffer.buffer for name, buffer in blocks.items()})
+        found.append([buffer.read(np.uint32, buffer.size // 4) for buffer in (copies, sizes)])
+        program.release()
+    things = found[0][0].reshape(2 * COUNT, -1)
+    assert things[:COUNT].any() and not things[COUNT:].any()
+    things[:, -1] = 0  # what lies behind the members
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_array_equal(one, other)
+    (tmp_path / "copy.comp").write_text(COPY.replace("copies[order[order[index]]] = thing", "copies[index].size = 1.0"))
+    assert "Copies" in expand("copy.comp", {"COUNT": "8u"}, large=["Copies"]).blocks
+    copies.release()
+    sizes.release()
 
 
 def library_with(context, shader):
