@@ -55,8 +55,9 @@ class GrowingBuffer:
     """A named storage buffer that is kept between frames and made anew only to grow.
 
     item_size, header_size: bytes of one of its items, and of what lies before them.
-    exceeds_blocks: it may be larger than the device allows a storage block to be. Then programs that only read it as an
-    array read texels (texel_buffers.py), and those that write it are to be given a BufferRange at a time.
+    texel_bytes: where given, it may be larger than the device allows a storage block to be. Then programs to which it
+    is an array read and write texels of so many bytes (texel_sources.py), unless they are given a BufferRange at a
+    time: 16 where they only read it, 4 where they write single words of its items.
     """
 
     def __init__(
@@ -66,12 +67,12 @@ class GrowingBuffer:
         remedy: str = REMEDY,
         item_size: int = 1,
         header_size: int = 0,
-        exceeds_blocks: bool = False,
+        texel_bytes: int | None = None,
     ) -> None:
         self.name = name
         self.remedy = remedy
         self.item_size, self._header_size = item_size, header_size
-        self._exceeds_blocks = exceeds_blocks
+        self._texel_bytes = texel_bytes
         self._context = context
         self._buffer: moderngl.Buffer | None = None
         self._size = 0
@@ -97,6 +98,11 @@ class GrowingBuffer:
         return [BufferRange(self, first, min(most, count - first)) for first in range(0, count, most)]
 
     @property
+    def limit(self) -> int:
+        """The most bytes that it may have."""
+        return self._context.array_limit(self._texel_bytes)
+
+    @property
     def capacity(self) -> int:
         """Items that there is room for."""
         return max(self.size - self._header_size, 0) // self.item_size
@@ -112,8 +118,7 @@ class GrowingBuffer:
         """
         if size <= self.size:
             return False
-        limit = self._context.array_limit if self._exceeds_blocks else None
-        refuse_large_block(self._context, self.name, size, self.remedy, limit)
+        refuse_large_block(self._context, self.name, size, self.remedy, self.limit)
         available = self._context.available_memory
         if available is not None and size > available + self.size:
             raise DeviceError(
@@ -122,7 +127,7 @@ class GrowingBuffer:
             )
         self.release()
         # What lies in a part of a texel could not be read.
-        least = -(-size // TEXEL_SIZE) * TEXEL_SIZE if self._exceeds_blocks else size
+        least = -(-size // TEXEL_SIZE) * TEXEL_SIZE if self._texel_bytes else size
         try:
             self._buffer = self._context.moderngl.buffer(reserve=allocated_size(max(least, SMALLEST)))
             self._size = max(size, SMALLEST)

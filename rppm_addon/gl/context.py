@@ -203,10 +203,9 @@ class Context:
         """That a vertex shader may read."""
         return self.integers(_MAX_VERTEX_IMAGE_UNIFORMS)[0]
 
-    @property
-    def array_limit(self) -> int:
-        """Bytes of an array that programs read as texels where it is larger than a storage block."""
-        return max(self.storage_block_limit, min(TEXEL_SIZE * self.most_texels, LARGEST_BUFFER))
+    def array_limit(self, texel_bytes: int | None) -> int:
+        """Bytes of an array that is texels of so many bytes where it is larger than a storage block; None: never."""
+        return max(self.storage_block_limit, min((texel_bytes or 0) * self.most_texels, LARGEST_BUFFER))
 
     def function(self, name: str, result: Any, *arguments: Any) -> Any:
         """A GL function that moderngl does not wrap, as a ctypes function; None if the driver lacks it."""

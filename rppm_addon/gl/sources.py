@@ -10,7 +10,8 @@ from pathlib import Path
 from .constants import Constants
 from .records import Record
 from .storage_blocks import StorageBlock
-from .texel_buffers import DEFINE, TexelBuffer, declared_texel_buffers, read_as_texels
+from .texel_buffers import TexelBuffer
+from .texel_sources import DEFINE, declared_texel_buffers, read_as_texels
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())

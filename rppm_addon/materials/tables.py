@@ -62,8 +62,7 @@ class MaterialTables(BufferSet):
         super().__init__(context, library)
         names = ("Materials", "MaterialData", "Images", "Texels", "AlbedoTables")
         self._buffers = {
-            name: self.own(GrowingBuffer(context, f"material {name}", self.remedy, exceeds_blocks=True))
-            for name in names
+            name: self.own(GrowingBuffer(context, f"material {name}", self.remedy, texel_bytes=16)) for name in names
         }
         self._buffers["AlbedoTables"].upload(albedo_tables.load())
         self.default_material = 0

@@ -10,7 +10,8 @@ from rppm_addon.gl.programs import ComputeProgram, ProgramLibrary, ProgramMaker
 from rppm_addon.gl.records import Record
 from rppm_addon.gl.sources import expand
 from rppm_addon.gl.storage_blocks import StorageBlock
-from rppm_addon.gl.texel_buffers import MOST_ADDED, MOST_IMAGES, allocated_size
+from rppm_addon.gl.texel_buffers import MOST_ADDED, allocated_size
+from rppm_addon.gl.texel_sources import MOST_IMAGES
 from rppm_addon.scene.errors import DeviceError
 
 COUNT = 37
@@ -63,7 +64,7 @@ def buffers(context, shader, tmp_path, monkeypatch):
         "Pairs": random.integers(0, 1 << 32, 2 * COUNT, np.uint32),
         "Order": random.permutation(COUNT).astype(np.uint32),
     }
-    buffers = {name: GrowingBuffer(context, name, exceeds_blocks=True) for name in (*contents, "Found")}
+    buffers = {name: GrowingBuffer(context, name, texel_bytes=16) for name in (*contents, "Found")}
     for name, array in contents.items():
         buffers[name].upload(array)
     buffers["Found"].require(COUNT * 24 * 4)
@@ -116,7 +117,7 @@ def test_words_that_are_more_than_texels_lie_four_in_one(context, shader, buffer
     library, program = library_with(context, shader)
     expected = found_by(program, buffers)
     assert library.made == 1
-    order = GrowingBuffer(context, "long order", exceeds_blocks=True)
+    order = GrowingBuffer(context, "long order", texel_bytes=16)
     order.upload(np.resize(buffers["Order"].read(np.uint32, COUNT), 800))
     monkeypatch.setattr(context, "most_texels", 490)  # those of Things are 444
     np.testing.assert_array_equal(found_by(program, {**buffers, "Order": order}), expected)
@@ -157,7 +158,7 @@ void main() {
 
 def test_items_of_what_is_only_written_are_stored(context, shader, buffers, tmp_path, monkeypatch):
     (tmp_path / "copy.comp").write_text(COPY)
-    copies, sizes = (GrowingBuffer(context, name, exceeds_blocks=True) for name in ("copies", "sizes"))
+    copies, sizes = (GrowingBuffer(context, name, texel_bytes=16) for name in ("copies", "sizes"))
     copies.require(buffers["Things"].size)
     sizes.require(4 * COUNT)
     found = []
@@ -177,10 +178,52 @@ def test_items_of_what_is_only_written_are_stored(context, shader, buffers, tmp_
     assert things[:COUNT].any() and not things[COUNT:].any()
     np.testing.assert_array_equal(stored, things)
     np.testing.assert_array_equal(sizes_stored, sizes_found)
-    (tmp_path / "copy.comp").write_text(COPY.replace("copies[order[order[index]]] = thing", "copies[index].size = 1.0"))
-    assert "Copies" in expand("copy.comp", {"COUNT": "8u"}, large=["Copies"]).blocks
     copies.release()
     sizes.release()
+
+
+CHANGE = """#version 430 core
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer Things;
+layout(std430, binding = 1) writeonly buffer Sizes { float sizes[]; };
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= COUNT) return;  // things[index] stands in a comment
+    sizes[index] = things[index + COUNT].size;
+    if (index % 3u == 0u) things[index] = things[index + COUNT];
+    else if (index % 3u == 1u) things[index].place = vec3(things[index + COUNT].offset, index);
+    else things[things[index + COUNT].kind % COUNT].offset.x = 3;
+}
+"""
+
+
+def test_items_and_members_of_what_is_read_as_well_are_stored(context, shader, buffers, tmp_path, monkeypatch):
+    text = CHANGE.replace("offset.x = 3", "kind = 7u")
+    (tmp_path / "change.comp").write_text(text.replace("things[index + COUNT].kind % COUNT", "index"))
+    before, sizes = buffers["Things"].read(np.uint32, buffers["Things"].size // 4).copy(), GrowingBuffer(context, "s")
+    sizes.require(4 * COUNT)
+    found = []
+    for large in ((), ("Things",)):
+        buffers["Things"].upload(before)
+        source = expand("change.comp", {"COUNT": f"{COUNT}u"}, large=large)
+        assert source.texel_buffers.keys() == set(large)
+        program = ComputeProgram(context, BinaryCache(context), source)
+        with monkeypatch.context() as patch:
+            patch.setattr(context, "large_buffers", 0)
+            program.run(COUNT, {"Things": buffers["Things"].buffer, "Sizes": sizes.buffer})
+        found.append([buffer.read(np.uint32, buffer.size // 4) for buffer in (buffers["Things"], sizes)])
+        program.release()
+    assert (found[0][0] != before).any()
+    (things, sizes_found), (stored, sizes_stored) = found
+    for one, other in ((things, stored), (sizes_found, sizes_stored)):
+        np.testing.assert_array_equal(one, other)
+    sizes.release()
+
+
+@pytest.mark.parametrize("change", ["size += 1.0", "offset.x = 3", "kind++"])
+def test_what_is_changed_in_other_ways_stays_a_block(context, shader, tmp_path, change):
+    (tmp_path / "change.comp").write_text(CHANGE.replace("offset.x = 3", change))
+    assert not expand("change.comp", {"COUNT": "8u"}, large=["Things"]).texel_buffers
 
 
 def library_with(context, shader):

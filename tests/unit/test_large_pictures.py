@@ -26,6 +26,7 @@ class Device:
 
     def __init__(self, limit):
         self.storage_block_limit = limit
+        self.array_limit = lambda texel_bytes: max(limit, min((texel_bytes or 0) << 27, LARGEST_BLOCK))
         self.information = dataclasses.make_dataclass("Information", ["name"])("Device")
 
 

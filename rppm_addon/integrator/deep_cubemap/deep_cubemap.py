@@ -28,14 +28,12 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.buffers import refuse_large_block
 from ...gl.constants import Constants
 from ...gl.context import TEXEL_SIZE, Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ...gl.texel_buffers import DEFINE as TEXEL_BUFFERS
-from ...gl.texel_buffers import texel_bytes
+from ...gl.texel_sources import DEFINE as TEXEL_BUFFERS
 from ...scene.errors import DeviceError
 from ..common import records  # noqa: F401  the kernels include Ray and Hit
 from ..common.known import known
@@ -143,8 +141,6 @@ _PICTURE_SIDE = 4096
 # Triangles to try both routes with.
 _TRIAL_LEAST, _TRIAL_MOST = 1000, 16384
 
-_LONG_LISTS = "job", "fragment", "entry", "binned_fragment"
-"""That may be longer than a storage block."""
 _MOST_STARTS = 1 << 26
 """Places of entries and bins that cells can name (shaders/deep_cubemap/cells.glsl)."""
 _READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
@@ -179,12 +175,12 @@ class DeepCubemap(BufferSet):
     _cells = StorageBuffer("deep cubemap cells", CELL)
     _bins = StorageBuffer("deep cubemap depth bins", "uint")
     _tiles = StorageBuffer("deep cubemap tiles", "uint")
-    _jobs = StorageBuffer("deep cubemap jobs", "uvec4", exceeds_blocks=True)
-    _fragments = StorageBuffer("deep cubemap fragments", FRAGMENT, exceeds_blocks=True)
-    _fragments_above = StorageBuffer("deep cubemap fragments of the level above", FRAGMENT, exceeds_blocks=True)
-    _entries = StorageBuffer("deep cubemap entries", "uvec2", exceeds_blocks=True)
+    _jobs = StorageBuffer("deep cubemap jobs", "uvec4", texel_bytes=16)
+    _fragments = StorageBuffer("deep cubemap fragments", FRAGMENT, texel_bytes=8)
+    _fragments_above = StorageBuffer("deep cubemap fragments of the level above", FRAGMENT, texel_bytes=8)
+    _entries = StorageBuffer("deep cubemap entries", "uvec2", texel_bytes=8)
     _binned_cells = StorageBuffer("deep cubemap binned cells", BINNED_CELL)
-    _binned_fragments = StorageBuffer("deep cubemap binned fragments", BINNED_FRAGMENT, exceeds_blocks=True)
+    _binned_fragments = StorageBuffer("deep cubemap binned fragments", BINNED_FRAGMENT, texel_bytes=4)
     _core = StorageBuffer("deep cubemap core list", "uint", 16)
 
     def __init__(
@@ -335,9 +331,8 @@ class DeepCubemap(BufferSet):
     def _grow(self, name: str, count: int) -> None:
         """Make room for ``count`` items of a list, with some to spare where the device allows it."""
         limit = self._context.storage_block_limit
-        if name != "tile" and (size := count * self._lists[name].item_size) > limit:
-            limit = self._limit(name)
-            refuse_large_block(self._context, self._lists[name].name, size, self.remedy, limit)
+        if name != "tile" and count * self._lists[name].item_size > limit:
+            limit = self._lists[name].limit
 
         def room(number: int, spacious: int) -> int:
             return -(-max(number, min(spacious, limit)) // TEXEL_SIZE) * TEXEL_SIZE
@@ -353,16 +348,11 @@ class DeepCubemap(BufferSet):
         if name == "fragment":
             self._old_fragments.require(buffer.size)
 
-    def _limit(self, name: str) -> int:
-        """Bytes of a list, whose items may be written as texels where a storage block is too short."""
-        texels = self._context.most_texels * texel_bytes(self._lists[name].item_size) if name in _LONG_LISTS else 0
-        return max(self._context.storage_block_limit, min(texels, self._context.array_limit))
-
     def _set_capacities(self, state: np.void) -> None:
         state["tile_capacity"] = min((self._cells.capacity - _MOST_ROOTS) // 16, self._tiles.capacity)
         for name, buffer in self._lists.items():
             state[f"{name}_capacity"] = buffer.capacity
-        state["fragment_limit"] = self._limit("fragment") // FRAGMENT.size
+        state["fragment_limit"] = self._fragments.limit // FRAGMENT.size
         state["fragment_capacity"] = min(int(state["fragment_capacity"]), self._old_fragments.capacity)
 
     def _check_lists(self, state: np.void, level: int) -> None:

@@ -43,7 +43,7 @@ class Emitters(BufferSet):
     are theirs of the light tree.
     """
 
-    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, exceeds_blocks=True)
+    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, texel_bytes=16)
     _rays = StorageBuffer("rays to emitters", RAY)
     _hits = StorageBuffer("places on emitters", HIT)
     _closures = StorageBuffer("closures of emitters", CLOSURE)

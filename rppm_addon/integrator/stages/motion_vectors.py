@@ -44,8 +44,8 @@ class MotionVectors(BufferSet):
 
     remedy = "switch off the pass Vector"
     _vectors = FilmBuffer("motion vectors", "vec4", _is_wanted)
-    _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, exceeds_blocks=True)
-    _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, exceeds_blocks=True)
+    _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, texel_bytes=16)
+    _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, texel_bytes=16)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)

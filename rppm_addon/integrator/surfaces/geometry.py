@@ -117,15 +117,15 @@ class Geometry(BufferSet):
     """
 
     remedy = "lower the subdivision, decimate meshes or remove instances"
-    triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, exceeds_blocks=True)
-    attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, exceeds_blocks=True)
+    triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, texel_bytes=16)
+    attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, texel_bytes=16)
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context = context
         self._gather = library.compute("geometry/gather.comp")
         self._inputs = {
-            name: self.own(GrowingBuffer(context, f"geometry {name}", self.remedy, exceeds_blocks=True))
+            name: self.own(GrowingBuffer(context, f"geometry {name}", self.remedy, texel_bytes=16))
             for name in ("Instances", "SlotMaterials", *_MESH_ARRAYS)
         }
         self._arrays: dict[str, list[np.ndarray]] = {}
