@@ -278,12 +278,12 @@ def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshe
 def test_lists_that_are_longer_than_a_block(context, library, meshes, monkeypatch, rasterize):
     """Make the same cells, written and read as texels."""
     rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=19))
-    with Scene(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
         expected, counts, finest = scene.trace(rays), scene.cubemap.counts, scene.cubemap.resolution
     limit = 1 << 17  # enough for cells and bins
     monkeypatch.setattr(deep_cubemap, "_expected", lambda triangle_count: {"tile": 200})
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
-    with Scene(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
+    with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
         assert scene.cubemap.counts == counts and scene.cubemap.resolution == finest
         long = {name for name, size in scene.cubemap.memory_bytes.items() if size > limit}
         lists = {"jobs", "fragments", "fragments of the level above", "entries", "binned fragments"}
