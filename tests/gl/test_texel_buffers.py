@@ -207,7 +207,7 @@ def test_items_and_members_of_what_is_read_as_well_are_stored(context, shader, b
         buffers["Things"].upload(before)
         source = expand("change.comp", {"COUNT": f"{COUNT}u"}, large=large)
         assert source.texel_buffers.keys() == set(large)
-        program = ComputeProgram(context, BinaryCache(context), source)
+        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
         with monkeypatch.context() as patch:
             patch.setattr(context, "large_buffers", 0)
             program.run(COUNT, {"Things": buffers["Things"].buffer, "Sizes": sizes.buffer})
