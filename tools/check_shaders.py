@@ -10,6 +10,7 @@ time.
 import re
 import subprocess
 import sys
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -19,6 +20,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 from support.shader_declarations import Variant, variants  # noqa: E402
 
 from rppm_addon.gl.sources import SHADER_FOLDER, ShaderError  # noqa: E402
+from rppm_addon.gl.texel_buffers import IMAGES_FOR_LARGE  # noqa: E402
 
 COLUMNS = 120
 FUNCTION_LINES = 60
@@ -55,12 +57,39 @@ def lengths() -> list[str]:
     return [*long_lines(), *functions]
 
 
-def check_shader(variant: Variant, reads_texels: bool) -> str:
-    """What glslangValidator has against a stage file; empty when nothing."""
+LARGE = {
+    *("Triangles", "Attributes", "TrianglesBefore", "TrianglesAfter", "AttributeValues", "ShadingInstances"),
+    *("Positions", "CornerVertices", "CornerNormals", "CornerUvs", "TriangleCorners", "TriangleSlots", "Instances"),
+    *("Materials", "MaterialData", "Images", "Texels", "EmissiveTriangles", "LightNodes"),
+    *("OverlapJobs", "NewFragments", "OldFragments", "BinnedFragments"),
+    *("Photons", "Closures", "SortedPhotons"),
+}
+"""Blocks whose buffers may be larger than a storage block (gl/buffers.py)."""
+BY_RANGES = {
+    ("geometry/gather.comp", "Triangles"),
+    ("geometry/gather.comp", "Attributes"),
+    ("lights/mark.comp", "Triangles"),
+}
+"""Which these programs are given a part of at a time."""
+
+
+def large_blocks(variant: Variant) -> list[str]:
+    """Those of a shader's blocks that may be large, as many as a program may have at once."""
     try:
-        source = variant.expand(reads_texels)
+        blocks = variant.expand().blocks
+    except ShaderError:
+        return []
+    return sorted(name for name in LARGE & blocks.keys() if (variant.name, name) not in BY_RANGES)[:IMAGES_FOR_LARGE]
+
+
+def check_shader(variant: Variant, reads_texels: bool, large: Sequence[str] = ()) -> str:
+    """What glslangValidator has against a stage file; empty when nothing. large: blocks that are to be texels."""
+    try:
+        source = variant.expand(reads_texels, large)
     except ShaderError as error:
         return str(error)
+    if stay := source.blocks.keys() & set(large):
+        return f"{variant.name}: {', '.join(sorted(stay))} cannot be larger than a storage block"
     try:
         run = subprocess.run(
             ["glslangValidator", "--stdin", "-S", Path(variant.name).suffix[1:]],
@@ -81,8 +110,9 @@ def check_shader(variant: Variant, reads_texels: bool) -> str:
 def check_shaders() -> tuple[list[str], int]:
     """Problems of all stage files, and how many variants were checked."""
     # Programs of compute shaders alone read texels.
-    checked = [(variant, False) for variant in variants()]
-    checked += [(variant, True) for variant, _ in checked if variant.name.endswith(".comp")]
+    checked: list[tuple[Variant, bool, Sequence[str]]] = [(variant, False, ()) for variant in variants()]
+    checked += [(variant, True, ()) for variant, *_ in checked if variant.name.endswith(".comp")]
+    checked += [(variant, False, large) for variant in variants() if (large := large_blocks(variant))]
     with ThreadPoolExecutor(2) as pool:
         results = list(pool.map(check_shader, *zip(*checked, strict=True)))
     return [*lengths(), *(result for result in results if result)], len(checked)

@@ -72,7 +72,7 @@ class StorageBuffer(Declared[GrowingBuffer]):
     """A buffer of ``count`` items behind a header: ``item`` and ``header`` are records, or kinds such as "vec4".
 
     Without a count its length follows from the scene, and whoever fills it requires it; where the count is 0 there is
-    none. remedy: the set's if none is given.
+    none. remedy: the set's if none is given. texel_bytes: that of GrowingBuffer.
     """
 
     def __init__(
@@ -82,13 +82,16 @@ class StorageBuffer(Declared[GrowingBuffer]):
         count: Count | int | None = None,
         header: Record | str | None = None,
         remedy: str | None = None,
+        texel_bytes: int | None = None,
     ) -> None:
         self._name, self._remedy, self._count = name, remedy, count
+        self._texel_bytes = texel_bytes
         self._item_size, self._header_size = stride(item), stride(header) if header else 0
 
     def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> GrowingBuffer:
         """Declared.make."""
-        buffer = GrowingBuffer(context, self._name, self._remedy or remedy, self._item_size, self._header_size)
+        sizes_of_items = self._item_size, self._header_size
+        buffer = GrowingBuffer(context, self._name, self._remedy or remedy, *sizes_of_items, self._texel_bytes)
         if count := self._count_for(sizes):
             buffer.require_items(count)
         return buffer
@@ -100,7 +103,8 @@ class StorageBuffer(Declared[GrowingBuffer]):
 
     def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
         """Declared.refuse_large."""
-        super().refuse_large(context, sizes, self._remedy or remedy)
+        for name, size in self.expected_bytes(sizes).items():
+            refuse_large_block(context, name, size, self._remedy or remedy, context.array_limit(self._texel_bytes))
 
     def _count_for(self, sizes: object) -> int:
         return self._count(sizes) if callable(self._count) else self._count or 0

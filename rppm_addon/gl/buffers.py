@@ -1,22 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Storage buffers that grow with need and are reported by name."""
 
+from dataclasses import dataclass
+
 import moderngl
 import numpy as np
 from numpy.typing import DTypeLike
 
 from ..scene.errors import DeviceError
-from .context import Context
+from .context import TEXEL_SIZE, Context
 from .texel_buffers import allocated_size, release_textures
 
+_RANGE_ITEMS = 256
+"""Of any size begin at bytes where every device lets a block begin."""
 SMALLEST = 64
 """Bytes that every buffer has at least."""
 REMEDY = "simplify the scene"
 
 
-def refuse_large_block(context: Context, name: str, size: int, remedy: str) -> None:
-    """Raise DeviceError, with the numbers and the remedy, for more bytes than the device allows in one buffer."""
-    limit = context.storage_block_limit
+def refuse_large_block(context: Context, name: str, size: int, remedy: str, limit: int | None = None) -> None:
+    """Raise DeviceError, with the numbers and the remedy, for more bytes than the device allows in one buffer.
+
+    limit: those, where these are not what a storage block may span.
+    """
+    limit = context.storage_block_limit if limit is None else limit
     if size > limit:
         raise DeviceError(
             f"{name} needs {size / 2**20:.0f} MiB but the device {context.information.name} "
@@ -24,21 +31,52 @@ def refuse_large_block(context: Context, name: str, size: int, remedy: str) -> N
         )
 
 
+@dataclass(frozen=True)
+class BufferRange:
+    """Some items of a buffer without a header, to be bound as a storage block in place of all."""
+
+    buffer: "GrowingBuffer"
+    first: int
+    count: int
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return self.buffer.item_size * self.count
+
+    def bind_to_storage_buffer(self, binding: int) -> None:
+        """As moderngl.Buffer's."""
+        whole = self.first == 0 and self.size == self.buffer.size
+        place = {} if whole else {"offset": self.buffer.item_size * self.first, "size": self.size}
+        self.buffer.buffer.bind_to_storage_buffer(binding, **place)
+
+
 class GrowingBuffer:
     """A named storage buffer that is kept between frames and made anew only to grow.
 
     item_size, header_size: bytes of one of its items, and of what lies before them.
+    texel_bytes: where given, it may be larger than the device allows a storage block to be. Then programs to which it
+    is an array read and write texels of so many bytes (texel_sources.py), unless they are given a BufferRange at a
+    time: 16 where they only read it, 4 where they write single words of its items.
     """
 
     def __init__(
-        self, context: Context, name: str, remedy: str = REMEDY, item_size: int = 1, header_size: int = 0
+        self,
+        context: Context,
+        name: str,
+        remedy: str = REMEDY,
+        item_size: int = 1,
+        header_size: int = 0,
+        texel_bytes: int | None = None,
     ) -> None:
         self.name = name
         self.remedy = remedy
         self.item_size, self._header_size = item_size, header_size
+        self._texel_bytes = texel_bytes
         self._context = context
         self._buffer: moderngl.Buffer | None = None
         self._size = 0
+        self._is_large = False
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -51,6 +89,18 @@ class GrowingBuffer:
     def size(self) -> int:
         """Bytes; 0 while nothing was required."""
         return self._size
+
+    def ranges(self, count: int) -> list["BufferRange"]:
+        """Of the first ``count`` items, parts that a storage block holds and that begin where one may."""
+        most = self._context.storage_block_limit // self.item_size
+        if count > most:
+            most -= most % _RANGE_ITEMS
+        return [BufferRange(self, first, min(most, count - first)) for first in range(0, count, most)]
+
+    @property
+    def limit(self) -> int:
+        """The most bytes that it may have."""
+        return self._context.array_limit(self._texel_bytes)
 
     @property
     def capacity(self) -> int:
@@ -68,7 +118,7 @@ class GrowingBuffer:
         """
         if size <= self.size:
             return False
-        refuse_large_block(self._context, self.name, size, self.remedy)
+        refuse_large_block(self._context, self.name, size, self.remedy, self.limit)
         available = self._context.available_memory
         if available is not None and size > available + self.size:
             raise DeviceError(
@@ -76,9 +126,13 @@ class GrowingBuffer:
                 f"has {available / 2**20:.0f} MiB left; {self.remedy}"
             )
         self.release()
+        # What lies in a part of a texel could not be read.
+        least = -(-size // TEXEL_SIZE) * TEXEL_SIZE if self._texel_bytes else size
         try:
-            self._buffer = self._context.moderngl.buffer(reserve=allocated_size(max(size, SMALLEST)))
+            self._buffer = self._context.moderngl.buffer(reserve=allocated_size(max(least, SMALLEST)))
             self._size = max(size, SMALLEST)
+            self._is_large = size > self._context.whole_limit
+            self._context.large_buffers += self._is_large
         except moderngl.Error as error:
             raise DeviceError(
                 f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}"
@@ -111,3 +165,5 @@ class GrowingBuffer:
             release_textures(self._context, self._buffer)
             self._buffer.release()
             self._buffer, self._size = None, 0
+            self._context.large_buffers -= self._is_large
+            self._is_large = False

@@ -26,13 +26,19 @@ log = logging.getLogger(__name__)
 REQUIRED_VERSION = 430
 _LIMITS = (
     "GL_MAX_SHADER_STORAGE_BLOCK_SIZE",
+    "GL_MAX_TEXTURE_BUFFER_SIZE",
     *NEEDS,
     "GL_MAX_COMPUTE_WORK_GROUP_COUNT",
     "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS",
     "GL_MAX_TEXTURE_SIZE",
     "GL_MAX_VIEWPORT_DIMS",
 )
-_NUM_PROGRAM_BINARY_FORMATS = 0x87FE
+_NUM_PROGRAM_BINARY_FORMATS, _MAX_TEXTURE_BUFFER_SIZE, _MAX_VERTEX_IMAGE_UNIFORMS = 0x87FE, 0x8C2B, 0x90CA
+TEXEL_SIZE = 16
+"""Bytes of a texel, at most."""
+_LEAST_TEXEL_SIZE = 4
+LARGEST_BUFFER = (1 << 32) - TEXEL_SIZE
+"""Bytes that shaders and drivers count in 32 bits."""
 _AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87FC}
 _DEDICATED_KIBIBYTES = 0x9047
 """Of GL_NVX_gpu_memory_info."""
@@ -81,6 +87,8 @@ class Context:
         self.moderngl = gl
         self.information = information
         self.limits = information.limits
+        self.large_buffers = 0
+        """Buffers of now that are larger than a storage block may be, or texel buffers of one word each."""
 
     @classmethod
     def create(cls, device: str | None = None) -> "Context":
@@ -179,7 +187,26 @@ class Context:
     @property
     def storage_block_limit(self) -> int:
         """Bytes that one storage block may span."""
-        return int(str(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"]))
+        return min(int(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"]), LARGEST_BUFFER)
+
+    @functools.cached_property
+    def most_texels(self) -> int:
+        """That one texel buffer may span."""
+        return self.integers(_MAX_TEXTURE_BUFFER_SIZE)[0]
+
+    @property
+    def whole_limit(self) -> int:
+        """Bytes that a buffer may have for every program to take all of it at once."""
+        return min(self.storage_block_limit, _LEAST_TEXEL_SIZE * self.most_texels)
+
+    @functools.cached_property
+    def vertex_images(self) -> int:
+        """That a vertex shader may read."""
+        return self.integers(_MAX_VERTEX_IMAGE_UNIFORMS)[0]
+
+    def array_limit(self, texel_bytes: int | None) -> int:
+        """Bytes of an array that is texels of so many bytes where it is larger than a storage block; None: never."""
+        return max(self.storage_block_limit, min((texel_bytes or 0) * self.most_texels, LARGEST_BUFFER))
 
     def function(self, name: str, result: Any, *arguments: Any) -> Any:
         """A GL function that moderngl does not wrap, as a ctypes function; None if the driver lacks it."""

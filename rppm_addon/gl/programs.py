@@ -13,14 +13,16 @@ from typing import Any
 
 import moderngl
 
+from ..scene.errors import DeviceError
 from .background_compiler import BackgroundCompiler, CompilerContext, EmptyDispatch, is_of_use
 from .binary_cache import BinaryCache
+from .buffers import BufferRange
 from .constants import Constants
 from .context import Context
 from .linking import Linker
 from .pacing import Pace, Pacing
 from .sources import ShaderError, Source, expand
-from .texel_buffers import TexelBuffers
+from .texel_buffers import IMAGES_FOR_LARGE, MOST_ADDED, TexelBuffers
 
 log = logging.getLogger(__name__)
 
@@ -35,6 +37,8 @@ _QUAD = 6
 """Vertices of two triangles: draws are cut between them."""
 FIRST_INVOCATION = "first_invocation"
 """The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
+Block = moderngl.Buffer | BufferRange
+"""What is bound as a storage block."""
 Constants("Dispatch", GROUP_SIZE=GROUP_SIZE, GROUPS_PER_ROW=GROUPS_PER_ROW)
 
 
@@ -56,7 +60,10 @@ class _Program:
                 if self._bindings.setdefault(block, binding) != binding:
                     raise ShaderError(f"{self.name}: block {block} has two bindings")
             self.record = self.record or source.parameters
+        self.with_large: Callable[[frozenset[str]], Any] | None = None
+        """The program that reads the blocks of these names as texels, as far as it can."""
         texel_buffers = {name: buffer for source in sources for name, buffer in source.texel_buffers.items()}
+        self._texel_bytes = {name: buffer.texel_bytes for name, buffer in texel_buffers.items()}
         self._texel_buffers = TexelBuffers(context, texel_buffers) if texel_buffers else None
         if len(set(self._bindings.values())) != len(self._bindings):
             raise ShaderError(f"{self.name}: two blocks share a binding: {self._bindings}")
@@ -64,7 +71,31 @@ class _Program:
         """Names of those that it reads and writes."""
         self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
 
-    def _bind(self, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None) -> None:
+    def _for_large(self, buffers: Mapping[str, Block]) -> Any:
+        """The program that is to be run in place of this one, as blocks are too large for it; None if none is.
+
+        Raises DeviceError where there is none.
+        """
+        large = self.too_large(buffers) if self.context.large_buffers else frozenset()
+        if not large:
+            return None
+        other = self.with_large(large) if self.with_large is not None and len(large) <= IMAGES_FOR_LARGE else None
+        if other is None or other.too_large(buffers):
+            raise DeviceError(
+                f"{self.name} takes more of {', '.join(sorted(large))} at once than the device "
+                f"{self.context.information.name} allows; simplify the scene, or choose another device"
+            )
+        return other
+
+    def too_large(self, buffers: Mapping[str, Block]) -> frozenset[str]:
+        """Names of blocks whose buffers are larger than the device allows where the program has them."""
+        block, texels = self.context.storage_block_limit, self.context.most_texels
+        most = dict.fromkeys(self._bindings, block) | {name: texels * size for name, size in self._texel_bytes.items()}
+        return frozenset(
+            name for name, limit in most.items() if name in buffers and buffers[name].size > limit + MOST_ADDED
+        )
+
+    def _bind(self, buffers: Mapping[str, Block], parameters: Mapping | None) -> None:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
@@ -101,9 +132,12 @@ class ComputeProgram(_Program):
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         self.before_dispatch = maker.begin(self._program.glo, source, links_later)
 
-    def run(self, threads: int, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None = None) -> None:
+    def run(self, threads: int, buffers: Mapping[str, Block], parameters: Mapping | None = None) -> None:
         """Run so many threads (rounded up to whole groups) and order their writes."""
         if threads <= 0:
+            return
+        if (other := self._for_large(buffers)) is not None:
+            other.run(threads, buffers, parameters)
             return
         groups = -(-threads // self.local_size)
         rows = -(-groups // GROUPS_PER_ROW)
@@ -114,10 +148,13 @@ class ComputeProgram(_Program):
         self,
         arguments: moderngl.Buffer,
         offset: int,
-        buffers: Mapping[str, moderngl.Buffer],
+        buffers: Mapping[str, Block],
         parameters: Mapping | None = None,
     ) -> None:
         """Run as many groups as three uints at byte ``offset`` of ``arguments`` say."""
+        if (other := self._for_large(buffers)) is not None:
+            other.run_indirect(arguments, offset, buffers, parameters)
+            return
 
         def groups() -> int:
             return math.prod(struct.unpack("=3I", arguments.read(12, offset=offset)))
@@ -163,7 +200,7 @@ class DrawProgram(_Program):
         self,
         framebuffer: moderngl.Framebuffer,
         vertices: int | moderngl.Buffer,
-        buffers: Mapping[str, moderngl.Buffer],
+        buffers: Mapping[str, Block],
         parameters: Mapping | None = None,
         viewport: tuple[int, int, int, int] | None = None,
         state: int = moderngl.NOTHING,
@@ -173,6 +210,9 @@ class DrawProgram(_Program):
 
         ``vertices`` is their count, or a buffer of one indirect draw command (four uints) of whole quads.
         """
+        if (other := self._for_large(buffers)) is not None:
+            other.draw(framebuffer, vertices, buffers, parameters, viewport, state, depth_function)
+            return
         self._bind(buffers, parameters)
         gl = self.context.moderngl
         framebuffer.use()
@@ -294,8 +334,7 @@ class ProgramLibrary:
         Raises ShaderError with file and line; CompileError where it is the driver that refuses, without
         ``inserts`` maybe not before the program is first run.
         """
-        key = (path, *(tuple(sorted((given or {}).items())) for given in (defines, inserts)))
-        return self._get(key, lambda: self._compute(path, dict(defines or {}), dict(inserts or {})))
+        return self._compute(path, dict(defines or {}), dict(inserts or {}))
 
     def has_stand_in(self, path: str, inserts: Mapping[str, str]) -> bool:
         """Whether a compute program that something can stand in for is still to be compiled, and is, in the background.
@@ -338,8 +377,7 @@ class ProgramLibrary:
 
     def draw(self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None) -> DrawProgram:
         """The program of a .vert and a .frag file. Raises ShaderError with file and line."""
-        key = (vertex, fragment, tuple(sorted((defines or {}).items())))
-        return self._get(key, lambda: self._draw(vertex, fragment, dict(defines or {})))
+        return self._draw(vertex, fragment, dict(defines or {}))
 
     def _get(self, key: tuple, make: Callable[[], Any]) -> Any:
         if key not in self._programs:
@@ -355,12 +393,30 @@ class ProgramLibrary:
         if self.on_start is not None:
             self.on_start(name)
 
-    def _compute(self, path: str, defines: dict, inserts: dict) -> ComputeProgram:
-        source = expand(path, defines, inserts, self._reads_texels)
-        return ComputeProgram(self.context, self._maker, source, links_later=not inserts)
+    def _compute(self, path: str, defines: dict, inserts: dict, large: frozenset[str] = frozenset()) -> ComputeProgram:
+        def make() -> ComputeProgram:
+            source = expand(path, defines, inserts, self._reads_texels, large)
+            program = ComputeProgram(self.context, self._maker, source, links_later=not inserts)
+            if not large:
+                program.with_large = functools.partial(self._compute, path, defines, inserts)
+            return program
 
-    def _draw(self, vertex: str, fragment: str, defines: dict) -> DrawProgram:
-        return DrawProgram(self.context, self._maker, expand(vertex, defines), expand(fragment, defines))
+        return self._get((path, *(tuple(sorted(given.items())) for given in (defines, inserts)), *sorted(large)), make)
+
+    def _draw(self, vertex: str, fragment: str, defines: dict, large: frozenset[str] = frozenset()) -> DrawProgram:
+        def make() -> DrawProgram:
+            if len(large) > self.context.vertex_images:
+                raise DeviceError(
+                    f"{vertex} takes more of {', '.join(sorted(large))} at once than the device "
+                    f"{self.context.information.name} allows; simplify the scene, or choose another device"
+                )
+            vertex_source, fragment_source = (expand(path, defines, large=large) for path in (vertex, fragment))
+            program = DrawProgram(self.context, self._maker, vertex_source, fragment_source)
+            if not large:
+                program.with_large = functools.partial(self._draw, vertex, fragment, defines)
+            return program
+
+        return self._get((vertex, fragment, tuple(sorted(defines.items())), *sorted(large)), make)
 
     def release(self) -> None:
         """Free what it has on the device."""

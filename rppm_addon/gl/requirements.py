@@ -2,8 +2,8 @@
 """What programs need of a device beyond what OpenGL 4.3 promises, by OpenGL's names of the limits.
 
 The numbers follow from the shaders' declarations; a test computes them anew. Of all else they need less than every
-device has: work groups of 1024 invocations, 16 texture units, textures of 16384 texels a side, and no images, which
-software drivers alone are given (texel_buffers.py).
+device has: work groups of 1024 invocations, 16 texture units, textures of 16384 texels a side, and 8 images, for
+arrays that are larger than a storage block (texel_buffers.py). Software drivers alone are given more.
 """
 
 from collections.abc import Mapping

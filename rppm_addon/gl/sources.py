@@ -3,13 +3,15 @@
 
 import functools
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from .constants import Constants
 from .records import Record
 from .storage_blocks import StorageBlock
-from .texel_buffers import DEFINE, TexelBuffer, declared_texel_buffers, read_as_texels
+from .texel_buffers import TexelBuffer
+from .texel_sources import DEFINE, declared_texel_buffers, read_as_texels
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
@@ -81,13 +83,15 @@ def expand(
     defines: dict[str, object] | None = None,
     inserts: dict[str, str] | None = None,
     reads_texels: bool = False,
+    large: Collection[str] = (),
 ) -> Source:
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include <Ray>`` inserts the struct of the
     record, or the constants, of that name once; ``layout(std430, binding = 0) buffer Rays;`` gets the members of the
     StorageBlock of that name, and before it the structs of its records. Defines go after #version; ``inserts`` are
-    texts of files that are made at run time, by name. reads_texels: blocks that are only read become texel buffers.
+    texts of files that are made at run time, by name. reads_texels: blocks that are only read become texel buffers;
+    large: those of these names in any case (read_as_texels).
     Raises ShaderError.
     """
     files: list[str] = []
@@ -135,7 +139,7 @@ def expand(
                 lines.append(declare(wanted))
 
     read(path, path)
-    return _source("\n".join(lines) + "\n", files, DEFINE in (defines or {}), reads_texels)
+    return _source("\n".join(lines) + "\n", files, DEFINE in (defines or {}), reads_texels, large)
 
 
 @functools.lru_cache(maxsize=512)
@@ -158,8 +162,10 @@ def _parts(text: str) -> list[tuple[int, str, re.Match | None]]:
     return parts
 
 
-def _source(text: str, files: list[str], declares_texel_buffers: bool, reads_texels: bool) -> Source:
+def _source(
+    text: str, files: list[str], declares_texel_buffers: bool, reads_texels: bool, large: Collection[str]
+) -> Source:
     texel_buffers = declared_texel_buffers(text) if declares_texel_buffers else {}
-    if reads_texels:
-        text, texel_buffers = read_as_texels(text, texel_buffers)
+    if reads_texels or large:
+        text, texel_buffers = read_as_texels(text, texel_buffers, large, reads_texels)
     return Source(text, files, texel_buffers)

@@ -4,46 +4,28 @@
 llvmpipe fetches the texels of all threads at once, but the words of storage blocks thread by thread, each behind a
 branch of its own: of 40 loads it takes 2 s to make code, and more with the square of their number; of 40 fetches
 0.1 s. The bits are the same.
+
+And on any driver arrays that are larger than it allows a storage block to be, 128 MiB on some: of texels of 16 bytes
+these have 2 GiB.
 """
 
 import ctypes
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import moderngl
 
-from .context import Context
-from .records import KINDS, Record, stride
+from .context import TEXEL_SIZE, Context
 
-DEFINE = "TEXEL_BUFFERS"
-"""Shaders that are given it declare texel buffers in place of storage blocks of the same names."""
-TEXEL_SIZE = 16
-"""Bytes of a texel, at most."""
-MOST_IMAGES = 16
-"""Images of a compute shader that llvmpipe has had at all times."""
-_TEXTURE_BUFFER, _MAX_TEXTURE_BUFFER_SIZE, _READ_ONLY = 0x8C2A, 0x8C2B, 0x88B8
-_FORMATS = {"r32ui": 0x8236, "rg32ui": 0x823C, "rgba32ui": 0x8D70, "rgba32f": 0x8814}
+IMAGES_FOR_LARGE = 8
+"""That every device has: the most arrays of a program that are larger than a storage block."""
+MOST_ADDED = TEXEL_SIZE + 256
+"""Bytes that allocated_size adds, at most."""
+_TEXTURE_BUFFER, _READ_ONLY, WRITE_ONLY = 0x8C2A, 0x88B8, 0x88B9
+FORMATS = {"r32ui": 0x8236, "rg32ui": 0x823C, "rgba32ui": 0x8D70, "rgba32f": 0x8814}
 """By their names in shaders."""
-_FORMAT_BY_WORDS = {1: "r32ui", 2: "rg32ui", 4: "rgba32ui"}
-
-_IMAGE = re.compile(
-    r"layout\s*\(\s*(\w+)\s*,\s*binding\s*=\s*(\d+)\s*\)\s*restrict\s+readonly\s+uniform\s+u?imageBuffer\s+(\w+)"
-)
-_READ_ARRAY = re.compile(
-    r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*\d+\s*\)\s*(?:restrict\s+)?readonly\s+buffer\s+(?P<block>\w+)\s*"
-    r"\{\s*(?P<item>\w+)\s+(?P<array>\w+)\s*\[\s*\]\s*;\s*\}\s*;"
-)
-"""A block that is an array and nothing else, and is only read."""
-_BRACKET = re.compile(r"//.*|[\[\]]")
-"""And comments, whose brackets are none."""
-_WORD_BEFORE = re.compile(r"\b\w+$")
-_LONGEST_NAME = 64
-
-
-def most_texels(context: Context) -> int:
-    """Texels that one texel buffer may span."""
-    return context.integers(_MAX_TEXTURE_BUFFER_SIZE)[0]
+_BYTES = {0x8236: 4, 0x823C: 8, 0x8D70: 16, 0x8814: 16}
+"""Of a texel, by format."""
 
 
 def allocated_size(size: int) -> int:
@@ -60,92 +42,17 @@ def allocated_size(size: int) -> int:
 
 @dataclass(frozen=True)
 class TexelBuffer:
-    """Image unit and GL's format."""
+    """Image unit, GL's format, and access; and the unit through which single words are written, if they are."""
 
     unit: int
     format: int
+    access: int = _READ_ONLY
+    words_unit: int | None = None
 
-
-def declared_texel_buffers(text: str) -> dict[str, TexelBuffer]:
-    """Those that a shader with DEFINE declares, by the names of the blocks that they stand for."""
-    return {name: TexelBuffer(int(unit), _FORMATS[kind]) for kind, unit, name in _IMAGE.findall(text)}
-
-
-def read_as_texels(text: str, declared: Mapping[str, TexelBuffer]) -> tuple[str, dict[str, TexelBuffer]]:
-    """A shader's text with texel buffers in place of the storage blocks that it only reads, as far as these are arrays
-    and there are units, and all of its texel buffers. Those that it has ``declared`` stay.
-
-    ``lights[i]`` becomes ``fetched_lights(i)``, which puts an item together from its texels. They are images and not
-    textures: for these llvmpipe has code by the samplers that other programs have left behind as well.
-    """
-    found = dict(declared)
-    taken = {buffer.unit for buffer in declared.values()}
-    units = [unit for unit in range(MOST_IMAGES) if unit not in taken]
-    arrays: set[str] = set()
-
-    def declare(match: re.Match) -> str:
-        block, item, array = match["block"], match["item"], match["array"]
-        if not units or block in found or not (item in Record.registry or item in KINDS):
-            return match[0]
-        if re.search(rf"\b{array}\s*\.\s*length\b", text):  # which texel buffers do not tell
-            return match[0]
-        unit, words = units.pop(0), _words_of_a_texel(item)
-        kind = _FORMAT_BY_WORDS[words]
-        found[block] = TexelBuffer(unit, _FORMATS[kind])
-        arrays.add(array)
-        declaration = f"layout({kind}, binding = {unit}) restrict readonly uniform uimageBuffer {block};"
-        return f"{declaration} {_fetch_function(block, item, array, words)}"
-
-    text = _READ_ARRAY.sub(declare, text)
-    return _with_calls(text, arrays), found
-
-
-def _words_of_a_texel(item: str) -> int:
-    size = stride(Record.registry.get(item, item))
-    return next(words for words in (4, 2, 1) if size % (4 * words) == 0)
-
-
-def _fetch_function(block: str, item: str, array: str, words: int) -> str:
-    """GLSL that gives an item by its number, on one line so that line numbers stay those of the file."""
-    record = Record.registry.get(item)
-    members = [(member.kind, member.offset // 4) for member in record.members] if record else [(item, 0)]
-    texels = stride(record or item) // (4 * words)
-    fetches = " ".join(f"uvec4 t{k} = imageLoad({block}, first + {k});" for k in range(texels))
-    values = ", ".join(_value(kind, first, words) for kind, first in members)
-    made = f"{item}({values})" if record else values
-    return f"{item} fetched_{array}(uint item) {{ int first = int(item) * {texels}; {fetches} return {made}; }}"
-
-
-def _value(kind: str, first: int, words: int) -> str:
-    """GLSL for a member from its first word on."""
-    if kind == "mat4":
-        return f"mat4({', '.join(_value('vec4', first + 4 * k, words) for k in range(4))})"
-    element, _, _, size = KINDS[kind]
-    count = size // 4
-    parts = [f"t{word // words}.{'xyzw'[word % words]}" for word in range(first, first + count)]
-    bits = parts[0] if count == 1 else f"uvec{count}({', '.join(parts)})"
-    if element == "<f4":
-        return f"uintBitsToFloat({bits})"
-    return f"{kind}({bits})"
-
-
-def _with_calls(text: str, arrays: set[str]) -> str:
-    """The text with a call wherever an item of an array is read, in indices of others as well."""
-    pieces: list[str] = []
-    begin, closing = 0, []
-    for match in _BRACKET.finditer(text):
-        replaced, at = "", match.start()
-        if match[0] == "[":
-            word = _WORD_BEFORE.search(text, max(begin, at - _LONGEST_NAME), at)
-            if word and word[0] in arrays:
-                at, replaced = word.start(), f"fetched_{word[0]}(uint("
-            closing.append("))" if replaced else "")
-        elif match[0] == "]":
-            replaced = closing.pop()
-        if replaced:
-            pieces += [text[begin:at], replaced]
-            begin = match.end()
-    return "".join([*pieces, text[begin:]])
+    @property
+    def texel_bytes(self) -> int:
+        """Of the smallest texels."""
+        return _BYTES[self.format] if self.words_unit is None else _BYTES[FORMATS["r32ui"]]
 
 
 class TexelBuffers:
@@ -165,7 +72,11 @@ class TexelBuffers:
         """Have each buffer at its unit."""
         for name, buffer in self._buffers.items():
             texture = self._texture(contents[name], buffer.format)
-            self._bind_image(buffer.unit, texture, 0, 0, 0, _READ_ONLY, buffer.format)
+            self._bind_image(buffer.unit, texture, 0, 0, 0, buffer.access, buffer.format)
+            if buffer.words_unit is not None:
+                words = FORMATS["r32ui"]
+                texture = self._texture(contents[name], words)
+                self._bind_image(buffer.words_unit, texture, 0, 0, 0, WRITE_ONLY, words)
 
     def _texture(self, contents: moderngl.Buffer, number: int) -> int:
         """A buffer's texture of a format, made when it is first asked for."""

@@ -31,13 +31,14 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.resolve(context, iteration, segment)
             yield
             stages.shadow_catcher.cast(context, importons, band, iteration, segment)
-            stages.direct_light.add(context, importons, stages.direct_light_blocks, band, iteration, segment, radii)
+            blocks = stages.direct_light_blocks(band)
+            stages.direct_light.add(context, importons, blocks, band, iteration, segment, radii)
             yield
             film.add_passes(context, camera_hits.camera.buffer, importons, band, iteration, segment)
             film.add_caught_shadows(context, importons, stages.shadow_catcher, band, iteration, segment)
             light.add_direct_light(context, importons, stages.direct_light, film, band, iteration, segment)
             groups.add_direct_light(context, importons, stages.direct_light, iteration)
-            importons.scatter(context, stages.scatter_blocks, band, iteration, segment, radii)
+            importons.scatter(context, stages.scatter_blocks(band), band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
             groups.add_seen_light(context, importons, iteration)
             raster = camera_hits.raster(band) if segment == 0 else None

@@ -61,7 +61,7 @@ def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: 
         radiance=film.read_radiance(),
         passes=film.read_passes(),
         pass_counts=film.read_pass_counts(),
-        radius_factors=stages.caustic_radii.read().reshape(film.height, film.width),
+        radius_factors=stages.caustic_radii.read(),
         tallies=lights.guide.read_tallies(),
         learned=lights.guide.learned,
         half=stages.noise_estimate.read(),

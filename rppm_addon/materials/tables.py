@@ -61,7 +61,9 @@ class MaterialTables(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         names = ("Materials", "MaterialData", "Images", "Texels", "AlbedoTables")
-        self._buffers = {name: self.own(GrowingBuffer(context, f"material {name}", self.remedy)) for name in names}
+        self._buffers = {
+            name: self.own(GrowingBuffer(context, f"material {name}", self.remedy, texel_bytes=16)) for name in names
+        }
         self._buffers["AlbedoTables"].upload(albedo_tables.load())
         self.default_material = 0
         self.programs: list[str] = []

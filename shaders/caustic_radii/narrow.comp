@@ -14,9 +14,8 @@ layout(std430, binding = 1) buffer RadiusFactors;
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    uint pixel = parameters.first_pixel + index;
-    float factor = parameters.iteration == 1u ? parameters.most_factor : radius_factors[pixel];
+    float factor = parameters.iteration == 1u ? parameters.most_factor : radius_factors[index];
     float taken = float(photon_counts[caustic_place(index)]);
     if (taken > parameters.expected) factor = max(factor * sqrt(parameters.expected / taken), 1.0);
-    radius_factors[pixel] = factor;
+    radius_factors[index] = factor;
 }

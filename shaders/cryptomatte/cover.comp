@@ -47,7 +47,7 @@ void cover(uint identifier, float share) {
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
-    first = parameters.pair_count * (parameters.first_pixel + index);
+    first = parameters.pair_count * index;
     bool any_catchers = parameters.any_catchers != 0u;
     if (parameters.segment == 0u) {
         begin_iteration();

@@ -3,25 +3,6 @@
 // 16-bit fractions of the cell's range, rounded outwards. The marks describe a triangle that is in the
 // depth bin before or behind too: a walk over several bins tests it only once.
 
-#ifdef DEEP_CUBEMAP_BUILD
-#define CELL_ENTRIES_ACCESS writeonly
-#else
-#define CELL_ENTRIES_ACCESS restrict readonly
-#endif
-
-#ifdef TEXEL_BUFFERS
-layout(rgba32ui, binding = 1) restrict readonly uniform uimageBuffer CellEntries;
-uvec2 cell_entry(uint place) {
-    uvec4 two = imageLoad(CellEntries, int(place >> 1u));
-    return (place & 1u) == 0u ? two.xy : two.zw;
-}
-#else
-layout(std430, binding = 12) CELL_ENTRIES_ACCESS buffer CellEntries { uvec2 cell_entries[]; };
-#ifndef DEEP_CUBEMAP_BUILD
-uvec2 cell_entry(uint place) { return cell_entries[place]; }
-#endif
-#endif
-
 const uint ENTRY_IN_BIN_BEFORE = 0x80000000u;
 const uint ENTRY_IN_BIN_BEHIND = 0x40000000u;
 const uint ENTRY_TRIANGLE = 0x3fffffffu;

@@ -12,7 +12,8 @@ layout(std140, binding = 0) uniform Parameters { DivideLevel parameters; };
 #include "deep_cubemap/tiles.glsl"
 #include "deep_cubemap/binned_cells.glsl"
 #include "deep_cubemap/entries.glsl"
-#include "deep_cubemap/jobs.glsl"
+layout(std430, binding = 12) restrict writeonly buffer CellEntries;
+#include "deep_cubemap/add_job.glsl"
 #include "deep_cubemap/fragments.glsl"
 
 layout(std430, binding = 4) restrict readonly buffer OldFragments { OverlapFragment old_fragments[]; };

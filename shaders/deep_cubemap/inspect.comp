@@ -21,11 +21,11 @@ uint listed_at(vec3 point) {
     ivec2 finest = ivec2(clamp((seen.xy / max(seen.z, 1e-30) * 0.5 + 0.5) * resolution, 0.0, resolution - 1.0));
     uint index = dense_cell_index(face, finest >> (2 * levels), 0, 1 << root_exponent);
     for (int level = 1; level <= levels; ++level) {
-        uint content = cubemap_cells[index].content;
+        uint content = cubemap_cell(index).content;
         if (content_kind(content) != CELL_TILE) break;
         index = content_tile(content) + tile_offset(finest >> (2 * (levels - level)));
     }
-    CubemapCell cell = cubemap_cells[index];
+    CubemapCell cell = cubemap_cell(index);
     uint start = content_start(cell.content);
     return content_kind(cell.content) == CELL_BINS
         ? bin_ends[start + uint(bins_total(cell))] - bin_ends[start] : content_count(cell.content);

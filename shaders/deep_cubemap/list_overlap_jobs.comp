@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/core.glsl"
 #include "deep_cubemap/cells.glsl"
-#include "deep_cubemap/jobs.glsl"
+#include "deep_cubemap/add_job.glsl"
 #include "deep_cubemap/faces.glsl"
 #include "deep_cubemap/face_bounds.glsl"
 

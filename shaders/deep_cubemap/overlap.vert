@@ -8,6 +8,7 @@
 layout(std140, binding = 0) uniform Parameters { OverlapDraw parameters; };
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/jobs.glsl"
+layout(std430, binding = 2) restrict readonly buffer OverlapJobs;
 #include "common/quad_corners.glsl"
 
 flat out uint job_number;

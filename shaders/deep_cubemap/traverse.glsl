@@ -17,7 +17,7 @@
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/bins.glsl"
-#include "deep_cubemap/entries.glsl"
+#include "deep_cubemap/cell_entry.glsl"
 #include "deep_cubemap/core.glsl"
 #include "deep_cubemap/faces.glsl"
 

@@ -149,7 +149,7 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
 float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 direction, bool gathered) {
     if (!(parameters.direct_world_flux > 0.0)) return 1.0;
     float least = vertex_radius(path, -wo, closure);
-    float most = caustic_radius_of(parameters.first_pixel + index, least, gathered);
+    float most = caustic_radius_of(index, least, gathered);
     return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction),
                                      disk_radius(gathered ? most : least, most));
 }

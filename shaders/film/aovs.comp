@@ -13,7 +13,6 @@ layout(std430, binding = 1) buffer FilmAovs { float film_aovs[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    uint place = parameters.first_value + index;
-    float mean = parameters.iteration == 1u ? 0.0 : film_aovs[place];
-    film_aovs[place] = mean + (aov_values[index] - mean) / float(parameters.iteration);
+    float mean = parameters.iteration == 1u ? 0.0 : film_aovs[index];
+    film_aovs[index] = mean + (aov_values[index] - mean) / float(parameters.iteration);
 }

@@ -55,7 +55,7 @@ void write_pass(uint which, vec3 value) { write_pass(which, vec4(value, 0.0)); }
 // Make room for an iteration's path.
 void begin_iteration() {
     bool first = parameters.iteration == 1u;
-    if (first) pass_counts[parameters.first_pixel + index] = uvec2(0u);
+    if (first) pass_counts[index] = uvec2(0u);
     float kept = float(parameters.iteration - 1u) / float(parameters.iteration);
     for (uint which = 0u; which < PASS_COUNT; which++) {
         bool is_sum = PASS_ACCUMULATION[which] == ACCUMULATION_SUM;
@@ -89,9 +89,8 @@ vec3 uv_at(Hit at) {
 }
 
 void write_first_surface(Closure closure) {
-    uint pixel = parameters.first_pixel + index;
-    counts = pass_counts[pixel] + uvec2(1u, hit ? 1u : 0u);
-    pass_counts[pixel] = counts;
+    counts = pass_counts[index] + uvec2(1u, hit ? 1u : 0u);
+    pass_counts[index] = counts;
     uint triangle = hit ? closure.triangle : 0u;
     write_pass(PASS_DEPTH, view_depth(closure.position));
     write_pass(PASS_MIST, mist_at(closure.position));

@@ -43,8 +43,8 @@ bool reasonable(vec3 p) {
 }
 
 void main() {
-    uint triangle = invocation_index();
-    if (triangle >= parameters.triangle_count) return;
+    uint index = invocation_index(), triangle = parameters.first_triangle + index;
+    if (index >= parameters.triangle_count) return;
     uint number = instance_of(triangle);
     InstanceEntry instance = instances[number];
     uint local = instance.mesh_triangle + triangle - instance.first_triangle;
@@ -80,10 +80,10 @@ void main() {
     // and whether it casts no shadow (common/light_sets.glsl); its chance among the emitters, and its traits as one
     // (lights/mark.comp).
     for (uint k = 0u; k < 3u; ++k)
-        triangle_vertices[3u * triangle + k] =
+        triangle_vertices[3u * index + k] =
             vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? instance.set_code : 0.0);
     uint slot = min(triangle_slots[local], instance.slot_count - 1u);
-    attributes[triangle] = TriangleAttributes(normals[0], normals[1], normals[2],
+    attributes[index] = TriangleAttributes(normals[0], normals[1], normals[2],
                                               slot_materials[instance.first_slot + slot],
                                               uvs[0], uvs[1], uvs[2], number, 0u);
 }

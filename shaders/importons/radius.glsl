@@ -21,8 +21,8 @@ float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {
     return parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
 }
 
-// Of photons that only specular surfaces have scattered, if any; pixel: in the film.
-float caustic_radius_of(uint pixel, float radius, bool gathered) {
-    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor : radius_factors[pixel];
+// Of photons that only specular surfaces have scattered, if any; index: in the band.
+float caustic_radius_of(uint index, float radius, bool gathered) {
+    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor : radius_factors[index];
     return gathered ? max(radius, parameters.radius_by_ray) : factor * radius;
 }

@@ -269,7 +269,7 @@ void main() {
     radiances[index] += seen + seen_surface(path, ray, closure);
 
     float radius = vertex_radius(path, ray.direction, closure);
-    float caustic_radius = caustic_radius_of(parameters.first_pixel + index, radius, gathered);
+    float caustic_radius = caustic_radius_of(index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_IMPORTONS << 24u));

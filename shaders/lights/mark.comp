@@ -4,9 +4,9 @@
 
 layout(local_size_x = 64) in;
 
-#include <CountParameters>
+#include <MarkParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+layout(std140, binding = 0) uniform Parameters { MarkParameters parameters; };
 layout(std430, binding = 0) readonly buffer EmissiveTriangles;
 layout(std430, binding = 1) buffer Triangles;
 
@@ -14,6 +14,8 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     EmissiveTriangle emissive = emissive_triangles[index];
-    triangle_vertices[3u * emissive.triangle + 1u].w = emissive.share;
-    triangle_vertices[3u * emissive.triangle + 2u].w = float(emissive.traits);
+    uint triangle = emissive.triangle - parameters.first_triangle;  // wraps around for those before
+    if (triangle >= parameters.triangle_count) return;
+    triangle_vertices[3u * triangle + 1u].w = emissive.share;
+    triangle_vertices[3u * triangle + 2u].w = float(emissive.traits);
 }

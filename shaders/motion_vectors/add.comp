@@ -65,14 +65,13 @@ vec4 vector_at(Hit hit) {
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
-    uint pixel = parameters.first_pixel + index;
     bool first = parameters.iteration == 1u && parameters.segment == 0u;
-    if (first) motion_vectors[pixel] = vec4(0.0);
+    if (first) motion_vectors[index] = vec4(0.0);
     if (!(rays[index].maximum_distance > 0.0) || !looks_for_surface(camera_paths[index].flags)) return;
     Closure closure = closures[index];
     if (!closure_hit(closure) || is_passed_by(closure)) return;
     // Those found before: passes.comp counts this one.
-    uint found = first ? 0u : pass_counts[pixel].y;
-    vec4 mean = motion_vectors[pixel];
-    motion_vectors[pixel] = mean + (vector_at(hits[index]) - mean) / float(found + 1u);
+    uint found = first ? 0u : pass_counts[index].y;
+    vec4 mean = motion_vectors[index];
+    motion_vectors[index] = mean + (vector_at(hits[index]) - mean) / float(found + 1u);
 }

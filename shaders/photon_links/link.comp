@@ -22,13 +22,16 @@ void main() {
     uint triangle = closures[index].triangle;
     if (triangle == NO_TRIANGLE) return;
     LightLink link = light_links[photon_links[index]];
+    uint flags = closures[index].flags;
     float code = triangle_vertices[3u * triangle].w;
     if (!has_set(link.light_sets, light_set_of(code))) {
-        closures[index].diffuse = closures[index].translucent = vec3(0.0);
-        closures[index].flags &= ~(3u << LOBE_COUNT_SHIFT);
+        closures[index].diffuse = vec3(0.0);
+        closures[index].translucent = vec3(0.0);
+        flags &= ~(3u << LOBE_COUNT_SHIFT);
     }
     if (!has_set(link.shadow_sets, shadow_set_of(code))) {
         closures[index].transparent = vec3(1.0);
-        closures[index].flags |= CLOSURE_SHADOWLESS;
+        flags |= CLOSURE_SHADOWLESS;
     }
+    closures[index].flags = flags;
 }

@@ -28,7 +28,8 @@ void main() {
         vec3 share = part_share(closures[index], query.part, ior, viewer, photons[slot].direction);
         // What is too little to be compared stays as it is.
         flux *= mix(vec3(1.0), share / max(query.share, 1e-20), greaterThan(query.share, vec3(1e-20)));
-        photon_paths[index].flux = photons[slot].scattered_flux = flux;
+        photons[slot].scattered_flux = flux;
+        photon_paths[index].flux = flux;
         photon_paths[index].flags = query.flags;
     }
     rays[index].direction = viewer;

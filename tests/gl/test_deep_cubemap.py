@@ -9,6 +9,7 @@ from deep_cubemap_rays import KINDS, make_rays
 from deep_cubemap_reference import Reference
 from deep_cubemap_scenes import CENTERS, box, furnished_room, room_with_meshes
 
+from rppm_addon.gl.context import Context
 from rppm_addon.integrator.common.records import NO_TRIANGLE
 from rppm_addon.integrator.deep_cubemap import deep_cubemap
 from rppm_addon.scene.errors import DeviceError
@@ -259,6 +260,7 @@ def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshe
     with TracedTriangles(context, library, meshes, PLAIN, 0) as scene:
         expected, tiles, finest = scene.trace(rays), scene.cubemap.counts["tile"], scene.cubemap.resolution
         assert max(scene.cubemap.memory_bytes.values()) > 1 << 19
+    monkeypatch.setattr(Context, "array_limit", lambda device, _: device.storage_block_limit)
     for limit in (1 << 19, 360_000):
         caplog.clear()
         monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
@@ -272,11 +274,29 @@ def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshe
     assert "allows 0 MiB in one buffer" in caplog.text and "for now cells stay at a resolution" in caplog.text
 
 
+@pytest.mark.parametrize("rasterize", [False, True])
+def test_lists_that_are_longer_than_a_block(context, library, meshes, monkeypatch, rasterize):
+    """Make the same cells, written and read as texels."""
+    rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=19))
+    with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
+        expected, counts, finest = scene.trace(rays), scene.cubemap.counts, scene.cubemap.resolution
+    limit = 1 << 17  # enough for cells and bins
+    monkeypatch.setattr(deep_cubemap, "_expected", lambda triangle_count: {"tile": 200})
+    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
+    with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
+        assert scene.cubemap.counts == counts and scene.cubemap.resolution == finest
+        long = {name for name, size in scene.cubemap.memory_bytes.items() if size > limit}
+        lists = {"jobs", "fragments", "fragments of the level above", "entries", "binned fragments"}
+        assert long == {f"deep cubemap {name}" for name in lists}
+        np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
+
+
 def test_triangles_that_the_device_cannot_hold_are_an_error(context, library, meshes, monkeypatch):
     with TracedTriangles(context, library, meshes, PLAIN) as scene:
         rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=19))
         expected = scene.trace(rays)
         monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 1 << 16)
+        monkeypatch.setattr(Context, "array_limit", lambda device, _: device.storage_block_limit)
         fresh = deep_cubemap.DeepCubemap(context, library)
         with pytest.raises(DeviceError, match=r"MiB .* allows 0 MiB .*lower the cubemap resolution"):
             fresh.build(scene.triangles, len(meshes), PLAIN, 2.0)

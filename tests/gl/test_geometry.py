@@ -38,6 +38,28 @@ def read(geometry):
     return triangles, geometry.attributes.read(TRIANGLE_ATTRIBUTES.dtype, geometry.triangle_count)
 
 
+def test_triangles_of_more_than_a_block_are_the_same(context, library, geometry, monkeypatch):
+    rng = np.random.default_rng(5)
+    instances = []
+    for _ in range(12):
+        matrix = np.eye(4)
+        matrix[:3] = rng.normal(size=(3, 4))
+        instances.append(Instance(0, matrix, [0]))
+    ball = scenes.sphere("ball", 9, 5)
+    scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), [ball], instances, [scenes.diffuse(1, 1, 1)])
+    geometry.build(scene, 1)
+    assert len(geometry.triangles.ranges(geometry.triangle_count)) == 1 and geometry.triangle_count > 600
+    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 48 * 300)
+    parts = Geometry(context, library)
+    parts.build(scene, 1)
+    ranges = parts.triangles.ranges(parts.triangle_count)
+    assert [part.first for part in ranges] == list(range(0, parts.triangle_count, 256))
+    assert sum(part.count for part in ranges) == parts.triangle_count
+    for found, expected in zip(read(parts), read(geometry), strict=True):
+        np.testing.assert_array_equal(found, expected)
+    parts.release()
+
+
 def test_instances_are_gathered_as_numpy_does(geometry):
     rng = np.random.default_rng(4)
     ball, sheet = scenes.sphere("ball", 9, 5), scenes.rectangle("sheet", (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))

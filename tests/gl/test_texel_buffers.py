@@ -6,11 +6,13 @@ import pytest
 
 from rppm_addon.gl import sources
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.gl.programs import ComputeProgram, ProgramMaker
+from rppm_addon.gl.programs import ComputeProgram, ProgramLibrary, ProgramMaker
 from rppm_addon.gl.records import Record
 from rppm_addon.gl.sources import expand
 from rppm_addon.gl.storage_blocks import StorageBlock
-from rppm_addon.gl.texel_buffers import MOST_IMAGES, allocated_size
+from rppm_addon.gl.texel_buffers import MOST_ADDED, allocated_size
+from rppm_addon.gl.texel_sources import MOST_IMAGES
+from rppm_addon.scene.errors import DeviceError
 
 COUNT = 37
 """No multiple of the words of a texel."""
@@ -50,34 +52,183 @@ def shader(tmp_path, monkeypatch):
     return "own.comp"
 
 
-def test_texels_have_the_bits_of_blocks(context, shader, tmp_path, monkeypatch):
+@pytest.fixture
+def buffers(context, shader, tmp_path, monkeypatch):
+    """What the shader reads and writes; of Things there are more bytes than a storage block has."""
     monkeypatch.setenv("RPPM_CACHE", str(tmp_path))
+    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", COUNT * 24 * 4)
     random = np.random.default_rng(1)
     size = Record.registry["Thing"].size
     contents = {
-        "Things": random.integers(0, 1 << 32, COUNT * size // 4, np.uint32),  # denormal and infinite numbers, and none
+        "Things": random.integers(0, 1 << 32, 2 * COUNT * size // 4, np.uint32),  # denormal, infinite, and none
         "Pairs": random.integers(0, 1 << 32, 2 * COUNT, np.uint32),
         "Order": random.permutation(COUNT).astype(np.uint32),
     }
-    buffers = {name: GrowingBuffer(context, name) for name in (*contents, "Found")}
+    buffers = {name: GrowingBuffer(context, name, texel_bytes=16) for name in (*contents, "Found")}
     for name, array in contents.items():
         buffers[name].upload(array)
     buffers["Found"].require(COUNT * 24 * 4)
-    found = {}
-    for reads_texels in (False, True):
-        source = expand(shader, {"COUNT": f"{COUNT}u"}, reads_texels=reads_texels)
-        assert set(source.texel_buffers) == (set(contents) if reads_texels else set())
-        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
-        assert program.blocks == buffers.keys()
-        buffers["Found"].clear()
-        program.run(COUNT, {name: buffer.buffer for name, buffer in buffers.items()})
-        found[reads_texels] = buffers["Found"].read(np.uint32, COUNT * 24)
-        program.release()
-    assert np.array_equal(found[True], found[False])
-    things = contents["Things"].reshape(COUNT, -1)[contents["Order"][contents["Order"]]]
-    assert np.array_equal(found[True].reshape(COUNT, 24)[:, :16], things[:, :16])
+    yield buffers
     for buffer in buffers.values():
         buffer.release()
+
+
+def found_by(program, buffers):
+    assert program.blocks == buffers.keys()
+    buffers["Found"].clear()
+    program.run(COUNT, {name: buffer.buffer for name, buffer in buffers.items()})
+    return buffers["Found"].read(np.uint32, COUNT * 24)
+
+
+def test_texels_have_the_bits_of_blocks(context, shader, buffers, monkeypatch):
+    found = []
+    for reads_texels, large in ((False, ()), (True, ()), (False, ("Pairs", "Order", "Found")), (True, ("Things",))):
+        source = expand(shader, {"COUNT": f"{COUNT}u"}, reads_texels=reads_texels, large=large)
+        assert set(source.texel_buffers) == ({"Things", "Pairs", "Order"} if reads_texels else {*large})
+        assert all(source.texel_buffers[name].texel_bytes == (4 if name == "Found" else 16) for name in large)
+        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
+        with monkeypatch.context() as patch:  # llvmpipe binds what is larger than a block all the same
+            patch.setattr(context, "large_buffers", 0)
+            found.append(found_by(program, buffers))
+        program.release()
+    for one in found:
+        np.testing.assert_array_equal(one, found[0])
+    things, order = (buffers[name].read(np.uint32, buffers[name].size // 4) for name in ("Things", "Order"))
+    order = order[:COUNT]
+    things = things.reshape(2 * COUNT, -1)[order[order]]
+    assert np.array_equal(found[0].reshape(COUNT, 24)[:, :16], things[:, :16])
+
+
+def test_arrays_that_are_larger_than_a_block_are_read_as_texels(context, shader, buffers, monkeypatch):
+    monkeypatch.setattr(context, "is_software", False)
+    library, program = library_with(context, shader)
+    assert buffers["Things"].buffer.size > context.storage_block_limit + MOST_ADDED and context.large_buffers == 1
+    found = found_by(program, buffers)
+    assert library.made == 2
+    with monkeypatch.context() as patch:
+        patch.setattr(context, "large_buffers", 0)
+        np.testing.assert_array_equal(found, found_by(program, buffers))
+    assert library.made == 2
+    library.release()
+
+
+def test_words_that_are_more_than_texels_lie_four_in_one(context, shader, buffers, monkeypatch):
+    monkeypatch.setattr(context, "is_software", True)
+    library, program = library_with(context, shader)
+    expected = found_by(program, buffers)
+    assert library.made == 1
+    order = GrowingBuffer(context, "long order", texel_bytes=16)
+    order.upload(np.resize(buffers["Order"].read(np.uint32, COUNT), 800))
+    monkeypatch.setattr(context, "most_texels", 490)  # those of Things are 444
+    np.testing.assert_array_equal(found_by(program, {**buffers, "Order": order}), expected)
+    assert library.made == 2
+    monkeypatch.setattr(context, "most_texels", 420)
+    with pytest.raises(DeviceError, match="takes more of Order, Things at once than the device .*; simplify the scene"):
+        found_by(program, {**buffers, "Order": order})
+    order.release()
+    library.release()
+
+
+def test_what_is_written_takes_no_more_than_texels_of_its_items(context, shader, buffers, monkeypatch):
+    with pytest.raises(DeviceError, match="found needs .* in one buffer"):
+        GrowingBuffer(context, "found").require(context.storage_block_limit + 1)
+    library, program = library_with(context, shader)
+    monkeypatch.setattr(context, "most_texels", 1000)
+    with pytest.raises(DeviceError, match="takes more of Found at once"):
+        program.run(1, {name: buffers["Things" if name == "Found" else name].buffer for name in program.blocks})
+    library.release()
+
+
+COPY = """#version 430 core
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Things;
+layout(std430, binding = 1) readonly buffer Order { uint order[]; };
+layout(std430, binding = 2) restrict writeonly buffer Copies { Thing copies[]; };
+layout(std430, binding = 3) writeonly buffer Sizes { float sizes[]; };
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= COUNT) return;
+    Thing thing = things[index];
+    copies[order[order[index]]] = thing;
+    if (index != order[index]) sizes[order[index]] = thing.place[uint(index) % 3u];
+    else sizes[index] = 2.0;
+}
+"""
+
+
+def test_items_of_what_is_only_written_are_stored(context, shader, buffers, tmp_path, monkeypatch):
+    (tmp_path / "copy.comp").write_text(COPY)
+    copies, sizes = (GrowingBuffer(context, name, texel_bytes=16) for name in ("copies", "sizes"))
+    copies.require(buffers["Things"].size)
+    sizes.require(4 * COUNT)
+    found = []
+    for large in ((), ("Copies", "Sizes", "Things")):
+        copies.clear()
+        source = expand("copy.comp", {"COUNT": f"{COUNT}u"}, large=large)
+        assert source.texel_buffers.keys() == set(large)
+        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
+        blocks = {"Things": buffers["Things"], "Order": buffers["Order"], "Copies": copies, "Sizes": sizes}
+        with monkeypatch.context() as patch:
+            patch.setattr(context, "large_buffers", 0)
+            program.run(COUNT, {name: buffer.buffer for name, buffer in blocks.items()})
+        found.append([buffer.read(np.uint32, buffer.size // 4) for buffer in (copies, sizes)])
+        program.release()
+    (things, sizes_found), (stored, sizes_stored) = found
+    things, stored = (copied.reshape(2 * COUNT, -1)[:, :-1] for copied in (things, stored))  # behind it lies no member
+    assert things[:COUNT].any() and not things[COUNT:].any()
+    np.testing.assert_array_equal(stored, things)
+    np.testing.assert_array_equal(sizes_stored, sizes_found)
+    copies.release()
+    sizes.release()
+
+
+CHANGE = """#version 430 core
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer Things;
+layout(std430, binding = 1) writeonly buffer Sizes { float sizes[]; };
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= COUNT) return;  // things[index] stands in a comment
+    sizes[index] = things[index + COUNT].size;
+    if (index % 3u == 0u) things[index] = things[index + COUNT];
+    else if (index % 3u == 1u) things[index].place = vec3(things[index + COUNT].offset, index);
+    else things[things[index + COUNT].kind % COUNT].offset.x = 3;
+}
+"""
+
+
+def test_items_and_members_of_what_is_read_as_well_are_stored(context, shader, buffers, tmp_path, monkeypatch):
+    text = CHANGE.replace("offset.x = 3", "kind = 7u")
+    (tmp_path / "change.comp").write_text(text.replace("things[index + COUNT].kind % COUNT", "index"))
+    before, sizes = buffers["Things"].read(np.uint32, buffers["Things"].size // 4).copy(), GrowingBuffer(context, "s")
+    sizes.require(4 * COUNT)
+    found = []
+    for large in ((), ("Things",)):
+        buffers["Things"].upload(before)
+        source = expand("change.comp", {"COUNT": f"{COUNT}u"}, large=large)
+        assert source.texel_buffers.keys() == set(large)
+        program = ComputeProgram(context, ProgramMaker(context), source, links_later=False)
+        with monkeypatch.context() as patch:
+            patch.setattr(context, "large_buffers", 0)
+            program.run(COUNT, {"Things": buffers["Things"].buffer, "Sizes": sizes.buffer})
+        found.append([buffer.read(np.uint32, buffer.size // 4) for buffer in (buffers["Things"], sizes)])
+        program.release()
+    assert (found[0][0] != before).any()
+    (things, sizes_found), (stored, sizes_stored) = found
+    for one, other in ((things, stored), (sizes_found, sizes_stored)):
+        np.testing.assert_array_equal(one, other)
+    sizes.release()
+
+
+@pytest.mark.parametrize("change", ["size += 1.0", "offset.x = 3", "kind++"])
+def test_what_is_changed_in_other_ways_stays_a_block(context, shader, tmp_path, change):
+    (tmp_path / "change.comp").write_text(CHANGE.replace("offset.x = 3", change))
+    assert not expand("change.comp", {"COUNT": "8u"}, large=["Things"]).texel_buffers
+
+
+def library_with(context, shader):
+    library = ProgramLibrary(context)
+    return library, library.compute(shader, {"COUNT": f"{COUNT}u"})
 
 
 def test_what_has_no_unit_stays_a_block(shader, tmp_path):

@@ -140,6 +140,18 @@ def test_a_single_pass_is_shown_as_it_is(mapper, pictures):
     assert pictures.show(scene, mapper.film, 1) is None
 
 
+def test_views_of_more_than_a_buffer_are_shown_as_they_are(mapper, pictures, monkeypatch):
+    scene = lit_floor()
+    film = render(mapper, scene, 1)
+    limits = {**mapper.context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE": 4 * film.size - 1}
+    monkeypatch.setattr(mapper.context, "limits", limits)
+    assert pictures.show(scene, mapper.film, 1) is None
+    pictures.given_out(scene, film)
+    assert pictures.move(turned(scene, 2)) is None
+    limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"] += 1
+    assert pictures.show(scene, mapper.film, 1) is not None
+
+
 def test_coarse_pictures_get_the_edges_of_surfaces(mapper, pictures):
     scene = dataclasses.replace(lit_floor(), exposure=2.0)
     scene.settings = dataclasses.replace(scene.settings, film_transparent=True)

@@ -4,6 +4,7 @@
 import importlib
 import pkgutil
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import rppm_addon
@@ -34,10 +35,10 @@ class Variant:
     generated: str = ""
     """Of a node graph."""
 
-    def expand(self, reads_texels: bool = False) -> Source:
+    def expand(self, reads_texels: bool = False, large: Collection[str] = ()) -> Source:
         """Its text; raises ShaderError."""
         inserts = {GENERATED: self.generated} if self.generated else {}
-        return expand(self.name, self.defines, inserts, reads_texels)
+        return expand(self.name, self.defines, inserts, reads_texels, large)
 
 
 def variants() -> list[Variant]:

@@ -13,6 +13,7 @@ from rppm_addon.integrator.memory import expected_memory
 from rppm_addon.integrator.stages.stage_set import StageSet
 from rppm_addon.scene.camera import Camera
 from rppm_addon.scene.errors import DeviceError
+from rppm_addon.scene.passes import PASSES
 
 LARGEST_BLOCK = (1 << 32) - 1
 """Bytes that a device of today allows in a storage block."""
@@ -25,6 +26,7 @@ class Device:
 
     def __init__(self, limit):
         self.storage_block_limit = limit
+        self.array_limit = lambda texel_bytes: max(limit, min((texel_bytes or 0) << 27, LARGEST_BLOCK))
         self.information = dataclasses.make_dataclass("Information", ["name"])("Device")
 
 
@@ -51,11 +53,18 @@ def test_forecasts_do_not_wrap(width, height, photons):
     assert large.total_bytes > 16 * width * height + 64 * photons
 
 
-@pytest.mark.parametrize("width, height, photons", [(65536, 65536, 1024), (1 << 31, 2, 1024), (64, 64, 1 << 31)])
+@pytest.mark.parametrize("width, height, photons", [(1 << 29, 2, 1024), (64, 64, 1 << 31)])
 @pytest.mark.parametrize("limit", [128 << 20, LARGEST_BLOCK])
 def test_what_no_block_holds_is_refused(width, height, photons, limit):
     with pytest.raises(DeviceError, match=r"needs \d+ MiB but the device Device allows \d+ MiB in one buffer; lower"):
         StageSet.refuse_large(Device(limit), StageSizes(width, height, photons, 8))
+
+
+@pytest.mark.parametrize("size", [(7680, 4320), (16384, 8192), (12000, 12001)])
+def test_large_pictures_lie_in_blocks_of_128_mib(size):
+    """With all passes."""
+    sizes = StageSizes(*size, 1 << 18, 8, PASSES, has_catchers=True, measures_noise=True, is_filtered=True)
+    StageSet.refuse_large(Device(128 << 20), sizes)
 
 
 def test_words_of_what_a_block_holds_have_numbers_of_32_bits():

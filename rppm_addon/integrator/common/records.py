@@ -74,6 +74,7 @@ TRIANGLE_ATTRIBUTES = Record(
 )
 """Shading normals (octahedral, two 16-bit parts), UV, material and instance of a world triangle."""
 StorageBlock("Attributes", "TriangleAttributes attributes[];")
+TRIANGLE_VERTICES = Record("TriangleVertices", vertex0="vec4", vertex1="vec4", vertex2="vec4")
 StorageBlock("Triangles", "vec4 triangle_vertices[];")
 """Three a triangle; for the fourth components see shaders/geometry/gather.comp."""
 

@@ -29,12 +29,11 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
-from ...gl.context import Context
+from ...gl.context import TEXEL_SIZE, Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ...gl.texel_buffers import DEFINE as TEXEL_BUFFERS
-from ...gl.texel_buffers import TEXEL_SIZE, most_texels
+from ...gl.texel_sources import DEFINE as TEXEL_BUFFERS
 from ...scene.errors import DeviceError
 from ..common import records  # noqa: F401  the kernels include Ray and Hit
 from ..common.known import known
@@ -108,6 +107,8 @@ JOIN_MOST = 5
 Constants("CellKinds", CELL=CellKind)
 Constants("DepthBins", signed=True, JOIN_MOST=JOIN_MOST)
 StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
+StorageBlock("OverlapJobs", "uvec4 overlap_jobs[];")
+StorageBlock("CellEntries", "uvec2 cell_entries[];")
 BINNED_CELL = Record("BinnedCell", cell="uint", fragments="uint", slices="uint")
 Record("OverlapDraw", job_count="uint", side_exponent="uint", first_tile="uint", picture_side="uint")
 CELLS_OF_A_TILE = 16
@@ -140,6 +141,8 @@ _PICTURE_SIDE = 4096
 # Triangles to try both routes with.
 _TRIAL_LEAST, _TRIAL_MOST = 1000, 16384
 
+_MOST_STARTS = 1 << 26
+"""Places of entries and bins that cells can name (shaders/deep_cubemap/cells.glsl)."""
 _READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
 
 
@@ -172,12 +175,12 @@ class DeepCubemap(BufferSet):
     _cells = StorageBuffer("deep cubemap cells", CELL)
     _bins = StorageBuffer("deep cubemap depth bins", "uint")
     _tiles = StorageBuffer("deep cubemap tiles", "uint")
-    _jobs = StorageBuffer("deep cubemap jobs", "uvec4")
-    _fragments = StorageBuffer("deep cubemap fragments", FRAGMENT)
-    _fragments_above = StorageBuffer("deep cubemap fragments of the level above", FRAGMENT)
-    _entries = StorageBuffer("deep cubemap entries", "uvec2")
+    _jobs = StorageBuffer("deep cubemap jobs", "uvec4", texel_bytes=16)
+    _fragments = StorageBuffer("deep cubemap fragments", FRAGMENT, texel_bytes=8)
+    _fragments_above = StorageBuffer("deep cubemap fragments of the level above", FRAGMENT, texel_bytes=8)
+    _entries = StorageBuffer("deep cubemap entries", "uvec2", texel_bytes=8)
     _binned_cells = StorageBuffer("deep cubemap binned cells", BINNED_CELL)
-    _binned_fragments = StorageBuffer("deep cubemap binned fragments", BINNED_FRAGMENT)
+    _binned_fragments = StorageBuffer("deep cubemap binned fragments", BINNED_FRAGMENT, texel_bytes=4)
     _core = StorageBuffer("deep cubemap core list", "uint", 16)
 
     def __init__(
@@ -195,7 +198,7 @@ class DeepCubemap(BufferSet):
         self._library = library
         self._least_gain, self._most_bins = least_gain, most_bins
         self._texel_buffers = context.is_software if texel_buffers is None else texel_buffers
-        self._most_texel_bytes = TEXEL_SIZE * most_texels(context)
+        self._most_texel_bytes = TEXEL_SIZE * context.most_texels
 
         self._lists = {
             "job": self._jobs,
@@ -300,15 +303,19 @@ class DeepCubemap(BufferSet):
         }
 
     @property
+    def traversal_defines(self) -> Mapping[str, object]:
+        """And their defines."""
+        fits = all(self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS)
+        is_asked_for = self._texel_buffers or self._entries.size > self._context.storage_block_limit
+        return {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
+
+    @property
     def route(self) -> str | None:
         """How triangles are found in cells; None where that has not been decided yet (a compute shader serves)."""
         return {True: "rasterization", False: "compute shader", None: None}[self._rasterize]
 
     def _trace(self, kernel: str, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> None:
-        as_texels = self._texel_buffers and all(
-            self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS
-        )
-        program = self._library.compute(kernel, {TEXEL_BUFFERS: 1} if as_texels else {})
+        program = self._library.compute(kernel, self.traversal_defines)
         living.run(program, {**self.traversal_buffers, **buffers})
 
     def _read_state(self) -> np.void:
@@ -334,6 +341,8 @@ class DeepCubemap(BufferSet):
     def _grow(self, name: str, count: int) -> None:
         """Make room for ``count`` items of a list, with some to spare where the device allows it."""
         limit = self._context.storage_block_limit
+        if name != "tile" and count * self._lists[name].item_size > limit:
+            limit = self._lists[name].limit
 
         def room(number: int, spacious: int) -> int:
             return -(-max(number, min(spacious, limit)) // TEXEL_SIZE) * TEXEL_SIZE
@@ -353,7 +362,7 @@ class DeepCubemap(BufferSet):
         state["tile_capacity"] = min((self._cells.capacity - _MOST_ROOTS) // 16, self._tiles.capacity)
         for name, buffer in self._lists.items():
             state[f"{name}_capacity"] = buffer.capacity
-        state["fragment_limit"] = self._context.storage_block_limit // FRAGMENT.size
+        state["fragment_limit"] = self._fragments.limit // FRAGMENT.size
         state["fragment_capacity"] = min(int(state["fragment_capacity"]), self._old_fragments.capacity)
 
     def _check_lists(self, state: np.void, level: int) -> None:
@@ -370,6 +379,11 @@ class DeepCubemap(BufferSet):
                 raise _TooLong(level, error) from error
         if names:
             raise _TooShort
+
+    def _check_starts(self, name: str, count: int, level: int) -> None:
+        """Raise _TooLong where cells of a level have more of what they name the place of than they can."""
+        if count > _MOST_STARTS:
+            raise _TooLong(level, DeviceError(f"{count} {name} of cells are more than {_MOST_STARTS}; {self.remedy}"))
 
     def _build(self, state: np.void) -> None:
         """Try until all lists are long enough, with coarser cells where the device cannot hold them."""
@@ -448,6 +462,7 @@ class DeepCubemap(BufferSet):
             run("hand_down", fragments, division)
             state = self._read_state()
             self._check_lists(state, level + 1)
+            self._check_starts("entries", int(state["entry_count"]), level + 1)
             if int(state["tile_count"]) == end_tile:
                 break
             first_tile, level = end_tile, level + 1
@@ -455,8 +470,10 @@ class DeepCubemap(BufferSet):
         if state["binned_fragment_count"]:
             buffers["DepthBins"] = self._bins.buffer
             run("allocate_bins", int(state["binned_cell_count"]))
+            bins = int(self._read_state()["bin_count"])
+            self._check_starts("depth bins", bins, level)
             try:
-                self._bins.require_items(int(self._read_state()["bin_count"]))
+                self._bins.require_items(bins)
             except DeviceError as error:
                 raise _TooLong(level, error) from error
             self._bins.clear()

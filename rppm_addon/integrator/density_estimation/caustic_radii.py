@@ -9,35 +9,34 @@ earlier iterations took; Eq. 2 shrinks what remains, so the estimate stays consi
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.timers import StageTimers
 from ..common.band import Band
+from ..common.film_buffers import FilmBuffer
 from ..common.iteration import Iteration
-from ..common.stage_sizes import StageSizes, film_pixels
+from ..common.stage_sizes import StageSizes
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
 
-Record("NarrowParameters", count="uint", first_pixel="uint", iteration="uint", most_factor="float", expected="float")
+Record("NarrowParameters", count="uint", iteration="uint", most_factor="float", expected="float")
 
 
 class CausticRadii(BufferSet):
     """What Eq. 3's radius of each pixel of the film is multiplied by, from the second iteration on."""
 
     remedy = "lower the resolution"
-    _factors = StorageBuffer("radius factors", "float", film_pixels)
+    _factors = FilmBuffer("radius factors", "float")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._program = library.compute("caustic_radii/narrow.comp")
-        self._pixels = film_pixels(sizes)
 
-    @property
-    def buffer(self) -> moderngl.Buffer:
-        """(pixels,) float32 factors."""
-        return self._factors.buffer
+    def factors(self, band: Band) -> moderngl.Buffer:
+        """(pixels,) float32 of a band of the film."""
+        return self._factors.of(band)
 
     def narrow(
         self, sums: SplatSums, band: Band, iteration: Iteration, radii: Radii, fewer: float, timers: StageTimers
@@ -49,10 +48,9 @@ class CausticRadii(BufferSet):
         with timers.stage("learning"):
             self._program.run(
                 band.pixel_count,
-                {"PhotonCounts": sums.photon_counts, "RadiusFactors": self._factors.buffer},
+                {"PhotonCounts": sums.photon_counts, "RadiusFactors": self._factors.of(band)},
                 {
                     "count": band.pixel_count,
-                    "first_pixel": band.first_pixel,
                     "iteration": iteration.number,
                     "most_factor": radii.most_factor,
                     "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 / (fewer * sums.photons_for_one),
@@ -60,8 +58,8 @@ class CausticRadii(BufferSet):
             )
 
     def read(self) -> np.ndarray:
-        """(pixels,) float32 factors, once the first iteration has been."""
-        return self._factors.read(np.float32, self._pixels).copy()
+        """(height, width) float32 factors, once the first iteration has been."""
+        return self._factors.read(np.float32, 1)[..., 0]
 
     def restore(self, factors: np.ndarray) -> None:
         """Take what read gave."""

@@ -67,6 +67,8 @@ class DensityEstimator(BufferSet):
         """The one that is taken, which nothing but speed depends on."""
         if self._wanted is not DensityEstimation.AUTOMATIC:
             return self._wanted
+        if not self._may_splat:
+            return DensityEstimation.GRID
         return _faster.get(self._library, _UNDECIDED)
 
     def begin(self, settings: RenderSettings, photons: StoredPhotons, iteration: Iteration) -> None:
@@ -99,9 +101,13 @@ class DensityEstimator(BufferSet):
             self._get(self.route).splat(photons, importons, self.sums)
 
     @property
+    def _may_splat(self) -> bool:
+        return self._photons is None or Splatting.holds(self._context, self._photons)
+
+    @property
     def _is_undecided(self) -> bool:
         automatic = self._wanted is DensityEstimation.AUTOMATIC
-        return automatic and self._library not in _faster and _may_rasterize(self._context)
+        return automatic and self._library not in _faster and _may_rasterize(self._context) and self._may_splat
 
     def _try_both(self, photons: StoredPhotons, importons: TakingImportons) -> None:
         """Take the route that is faster with these importons, if they are many and take all photons.

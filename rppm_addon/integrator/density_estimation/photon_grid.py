@@ -68,7 +68,7 @@ class PhotonGrid(BufferSet):
 
     remedy = "lower the photons per iteration or the photon path length"
     _grid = StorageBuffer("photon grid", "uvec2", header="uvec4")
-    _sorted_photons = StorageBuffer("sorted photons", "uvec4")
+    _sorted_photons = StorageBuffer("sorted photons", "uvec4", texel_bytes=16)
     _importon_grid = StorageBuffer(
         "importon grid", "uvec2", lambda sizes: _buckets(band_pixels(sizes)), "uvec4", _FEWER_PIXELS
     )

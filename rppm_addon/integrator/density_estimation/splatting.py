@@ -8,7 +8,7 @@ from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import DrawProgram, ProgramLibrary
-from ...gl.records import Record
+from ...gl.records import Record, stride
 from ...gl.storage_blocks import StorageBlock
 from ..common.band import MOST_RASTER_PIXELS
 from ..common.stage_sizes import StageSizes, band_pixels
@@ -73,6 +73,11 @@ class Splatting(BufferSet):
         self._direct_view = self.own(gl.empty_framebuffer((min(sizes.width, MOST_RASTER_PIXELS), sizes.bands[0].rows)))
         self._cube_size = (3 * self._resolution, 2 * self._resolution)
         self._cube_view = self.own(gl.empty_framebuffer(self._cube_size))
+
+    @staticmethod
+    def holds(context: Context, photons: StoredPhotons) -> bool:
+        """Whether a device may have room for an iteration's photons in one buffer."""
+        return (_FACES_OF_A_SPLAT * photons.count + 1) * stride("uvec4") <= context.storage_block_limit
 
     def prepare(self, photons: StoredPhotons) -> None:
         """Make room for an iteration's photons."""

@@ -33,6 +33,7 @@ from .light_links import NO_LINK, LightLinkTable
 from .light_tree import triangle_leaves
 
 Record("EmittersParameters", photons="uint")
+Record("MarkParameters", count="uint", first_triangle="uint", triangle_count="uint")
 
 _POINTS = 8
 """Places of a triangle, on either side in turn, where an emission that varies is asked for."""
@@ -52,7 +53,7 @@ class Emitters(BufferSet):
     are theirs of the light tree, but for the light sets, and ``links`` (count,) the numbers of their LightLinks.
     """
 
-    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE)
+    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, texel_bytes=16)
     _rays = StorageBuffer("rays to emitters", RAY)
     _hits = StorageBuffer("places on emitters", HIT)
     _closures = StorageBuffer("closures of emitters", CLOSURE)
@@ -104,11 +105,12 @@ class Emitters(BufferSet):
             traits = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
             records["traits"] = traits + (self.links << EMITTER_LINK_SHIFT)
         self.triangles.upload(records if self.count else EMISSIVE_TRIANGLE.zeros(1))
-        self._mark.run(
-            self.count,
-            {"EmissiveTriangles": self.triangles.buffer, "Triangles": geometry.triangles.buffer},
-            {"count": self.count},
-        )
+        for part in geometry.triangles.ranges(geometry.triangle_count):
+            self._mark.run(
+                self.count,
+                {"EmissiveTriangles": self.triangles.buffer, "Triangles": part},
+                {"count": self.count, "first_triangle": part.first, "triangle_count": part.count},
+            )
 
     def _ask(
         self, records: np.ndarray, corners: np.ndarray, kinds: np.ndarray, varying: np.ndarray, resolve: Resolve

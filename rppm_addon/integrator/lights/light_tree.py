@@ -27,7 +27,7 @@ class LightTree(BufferSet):
     Each tree's root is node 1 behind its first; ``parameters`` are the values of LIGHT_TREE_PARAMETERS.
     """
 
-    nodes = StorageBuffer("light tree", LIGHT_NODE)
+    nodes = StorageBuffer("light tree", LIGHT_NODE, texel_bytes=16)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)

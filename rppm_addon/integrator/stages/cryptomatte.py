@@ -24,14 +24,14 @@ from ...scene.cryptomatte import (
 )
 from ...scene.passes import CRYPTOMATTE_PAIRS
 from ..common.band import Band
+from ..common.film_buffers import FilmBuffer
 from ..common.iteration import Iteration
-from ..common.stage_sizes import StageSizes, band_pixels, film_pixels
+from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
 Record(
     "CryptomatteParameters",
-    first_pixel="uint",
     iteration="uint",
     segment="uint",
     pair_count="uint",
@@ -52,7 +52,7 @@ Constants("CryptomatteNames", NAMES=_Names)
 
 def _pairs(layer: str) -> Callable[[StageSizes], int]:
     def count(sizes: StageSizes) -> int:
-        return film_pixels(sizes) * CRYPTOMATTE_PAIRS * len(layers_of(sizes.passes).get(layer, ()))
+        return CRYPTOMATTE_PAIRS * len(layers_of(sizes.passes).get(layer, ()))
 
     return count
 
@@ -66,9 +66,9 @@ class Cryptomatte(BufferSet):
     Without such passes nothing is run."""
 
     remedy = "lower the resolution or the levels of Cryptomatte"
-    _objects = StorageBuffer("cryptomatte of objects", "uvec2", _pairs(OBJECTS))
-    _materials = StorageBuffer("cryptomatte of materials", "uvec2", _pairs(MATERIALS))
-    _assets = StorageBuffer("cryptomatte of assets", "uvec2", _pairs(ASSETS))
+    _objects = FilmBuffer("cryptomatte of objects", "uvec2", _pairs(OBJECTS))
+    _materials = FilmBuffer("cryptomatte of materials", "uvec2", _pairs(MATERIALS))
+    _assets = FilmBuffer("cryptomatte of assets", "uvec2", _pairs(ASSETS))
     _caught_after = StorageBuffer("paths behind shadow catchers", "uint", _caught_paths)
     _object_names = StorageBuffer("identifiers of objects", "uint")
     _material_names = StorageBuffer("identifiers of materials", "uint")
@@ -78,7 +78,6 @@ class Cryptomatte(BufferSet):
         super().__init__(context, library, sizes)
         self._layers = layers_of(sizes.passes)
         self._program = library.compute("cryptomatte/cover.comp") if self._layers else None
-        self._shape = sizes.height, sizes.width
         self._buffers = {
             OBJECTS: (self._objects, self._object_names),
             MATERIALS: (self._materials, self._material_names),
@@ -101,11 +100,10 @@ class Cryptomatte(BufferSet):
                     **importons.path_blocks,
                     "Attributes": context.geometry.attributes.buffer,
                     "Identifiers": names.buffer,
-                    "Pairs": pairs.buffer,
+                    "Pairs": pairs.of(band),
                     "CaughtAfter": self._caught_after.buffer,
                 },
                 {
-                    "first_pixel": band.first_pixel,
                     "iteration": iteration.number_in_film,
                     "segment": segment,
                     "pair_count": CRYPTOMATTE_PAIRS * len(entries),
@@ -132,9 +130,8 @@ class Cryptomatte(BufferSet):
         found: dict[str, np.ndarray] = {}
         for layer, entries in self._layers.items():
             count = CRYPTOMATTE_PAIRS * len(entries)
-            height, width = self._shape
-            words = self._buffers[layer][0].read(np.float32, 2 * count * height * width)
-            found |= split(entries, words.reshape(height, width, count, 2))
+            words = self._buffers[layer][0].read(np.float32, 2 * count)
+            found |= split(entries, words.reshape(*words.shape[:2], count, 2))
         return found
 
     def restore(self, passes: Mapping[str, np.ndarray]) -> None:

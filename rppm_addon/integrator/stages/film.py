@@ -15,8 +15,9 @@ from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.passes import FILM_PASSES, SCATTERED_LIGHT, SHADOW_CATCHER, VECTOR, Accumulation
 from ..common.band import Band
+from ..common.film_buffers import FilmBuffer, FilmParts
 from ..common.iteration import Iteration
-from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, film_pixels
+from ..common.stage_sizes import StageSizes, aov_channels, band_pixels
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 from .cryptomatte import Cryptomatte
@@ -26,7 +27,6 @@ from .shadow_catcher import ShadowCatcher
 
 Record(
     "PassParameters",
-    first_pixel="uint",
     iteration="uint",
     segment="uint",
     pixels="uint",
@@ -37,7 +37,7 @@ Record(
     mist_exponent="float",
 )
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint", is_filtered="uint")
-Record("AovParameters", count="uint", first_value="uint", iteration="uint")
+Record("AovParameters", count="uint", iteration="uint")
 StorageBlock("Film", "vec4 film[];")
 StorageBlock("PhotonLight", "vec4 photon_light[];")
 """Means of what photons bring, W/(m^2 sr), and of the squared luminance of all else."""
@@ -73,29 +73,16 @@ def _pass_values(sizes: StageSizes) -> list[int]:
     return [band.pixel_count * _channels(sizes) for band in sizes.bands]
 
 
-def _pass_counts(sizes: StageSizes) -> int:
-    looks = any(entry in FILM_PASSES or entry.is_aov or entry.name == VECTOR for entry in sizes.passes)
-    return film_pixels(sizes) if looks else 0
-
-
-def _aov_values(sizes: StageSizes) -> int:
-    return film_pixels(sizes) * aov_channels(sizes)
+def _looks(sizes: StageSizes) -> bool:
+    return any(entry in FILM_PASSES or entry.is_aov or entry.name == VECTOR for entry in sizes.passes)
 
 
 def _group_channels(sizes: StageSizes) -> int:
     return sum(len(entry.channels) for entry in sizes.passes if entry.light_group)
 
 
-def _group_values(sizes: StageSizes) -> list[int]:
-    return [band.pixel_count * _group_channels(sizes) for band in sizes.bands]
-
-
 def _pass_paths(sizes: StageSizes) -> int:
     return band_pixels(sizes) if _show_seen_light(sizes) else 0
-
-
-def _filtered_pixels(sizes: StageSizes) -> int:
-    return film_pixels(sizes) if sizes.is_filtered else 0
 
 
 def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
@@ -110,15 +97,15 @@ class Film(BufferSet):
     counts where there are passes; 16 more where viewports filter the picture."""
 
     remedy = "lower the resolution"
-    _radiance = StorageBuffer("film", "vec4", film_pixels)
+    _radiance = FilmBuffer("film", "vec4", together=True)
     _values = StorageBuffers("pass values", "float", _pass_values)
-    _photon_light = StorageBuffer("photons' part of the film", "vec4", _filtered_pixels)
-    _counts = StorageBuffer("pass counts", "uvec2", _pass_counts)
+    _photon_light = FilmBuffer("photons' part of the film", "vec4", lambda sizes: sizes.is_filtered, together=True)
+    _counts = FilmBuffer("pass counts", "uvec2", _looks)
     _paths = StorageBuffer("pass paths", "vec4", _pass_paths)
     _cryptomatte = Part(Cryptomatte)
     _motion_vectors = Part(MotionVectors)
-    _aov_values = StorageBuffer("AOVs", "float", _aov_values)
-    _group_values = StorageBuffers("passes of light groups", "float", _group_values)
+    _aov_values = FilmBuffer("AOVs", "float", aov_channels)
+    _group_values = FilmBuffer("passes of light groups", "float", _group_channels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -156,13 +143,13 @@ class Film(BufferSet):
         self._cryptomatte.add(context, importons, band, iteration, segment)
         if not self._looks:
             return
-        self._motion_vectors.add(context, camera, importons, self._counts.buffer, band, iteration, segment)
+        self._motion_vectors.add(context, camera, importons, self._counts.of(band), band, iteration, segment)
         importons.living.run(
             self._pass_program,
             {
                 "Camera": camera,
                 **importons.path_blocks,
-                "PassCounts": self._counts.buffer,
+                "PassCounts": self._counts.of(band),
                 **self.pass_blocks(band),
                 "Hits": importons.hits.buffer,
                 "Attributes": context.geometry.attributes.buffer,
@@ -219,7 +206,7 @@ class Film(BufferSet):
 
     def group_values(self, band: Band) -> moderngl.Buffer:
         """GroupValues of a band."""
-        return self._group_values[self._bands.index(band)].buffer
+        return self._group_values.of(band)
 
     def place_parameters(self, band: Band, iteration: Iteration) -> dict[str, float]:
         """Their parameters."""
@@ -233,7 +220,6 @@ class Film(BufferSet):
         mist = context.scene.world.mist
         return {
             **self.place_parameters(band, iteration),
-            "first_pixel": band.first_pixel,
             "segment": segment,
             "keeps_paths": self._seen_light is not None,
             "mist_start": mist.start,
@@ -251,13 +237,13 @@ class Film(BufferSet):
                 {
                     "Radiances": radiances.buffer,
                     "SplatSums": sums.buffer,
-                    "Film": self._radiance.buffer,
-                    "PhotonLight": self._photon_light.buffer,
+                    "Film": self._radiance.of(band),
+                    "PhotonLight": self._photon_light.of(band),
                 },
                 {
                     "count": band.pixel_count,
                     "quantum": sums.quantum,
-                    "first_pixel": band.first_pixel,
+                    "first_pixel": self._radiance.first_pixel(band),
                     "iteration": iteration.number_in_film,
                     "is_filtered": self._is_filtered,
                 },
@@ -269,23 +255,19 @@ class Film(BufferSet):
             count = band.pixel_count * self._aov_channels
             self._accumulate_aovs.run(
                 count,
-                {"AovValues": importons.aovs.buffer, "FilmAovs": self._aov_values.buffer},
-                {
-                    "count": count,
-                    "first_value": band.first_pixel * self._aov_channels,
-                    "iteration": iteration.number_in_film,
-                },
+                {"AovValues": importons.aovs.buffer, "FilmAovs": self._aov_values.of(band)},
+                {"count": count, "iteration": iteration.number_in_film},
             )
 
     @property
-    def radiance(self) -> moderngl.Buffer:
+    def radiance(self) -> FilmParts:
         """(pixels, 4) float32 of what read_radiance gives."""
-        return self._radiance.buffer
+        return self._radiance
 
     @property
-    def photon_light(self) -> moderngl.Buffer:
+    def photon_light(self) -> FilmParts:
         """(pixels, 4) float32 means of what photons bring, and of the squared luminance of all else, where kept."""
-        return self._photon_light.buffer
+        return self._photon_light
 
     def copy_pass(self, name: str, into: moderngl.Buffer, first: int) -> int:
         """Lay what read_passes gives of a pass into a buffer of float32, from the number ``first`` on.
@@ -304,7 +286,7 @@ class Film(BufferSet):
 
     def read_radiance(self) -> np.ndarray:
         """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""
-        return self._radiance.read(np.float32, 4 * self.width * self.height).reshape(self.height, self.width, 4).copy()
+        return self._radiance.read(np.float32, 4)
 
     def read_passes(self) -> dict[str, np.ndarray]:
         """By name, (height, width) or (height, width, channels) float32 of the passes that the film keeps."""
@@ -324,19 +306,12 @@ class Film(BufferSet):
     def _read_groups(self) -> dict[str, np.ndarray]:
         if not self._groups:
             return {}
-        shape = self.height, self.width, len(self._groups), 3
-        count = 3 * len(self._groups)
-        values = [
-            buffer.read(np.float32, count * band.pixel_count)
-            for band, buffer in zip(self._bands, self._group_values, strict=True)
-        ]
-        light = np.concatenate(values).reshape(shape)
+        light = self._group_values.read(np.float32, 3 * len(self._groups))
+        light = light.reshape(self.height, self.width, len(self._groups), 3)
         return {entry.name: light[:, :, number].copy() for number, entry in enumerate(self._groups)}
 
     def _read_aovs(self) -> dict[str, np.ndarray]:
-        channels = self._aov_channels
-        values = self._aov_values.read(np.float32, channels * self.width * self.height)
-        values = values.reshape(self.height, self.width, channels)
+        values = self._aov_values.read(np.float32, self._aov_channels)
         ends = np.cumsum([0, *(len(entry.channels) for entry in self._aovs)])
         parts = {entry.name: values[..., a:b].copy() for entry, a, b in zip(self._aovs, ends, ends[1:])}
         return {name: part[..., 0] if part.shape[-1] == 1 else part for name, part in parts.items()}
@@ -346,8 +321,7 @@ class Film(BufferSet):
         of them that found a surface. (0, 0, 2) where there are no passes."""
         if not self._looks:
             return np.zeros((0, 0, 2), np.uint32)
-        counts = self._counts.read(np.uint32, 2 * self.width * self.height)
-        return counts.reshape(self.height, self.width, 2).copy()
+        return self._counts.read(np.uint32, 2)
 
     def restore(self, radiance: np.ndarray, passes: Mapping[str, np.ndarray], pass_counts: np.ndarray) -> None:
         """Take the means that read_radiance, read_passes and read_pass_counts gave; KeyError where a pass misses."""
@@ -365,7 +339,7 @@ class Film(BufferSet):
             planes = [np.atleast_3d(np.asarray(passes[entry.name], np.float32)) for entry in self._aovs]
             self._aov_values.upload(np.concatenate(planes, axis=-1))
         if self._groups:
-            light = np.stack([np.asarray(passes[entry.name], np.float32) for entry in self._groups], axis=2)
-            for band, buffer in zip(self._bands, self._group_values, strict=True):
-                buffer.upload(light[band.first_row : band.first_row + band.rows])
+            self._group_values.upload(
+                np.stack([np.asarray(passes[entry.name], np.float32) for entry in self._groups], axis=2)
+            )
         self._cryptomatte.restore(passes)

@@ -15,8 +15,10 @@ from ...scene.motion import Shutter
 from ...scene.moving_scene import MovingScene
 from ...scene.passes import VECTOR
 from ..common.band import Band
+from ..common.film_buffers import FilmBuffer
 from ..common.iteration import Iteration
-from ..common.stage_sizes import StageSizes, film_pixels
+from ..common.records import TRIANGLE_VERTICES
+from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
 from ..surfaces.geometry import Geometry, Placement
 from .importons import Importons
@@ -27,7 +29,6 @@ Record(
     **{f"world_to_camera{when}": "mat4" for when in _CAMERAS},
     **{f"window{when}": "vec4" for when in _CAMERAS},
     resolution="vec2",
-    first_pixel="uint",
     iteration="uint",
     segment="uint",
 )
@@ -37,25 +38,20 @@ def _is_wanted(sizes: StageSizes) -> bool:
     return any(entry.name == VECTOR for entry in sizes.passes)
 
 
-def _vectors(sizes: StageSizes) -> int:
-    return film_pixels(sizes) if _is_wanted(sizes) else 0
-
-
 class MotionVectors(BufferSet):
     """Means over the iterations that found a surface, 16 bytes a pixel, and the world's triangles of the frames before
     and after, 48 bytes each. Without the pass nothing is run; without Scene.neighbors all vectors are 0."""
 
     remedy = "switch off the pass Vector"
-    _vectors = StorageBuffer("motion vectors", "vec4", _vectors)
-    _before = StorageBuffer("triangles of the frame before", "vec4")
-    _after = StorageBuffer("triangles of the next frame", "vec4")
+    _vectors = FilmBuffer("motion vectors", "vec4", _is_wanted)
+    _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, texel_bytes=16)
+    _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, texel_bytes=16)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._context, self._library = context, library
         self.wanted = _is_wanted(sizes)
         self._program = library.compute("motion_vectors/add.comp") if self.wanted else None
-        self._shape = sizes.height, sizes.width, 4
         self._uploaded: tuple[Shutter, list[Placement]] | None = None
         """Of what scene the triangles are."""
         self._cameras: tuple[Camera, Camera] | None = None
@@ -91,14 +87,13 @@ class MotionVectors(BufferSet):
                 "TrianglesBefore": self._before.buffer,
                 "TrianglesAfter": self._after.buffer,
                 "PassCounts": pass_counts,
-                "MotionVectors": self._vectors.buffer,
+                "MotionVectors": self._vectors.of(band),
                 "Camera": camera_view,
             },
             {
                 **{f"world_to_camera{when}": np.linalg.inv(seen.matrix) for when, seen in cameras.items()},
                 **{f"window{when}": seen.window for when, seen in cameras.items()},
                 "resolution": (camera.width, camera.height),
-                "first_pixel": band.first_pixel,
                 "iteration": iteration.number_in_film,
                 "segment": segment,
             },
@@ -142,7 +137,7 @@ class MotionVectors(BufferSet):
         Z and W from where it will be in the next one to here."""
         if not self.wanted:
             return {}
-        return {VECTOR: self._vectors.read(np.float32, int(np.prod(self._shape))).reshape(self._shape).copy()}
+        return {VECTOR: self._vectors.read(np.float32, 4)}
 
     def restore(self, vectors: np.ndarray) -> None:
         """Take what ``read`` gave."""

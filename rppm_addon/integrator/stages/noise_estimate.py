@@ -10,7 +10,6 @@ What both halves have alike, the blur of the radius, cannot be told so.
 
 import math
 
-import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
@@ -21,8 +20,9 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.band import Band
+from ..common.film_buffers import BANDS_TOGETHER, FilmBuffer, FilmParts
 from ..common.iteration import Iteration
-from ..common.stage_sizes import StageSizes, film_pixels
+from ..common.stage_sizes import StageSizes
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 
@@ -30,7 +30,7 @@ Record("HalfParameters", count="uint", quantum="float", first_pixel="uint", numb
 Record("NoiseParameters", count="uint", width="uint", height="uint", columns="uint", exposure="float", balance="float")
 StorageBlock("HalfMeans", "float half_means[];")
 
-BLOCK = 16
+BLOCK = BANDS_TOGETHER
 """Pixels along a side of the blocks whose noise counts: of a single pixel's a few iterations say nothing."""
 Constants("NoiseBlocks", NOISE_BLOCK=BLOCK)
 _SHORTEST_RUN, _RUNS_PER_OCTAVE = 16, 4
@@ -67,7 +67,7 @@ def count_in_half(iterations: int) -> int:
 
 
 def _half_values(sizes: StageSizes) -> int:
-    return 3 * film_pixels(sizes) if sizes.measures_noise else 0
+    return 3 if sizes.measures_noise else 0
 
 
 def _block_count(sizes: StageSizes) -> int:
@@ -78,7 +78,7 @@ class NoiseEstimate(BufferSet):
     """The mean of half of the iterations, 12 bytes a pixel; nothing where the picture does not end with its noise."""
 
     remedy = "lower the resolution"
-    _half = StorageBuffer("half of the film", "float", _half_values)
+    _half = FilmBuffer("half of the film", "float", _half_values, together=True)
     _noises = StorageBuffer("noise of blocks", "float", _block_count)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
@@ -86,8 +86,7 @@ class NoiseEstimate(BufferSet):
         self.is_on = sizes.measures_noise
         self._add = library.compute("noise_estimate/add.comp") if self.is_on else None
         self._measure = library.compute("noise_estimate/measure.comp") if self.is_on else None
-        self._width, self._height = sizes.width, sizes.height
-        self._blocks = _block_count(sizes)
+        self._width, self._columns = sizes.width, math.ceil(sizes.width / BLOCK)
 
     def add(
         self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band, iteration: Iteration
@@ -98,18 +97,16 @@ class NoiseEstimate(BufferSet):
         with context.timers.stage("noise"):
             self._add.run(
                 band.pixel_count,
-                {"Radiances": radiances.buffer, "SplatSums": sums.buffer, "HalfMeans": self._half.buffer},
+                {"Radiances": radiances.buffer, "SplatSums": sums.buffer, "HalfMeans": self._half.of(band)},
                 {
                     "count": band.pixel_count,
                     "quantum": sums.quantum,
-                    "first_pixel": band.first_pixel,
+                    "first_pixel": self._half.first_pixel(band),
                     "number": count_in_half(iteration.number) - count_in_half(iteration.skipped),
                 },
             )
 
-    def measure(
-        self, context: StageContext, film: moderngl.Buffer, exposure: float, skipped: int, iteration: int
-    ) -> float:
+    def measure(self, context: StageContext, film: FilmParts, exposure: float, skipped: int, iteration: int) -> float:
         """The noise of the noisiest block of a film, (pixels, 4) float32, of the iterations after ``skipped`` up to
         ``iteration``; infinite while one of the halves is empty. Waits for the device."""
         program = self._measure
@@ -120,27 +117,28 @@ class NoiseEstimate(BufferSet):
         if not here or not rest:
             return math.inf
         with context.timers.stage("noise"):
-            program.run(
-                self._blocks,
-                {"Film": film, "HalfMeans": self._half.buffer, "Noises": self._noises.buffer},
-                {
-                    "count": self._blocks,
-                    "width": self._width,
-                    "height": self._height,
-                    "columns": math.ceil(self._width / BLOCK),
-                    "exposure": exposure,
-                    # Of halves that are not alike: from the spread of the distance to that of the mean of all.
-                    "balance": math.sqrt(here / rest),
-                },
-            )
-            return float(self._noises.read(np.float32, self._blocks).max())
+            noise = 0.0
+            for part, half, rows in zip(film, self._half, film.rows, strict=True):
+                blocks = self._columns * math.ceil(rows / BLOCK)
+                program.run(
+                    blocks,
+                    {"Film": part.buffer, "HalfMeans": half.buffer, "Noises": self._noises.buffer},
+                    {
+                        "count": blocks,
+                        "width": self._width,
+                        "height": rows,
+                        "columns": self._columns,
+                        "exposure": exposure,
+                        # Of halves that are not alike: from the spread of the distance to that of the mean of all.
+                        "balance": math.sqrt(here / rest),
+                    },
+                )
+                noise = max(noise, float(self._noises.read(np.float32, blocks).max()))
+            return noise
 
     def read(self) -> np.ndarray | None:
         """(height, width, 3) float32 mean of the half, row 0 at the bottom; None where the stage is off."""
-        if not self.is_on:
-            return None
-        values = self._half.read(np.float32, 3 * self._width * self._height)
-        return values.reshape(self._height, self._width, 3).copy()
+        return self._half.read(np.float32, 3) if self.is_on else None
 
     def restore(self, half: np.ndarray | None) -> bool:
         """Take what read gave; whether there is what the stage needs."""

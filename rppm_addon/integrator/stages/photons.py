@@ -58,12 +58,12 @@ class Photons(BufferSet):
     tells of each path where it began."""
 
     remedy = "lower the photons per iteration or the photon path length"
-    photons = StorageBuffer("photons", PHOTON, photon_slots)
+    photons = StorageBuffer("photons", PHOTON, photon_slots, texel_bytes=4)
     photon_origins = StorageBuffer("photon origins", PHOTON_ORIGIN, photon_paths)
     _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths)
     _rays = StorageBuffer("photon rays", RAY, photon_paths)
     _hits = StorageBuffer("photon hits", HIT, photon_paths)
-    _closures = StorageBuffer("photon closures", CLOSURE, photon_paths)
+    _closures = StorageBuffer("photon closures", CLOSURE, photon_paths, texel_bytes=4)
     _adjoint_queries = StorageBuffer("adjoint queries", ADJOINT_QUERY, photon_paths)
     _differentials = StorageBuffer("photon differentials", PHOTON_DIFFERENTIAL, photon_paths)
     _emitted = StorageBuffer("emitted photons", PHOTON_PATH, photon_paths)

@@ -9,6 +9,7 @@ from ...gl.buffer_sets import BufferSet, Part, sum_by_name
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.scene import Scene
+from ..common.band import Band
 from ..common.stage_sizes import StageSizes
 from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
 from ..density_estimation.caustic_radii import CausticRadii
@@ -86,22 +87,20 @@ class StageSet(BufferSet):
             if context.gathers:
                 self.final_gather.clear()
 
-    @property
-    def scatter_blocks(self) -> dict[str, moderngl.Buffer]:
+    def scatter_blocks(self, band: Band) -> dict[str, moderngl.Buffer]:
         """Storage blocks of other stages that importons read and write as they scatter."""
         return {
             "Camera": self.camera_hits.camera.buffer,
             "GatheringVertices": self.final_gather.vertices.buffer,
             "LitCatchers": self.shadow_catcher.lit.buffer,
-            "RadiusFactors": self.caustic_radii.buffer,
+            "RadiusFactors": self.caustic_radii.factors(band),
         }
 
-    @property
-    def direct_light_blocks(self) -> dict[str, moderngl.Buffer]:
+    def direct_light_blocks(self, band: Band) -> dict[str, moderngl.Buffer]:
         """Storage blocks of other stages that direct light reads and adds to."""
         return {
             "Camera": self.camera_hits.camera.buffer,
-            "RadiusFactors": self.caustic_radii.buffer,
+            "RadiusFactors": self.caustic_radii.factors(band),
             "FoundRadiances": self.final_gather.radiances.buffer,
         }
 

@@ -16,12 +16,10 @@ from ...gl.records import Record
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, RayVisibility
 from ...scene.scene import Scene
-from ..common.records import TRIANGLE_ATTRIBUTES
+from ..common.records import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 
 log = logging.getLogger(__name__)
 
-_VERTICES = 3
-"""Of a triangle."""
 _NO_UV = 0xFFFFFFFF
 """In place of where a mesh's UV begin."""
 Constants("MeshArrays", NO_UV=_NO_UV)
@@ -40,7 +38,7 @@ INSTANCE_ENTRY = Record(
     slot_count="uint",
     set_code="float",
 )
-Record("GatherParameters", fallback_point="vec3", triangle_count="uint", instance_count="uint")
+Record("GatherParameters", fallback_point="vec3", first_triangle="uint", triangle_count="uint", instance_count="uint")
 
 
 _MESH_ARRAYS = {
@@ -120,15 +118,15 @@ class Geometry(BufferSet):
     """
 
     remedy = "lower the subdivision, decimate meshes or remove instances"
-    triangles = StorageBuffer("world triangles", "vec4")
-    attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES)
+    triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, texel_bytes=16)
+    attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, texel_bytes=16)
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context = context
         self._gather = library.compute("geometry/gather.comp")
         self._inputs = {
-            name: self.own(GrowingBuffer(context, f"geometry {name}", self.remedy))
+            name: self.own(GrowingBuffer(context, f"geometry {name}", self.remedy, texel_bytes=16))
             for name in ("Instances", "SlotMaterials", *_MESH_ARRAYS)
         }
         self._arrays: dict[str, list[np.ndarray]] = {}
@@ -188,15 +186,22 @@ class Geometry(BufferSet):
         self._upload_meshes(meshes)
         self._inputs["Instances"].upload(entries)
         self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
-        self.triangles.require_items(_VERTICES * self.triangle_count)
+        self.triangles.require_items(self.triangle_count)
         self.attributes.require_items(self.triangle_count)
-        buffers = {name: buffer.buffer for name, buffer in self._inputs.items()}
-        buffers |= {"Triangles": self.triangles.buffer, "Attributes": self.attributes.buffer}
-        self._gather.run(
-            self.triangle_count,
-            buffers,
-            {"fallback_point": self.center, "triangle_count": self.triangle_count, "instance_count": len(instances)},
-        )
+        inputs = {name: buffer.buffer for name, buffer in self._inputs.items()}
+        for triangles, attributes in zip(
+            self.triangles.ranges(self.triangle_count), self.attributes.ranges(self.triangle_count), strict=True
+        ):
+            self._gather.run(
+                triangles.count,
+                {**inputs, "Triangles": triangles, "Attributes": attributes},
+                {
+                    "fallback_point": self.center,
+                    "first_triangle": triangles.first,
+                    "triangle_count": triangles.count,
+                    "instance_count": len(instances),
+                },
+            )
 
     def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
         """Finite bounds of each mesh, found once for each array of positions."""

@@ -59,8 +59,8 @@ class SurfaceAttributes(BufferSet):
     """The buffers ShadingInstances and AttributeValues: the latter starts with the place and the components of each of
     ``count`` attributes of each instance, then come the values, three corners a triangle."""
 
-    _instances = StorageBuffer("shading instances", SHADING_INSTANCE, remedy="remove instances")
-    _values = StorageBuffer("mesh attributes", "uint", remedy="use fewer attributes in materials")
+    _instances = StorageBuffer("shading instances", SHADING_INSTANCE, remedy="remove instances", texel_bytes=16)
+    _values = StorageBuffer("mesh attributes", "uint", remedy="use fewer attributes in materials", texel_bytes=16)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)

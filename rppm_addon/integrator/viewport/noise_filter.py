@@ -15,6 +15,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record, stride
 from ...gl.storage_blocks import StorageBlock
 from ...scene.passes import FILM_PASSES
+from ..common.known import known
 from ..common.stage_sizes import StageSizes, film_pixels
 from ..common.viewport_demands import FILTERED_PASSES
 from ..stages.film import Film
@@ -69,7 +70,7 @@ class NoiseFilter(BufferSet):
 
     remedy = "make the viewport smaller"
     _guides = StorageBuffer("guides of the noise filter", "vec4", film_pixels)
-    _passes = StorageBuffer("passes of the noise filter", "float", _pass_values)
+    _passes = StorageBuffer("passes of the noise filter", "float", _pass_values, texel_bytes=16)
     """Of a film, one pass after the other in the order of FILTERED_PASSES."""
     picture = StorageBuffer("filtered picture", "vec4", film_pixels)
     """Radiance W/(m^2 sr) and alpha, once it was filtered."""
@@ -113,8 +114,8 @@ class NoiseFilter(BufferSet):
             "luminance_step": _luminance_step(samples),
         }
         buffers = {
-            "Film": film.radiance,
-            "PhotonLight": film.photon_light,
+            "Film": known(film.radiance.whole),
+            "PhotonLight": known(film.photon_light.whole),
             "PassValues": self._passes.buffer,
         }
         signals = {"Signals": self.picture.buffer}

@@ -7,7 +7,9 @@ import numpy as np
 from ...gl.buffer_sets import sum_by_name
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
+from ...gl.records import stride
 from ...scene.scene import Scene
+from ..common.known import known
 from ..common.stage_sizes import StageSizes
 from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
 from ..first_look import FirstLook
@@ -50,13 +52,13 @@ class ViewportPictures:
     def show(self, scene: Scene, film: Film, samples: int, last: bool = False) -> np.ndarray | None:
         """(height, width, 4) float32 scene-linear, exposed, premultiplied alpha, of a film of so many samples, which is
         of the scene's view and may be coarser; None where the film's own picture is the one to show, as after the
-        ``last`` sample.
+        ``last`` sample, or where the device holds none of this size in one buffer.
 
         Raises SceneError for a camera that sees nothing, and DeviceError.
         """
         settings, width, height = scene.settings, film.width, film.height
         self._reprojection.forget_others(scene)
-        if len(settings.passes) == 1:
+        if len(settings.passes) == 1 or not self._holds(scene):
             return None
         self._keep_before(scene)
         coarse = (width, height) != scene.camera.resolution
@@ -64,7 +66,7 @@ class ViewportPictures:
         filtered = strength(samples, of)
         fade = 1.0 if coarse else max(0.0, 1.0 - samples / min(of, HISTORY_ENDS))
         moves = can_move(scene) and (coarse or (fade > 0.0 and self._reprojection.has_history(scene)))
-        picture = film.radiance
+        picture = known(film.radiance.whole)
         if filtered > 0.0:
             noise_filter = self._filter_of(width, height)
             noise_filter.filter(film, samples, filtered)
@@ -81,7 +83,7 @@ class ViewportPictures:
     def move(self, scene: Scene) -> np.ndarray | None:
         """The last picture as it is seen in a scene's view, like show; None where there is none. Raises as show."""
         self._keep_before(scene)
-        return self._reprojection.move(scene)
+        return self._reprojection.move(scene) if self._holds(scene) else None
 
     def given_out(self, scene: Scene, combined: np.ndarray) -> None:
         """This is what is to be seen of a scene now."""
@@ -93,8 +95,14 @@ class ViewportPictures:
             return
         shown, combined = self._to_keep
         self._to_keep = None
-        if can_move(shown) and combined.shape[1::-1] == shown.camera.resolution and len(shown.settings.passes) != 1:
+        movable = can_move(shown) and self._holds(shown)
+        if movable and combined.shape[1::-1] == shown.camera.resolution and len(shown.settings.passes) != 1:
             self._reprojection.keep(shown, combined, MOST_HISTORY)
+
+    def _holds(self, scene: Scene) -> bool:
+        """Whether the device holds a picture of the view in one buffer, as all of what is done here asks for."""
+        width, height = scene.camera.resolution
+        return stride("vec4") * width * height <= self._context.storage_block_limit
 
     def _filter_of(self, width: int, height: int) -> NoiseFilter:
         if self._filter is None or self._filter.size != (width, height):
