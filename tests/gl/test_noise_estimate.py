@@ -46,7 +46,7 @@ def iterated(mapper, scene, iterations):
 
 
 def test_the_half_is_the_mean_of_its_iterations(mapper, other_mapper, monkeypatch):
-    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", WIDTH * 7)
+    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", WIDTH * 13)
     scene = noisy_room()
     means = iterated(mapper, scene, 32)
     sums = np.array([number * mean.astype(np.float64) for number, mean in enumerate(means, 1)])
