@@ -16,7 +16,7 @@ from rppm_addon.integrator.stages.noise_estimate import BLOCK, LEAST_MEASURED, M
 from rppm_addon.scene.errors import CheckpointError
 from rppm_addon.session.continuation import Continuation
 
-WIDTH, HEIGHT, EXPOSURE, THRESHOLD = 40, 24, 1.5, 0.05
+WIDTH, HEIGHT, EXPOSURE, THRESHOLD = 40, 24, 1.5, 0.06
 
 
 def noisy_room(**settings):
