@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A viewport's scene follows every edit: it equals one exported anew, and shares what did not change."""
 
+import collections
 import random
 
 import bpy
 import numpy as np
 import pytest
 
+from rppm_addon.blender.export.meshes import meshes
 from rppm_addon.blender.export.sync import SceneSync
 from rppm_addon.scene import Camera, Instance, Scene
 from rppm_addon.scene.documents import field_names
@@ -256,7 +258,7 @@ def test_what_objects_lack_is_told_until_they_have_it(synced):
 def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
     """What an edit costs does not grow with the scene: the depsgraph's instances are not listed again."""
     passes = []
-    monkeypatch.setattr(synced._objects, "export", lambda *a: passes.append(a))
+    monkeypatch.setattr(synced._objects, "begin", lambda *a: passes.append(a))
     for edit in (move, edit_mesh, paint, brighten, move_light, recolor_world):
         edit()
         bpy.context.view_layer.update()
@@ -349,12 +351,14 @@ def test_what_changes_while_an_export_is_in_slices(synced, edit):
         edit()
         bpy.context.view_layer.update()
     sync, graph = SceneSync(), bpy.context.evaluated_depsgraph_get()
-    first = sync.prepare(graph, 0.0)
-    assert first is not None and 0 < first.objects < first.of
+    first = advance(sync, graph)
+    while first.objects == 0:
+        first = advance(sync, graph)
+    assert 0 < first.objects < first.of
     prepared = []
 
     def follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-        prepared.append(sync.prepare(depsgraph, 0.0))
+        prepared.append(advance(sync, depsgraph))
 
     bpy.app.handlers.depsgraph_update_post.append(follow)
     bpy.app.handlers.frame_change_post.append(follow)
@@ -365,27 +369,46 @@ def test_what_changes_while_an_export_is_in_slices(synced, edit):
     bpy.app.handlers.depsgraph_update_post.remove(follow)
     bpy.app.handlers.frame_change_post.remove(follow)
     graph = bpy.context.evaluated_depsgraph_get()
-    slices = 0
-    while sync.prepare(graph, 0.0) is not None:
+    finish(sync, graph)
+    assert same(sync.scene, fresh())
+
+
+def advance(sync: SceneSync, graph: bpy.types.Depsgraph):
+    """A slice without time: one step and no more is done."""
+    return sync.advance(graph, CAMERA, None, 0.0)
+
+
+def finish(sync: SceneSync, graph: bpy.types.Depsgraph) -> int:
+    """Slices until the scene is up to date."""
+    slices = 1
+    while advance(sync, graph) is not None:
         slices += 1
-        assert slices < 20
-    assert same(sync.update(graph, CAMERA), fresh())
+        assert slices < 200
+    return slices
 
 
-def test_what_was_prepared_is_not_exported_again(synced, monkeypatch):
-    bpy.context.view_layer.update()
-    sync, graph = SceneSync(), bpy.context.evaluated_depsgraph_get()
-    assert not len(graph.updates)
-    while sync.prepare(graph, 0.0) is not None:
-        pass
-    monkeypatch.setattr("rppm_addon.blender.export.meshes.mesh_table.export_mesh", None)
-    assert same(sync.update(graph, CAMERA), synced.scene)
+def test_no_slice_reads_what_another_has_read(synced, monkeypatch):
+    """Each array of each mesh is read once, however short the slices are."""
+    for name, read in meshes._READERS.items():
+        monkeypatch.setitem(meshes._READERS, name, counted(name, read))
+    reads.clear()
+    assert finish(SceneSync(), bpy.context.evaluated_depsgraph_get()) > 10
+    assert collections.Counter(reads) == dict.fromkeys(meshes._READERS, 2)
 
 
-def test_many_new_objects_are_prepared_for(synced, monkeypatch):
+reads: list[str] = []
+
+
+def counted(name, read):
+    def reading(*arguments):
+        reads.append(name)
+        return read(*arguments)
+
+    return reading
+
+
+def test_many_new_objects_are_exported_in_slices(synced):
     graph = bpy.context.evaluated_depsgraph_get()
-    assert synced.prepare(graph, 0.0) is None
-    monkeypatch.setattr("rppm_addon.blender.export.sync._FEW_NEW", 2)
     handlers = list(bpy.app.handlers.depsgraph_update_post)
     bpy.app.handlers.depsgraph_update_post.clear()
     for number in range(4):
@@ -393,9 +416,7 @@ def test_many_new_objects_are_prepared_for(synced, monkeypatch):
     bpy.context.view_layer.update()
     bpy.app.handlers.depsgraph_update_post.extend(handlers)
     graph = bpy.context.evaluated_depsgraph_get()
-    slices = 0
-    while synced.prepare(graph, 0.0) is not None:
-        slices += 1
-        assert slices < 20
-    assert slices >= 4
-    assert same(synced.update(graph, CAMERA), fresh())
+    before = synced.scene
+    assert advance(synced, graph) is not None and synced.scene is before
+    assert finish(synced, graph) >= 4
+    assert same(synced.scene, fresh())

@@ -10,7 +10,10 @@ from dataclasses import dataclass
 import bpy
 
 from .report import Report, listed
+from .slices import Slices
 
+_AT_ONCE = 32
+"""Objects between which nobody looks at the clock."""
 _CYCLES_BOUNCES = 1024
 """Of lights and of the world, Cycles' default: no limit."""
 
@@ -213,11 +216,38 @@ class OmissionList:
     def __init__(self) -> None:
         self._users: dict[Omission, dict[int, str]] = {}
         """By what they use, the names of objects by session_uid."""
+        self._known: set[int] = set()
+
+    def look_at_all(self, depsgraph: bpy.types.Depsgraph, slices: Slices) -> None:
+        """Take note of the objects of a depsgraph that it does not know, and forget those that are not there any more.
+
+        Raises Unfinished when the slice is over: what it has seen it knows then.
+        """
+        there = set()
+        for number, source in enumerate(objects_of(depsgraph)):
+            uid = source.original.session_uid
+            there.add(uid)
+            if uid not in self._known:
+                self.look_at([source])
+                if number % _AT_ONCE == 0:
+                    slices.rest()
+        self._forget(self._known - there)
+
+    def expire(self, uids: Iterable[int]) -> None:
+        """Objects that may use others from now on."""
+        self._known.difference_update(uids)
+
+    def _forget(self, uids: set[int]) -> None:
+        self._known -= uids
+        for users in self._users.values() if uids else ():
+            for uid in uids & users.keys():
+                del users[uid]
 
     def look_at(self, sources: Iterable[bpy.types.Object]) -> None:
         """Take note of evaluated objects, anew of those that it knows."""
         for source in sources:
             uid = source.original.session_uid
+            self._known.add(uid)
             for omission in OF_OBJECTS:
                 if omission.is_used(source):
                     self._users.setdefault(omission, {})[uid] = source.name

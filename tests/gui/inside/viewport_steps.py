@@ -228,26 +228,26 @@ def gaps() -> list[float]:
 
 # Time in the engine.
 
-_calls: dict[str, list[float]] = {"view_update": [], "view_draw": []}
+_calls: dict[str, list[tuple[float, float]]] = {"view_update": [], "view_draw": []}
 
 
-def time_engine() -> None:
-    """From now on note how long the engine's functions for viewports take."""
-    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
-    for name, calls in _calls.items():
+def time_engine(name: str = "RPPM") -> None:
+    """From now on note how long an engine's functions for viewports take."""
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == name)
+    for function, calls in _calls.items():
         calls.clear()
-        original = getattr(engine, name)
+        original = getattr(engine, function)
         if not hasattr(original, "timed"):
-            setattr(engine, name, _timed(original, calls))
+            setattr(engine, function, _timed(original, calls))
 
 
-def _timed(function, calls: list[float]):
+def _timed(function, calls: list[tuple[float, float]]):
     def timed(self, context, depsgraph):
-        started = time.perf_counter()
+        started, busy = time.perf_counter(), time.thread_time()
         try:
             return function(self, context, depsgraph)
         finally:
-            calls.append(1000.0 * (time.perf_counter() - started))
+            calls.append((1000.0 * (time.perf_counter() - started), 1000.0 * (time.thread_time() - busy)))
 
     timed.timed = True
     return timed
@@ -255,7 +255,12 @@ def _timed(function, calls: list[float]):
 
 def engine_times() -> dict[str, list[float]]:
     """Milliseconds of each call since time_engine()."""
-    return {name: list(calls) for name, calls in _calls.items()}
+    return {name: [wall for wall, _ in calls] for name, calls in _calls.items()}
+
+
+def engine_busy() -> dict[str, list[float]]:
+    """Milliseconds of the processor that the calls since time_engine() took in Blender's own thread."""
+    return {name: [busy for _, busy in calls] for name, calls in _calls.items()}
 
 
 # Exports in slices.

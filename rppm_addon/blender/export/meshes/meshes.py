@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Evaluated Blender meshes to indexed arrays."""
 
+from collections.abc import Callable, Hashable
+from typing import Any
+
 import bpy
 import numpy as np
 
 from ....scene import Mesh
 from ....scene.sharing import keep_equal, same_bits
 from ..report import Report
+from ..slices import Slices
 from .element_arrays import elements
 
 FARTHEST = 1e18
@@ -23,24 +27,30 @@ NO_MESH = Mesh(
 """In place of a mesh that is not there."""
 
 
-def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report, before: Mesh | None = None) -> Mesh | None:
+def export_mesh(
+    mesh: bpy.types.Mesh,
+    name: str,
+    report: Report,
+    before: Mesh | None = None,
+    slices: Slices | None = None,
+    record: dict[Hashable, Any] | None = None,
+) -> Mesh | None:
     """The arrays of an evaluated mesh, in its object space; None when it has no triangle.
 
     before: what it may resemble, as it was a frame ago; arrays that are the same are its very arrays.
+    record: what was read of it in slices before. Raises Unfinished.
     Triangles with a vertex that is not finite, or beyond FARTHEST, are left out, with a warning that names ``name``.
     """
     if len(mesh.polygons) == 0:
         return None
     mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    if count == 0:
+    if len(mesh.loop_triangles) == 0:
         return None
-    before = NO_MESH if before is None else before
+    before, slices, record = before or NO_MESH, slices or Slices(), {} if record is None else record
+    slices.step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
     arrays = {
-        "triangle_corners": _kept(before.triangle_corners, elements(mesh.loop_triangles, "loops", count, 3, np.int32)),
-        "triangle_slots": _triangle_slots(mesh, before.triangle_slots),
-        **dict(zip(("positions", "corner_vertices", "corner_normals"), read_shape(mesh, before), strict=True)),
-        "corner_uv": _render_uv(mesh, before.corner_uv),
+        field: slices.step(record, field, lambda read=read: read(mesh, getattr(before, field)))
+        for field, read in _READERS.items()
     }
     if not _all_near(arrays["positions"]):
         _skip_distant_vertices(arrays, name, report)
@@ -59,11 +69,11 @@ def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray
 
     before: as for export_mesh.
     """
-    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
-    positions = _kept(before.positions, positions)
-    corner_vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)
-    corner_vertices = _kept(before.corner_vertices, corner_vertices)
-    return positions, corner_vertices, _corner_normals(mesh, before.corner_normals)
+    return (
+        _positions(mesh, before.positions),
+        _corner_vertices(mesh, before.corner_vertices),
+        _corner_normals(mesh, before.corner_normals),
+    )
 
 
 def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
@@ -79,6 +89,18 @@ def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
 def _kept(before: np.ndarray, view: np.ndarray) -> np.ndarray:
     """The array before if it says the same as Blender's, or else a copy of that."""
     return before if same_bits(before, view) else view.copy()
+
+
+def _triangle_corners(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+    return _kept(before, elements(mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32))
+
+
+def _positions(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+    return _kept(before, _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32))
+
+
+def _corner_vertices(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+    return _kept(before, _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32))
 
 
 def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
@@ -140,6 +162,17 @@ def _render_uv(mesh: bpy.types.Mesh, before: np.ndarray | None) -> np.ndarray | 
     if name is None:
         return None
     return read_uv(mesh, name, before)
+
+
+_READERS: dict[str, Callable[[bpy.types.Mesh, Any], np.ndarray | None]] = {
+    "triangle_corners": _triangle_corners,
+    "triangle_slots": _triangle_slots,
+    "positions": _positions,
+    "corner_vertices": _corner_vertices,
+    "corner_normals": _corner_normals,
+    "corner_uv": _render_uv,
+}
+"""Of the arrays of a mesh, by their names; each takes what the array may resemble."""
 
 
 def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None) -> np.ndarray:

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exports in slices, between which Blender goes on: how long one takes, and what threads compute meanwhile."""
+
+import math
+import threading
+import time
+from collections.abc import Callable, Hashable
+from typing import Any
+
+
+class Unfinished(Exception):
+    """The time of a slice is over. What was done is kept: who does the same again goes on from there."""
+
+
+class Slices:
+    """The time of the slice that is under way. Without a beginning there is one, which never ends."""
+
+    def __init__(self) -> None:
+        self._seconds = self._end = math.inf
+
+    def begin(self, seconds: float) -> None:
+        """A slice of about so many seconds begins."""
+        self._seconds = seconds
+        self.restart()
+
+    def restart(self) -> None:
+        """Count from now on: what has gone before only found the place to go on from."""
+        self._end = time.monotonic() + self._seconds
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is over."""
+        return time.monotonic() >= self._end
+
+    @property
+    def are_limited(self) -> bool:
+        """Whether they end."""
+        return not math.isinf(self._seconds)
+
+    def rest(self) -> None:
+        """To be called when something is done and kept. Raises Unfinished when the time is over."""
+        if time.monotonic() >= self._end:
+            raise Unfinished
+
+    def step(self, record: dict[Hashable, Any], name: Hashable, make: Callable[[], Any]) -> Any:
+        """What ``make`` gives, made once and kept in a record by its name. Raises Unfinished after it was made."""
+        if name not in record:
+            record[name] = make()
+            self.rest()
+        return record[name]
+
+    def computed(self, record: dict[Hashable, Any], name: Hashable, compute: Callable[[], Any]) -> Any:
+        """As step(), for what takes long and asks nothing of Blender: a thread computes it where time is limited.
+
+        Raises Unfinished until it is done, or what ``compute`` raises.
+        """
+        if name not in record:
+            record[name] = _Job(compute) if self.are_limited else compute()
+        if isinstance(job := record[name], _Job):
+            # Waiting here, not in a loop of slices, leaves the processor to the thread.
+            if not job.wait(max(self._end - time.monotonic(), 0.0)):
+                raise Unfinished
+            del record[name]
+            record[name] = job.result()
+        return record[name]
+
+
+class _Job:
+    """Something computed in a thread of its own, which nobody waits for at the end of Blender."""
+
+    def __init__(self, compute: Callable[[], Any]) -> None:
+        self._compute: Callable[[], Any] | None = compute
+        self._result: Any = None
+        self._error: BaseException | None = None
+        self._thread = threading.Thread(target=self._run, name="RPPM export", daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        try:
+            self._result = self._compute()
+        except BaseException as error:
+            self._error = error
+        self._compute = None
+
+    def wait(self, seconds: float) -> bool:
+        """Whether it is done, at the latest after so many seconds."""
+        self._thread.join(None if math.isinf(seconds) else seconds)
+        return not self._thread.is_alive()
+
+    def result(self) -> Any:
+        """What was computed; raises what computing it raised."""
+        if self._error is not None:
+            raise self._error
+        return self._result
