@@ -4,11 +4,13 @@
 import collections
 import random
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
 
-from rppm_addon.blender.export.meshes import meshes
+from rppm_addon.blender import kept_exports
+from rppm_addon.blender.export.meshes import mesh_table, meshes
 from rppm_addon.blender.export.sync import SceneSync
 from rppm_addon.scene import Camera, Instance, Scene
 from rppm_addon.scene.documents import field_names
@@ -420,3 +422,99 @@ def test_many_new_objects_are_exported_in_slices(synced):
     assert advance(synced, graph) is not None and synced.scene is before
     assert finish(synced, graph) >= 4
     assert same(synced.scene, fresh())
+
+
+@pytest.fixture
+def kept(synced):
+    """What a viewport had exported that was switched to Solid; the engine's own handlers note what changes."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    kept_exports.keep(kept_exports.key_of(graph), synced)
+    follow = next(f for f in bpy.app.handlers.depsgraph_update_post if f.__name__ == "follow")
+    for handlers in (bpy.app.handlers.depsgraph_update_post, bpy.app.handlers.frame_change_post):
+        handlers.remove(follow)
+    yield synced
+    kept_exports.forget()
+    for handlers in (bpy.app.handlers.depsgraph_update_post, bpy.app.handlers.frame_change_post):
+        handlers.append(follow)
+
+
+def switch_back() -> SceneSync | None:
+    """What a viewport that is switched to Rendered finds."""
+    bpy.context.view_layer.update()
+    return kept_exports.take(bpy.context.evaluated_depsgraph_get())
+
+
+def edit_in_edit_mode():
+    """Enter edit mode, move a vertex, and stay there."""
+    bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.view_layer.update()
+    edited = bmesh.from_edit_mesh(bpy.data.meshes["Cube"])
+    edited.verts.ensure_lookup_table()
+    edited.verts[0].co.x -= 0.3
+    bmesh.update_edit_mesh(bpy.data.meshes["Cube"])
+
+
+def edit_and_leave_edit_mode():
+    """And leave it."""
+    edit_in_edit_mode()
+    bpy.context.view_layer.update()
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.parametrize("edit", [*EDITS, add_same_place, edit_in_edit_mode, edit_and_leave_edit_mode])
+def test_what_changes_in_another_shading_is_seen_after_switching_back(kept, edit):
+    edit()
+    found = switch_back()
+    assert found is kept
+    graph = bpy.context.evaluated_depsgraph_get()
+    assert len(graph.updates) == 0
+    assert same(found.update(graph, CAMERA), fresh())
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_many_edits_in_another_shading_are_seen_after_switching_back(kept, seed):
+    generator = random.Random(seed)
+    for edit in generator.sample([*EDITS, add_same_place], 8):
+        if edit not in {move_twin, hide} or "Twin" in bpy.data.objects:
+            edit()
+            bpy.context.view_layer.update()
+    assert same(switch_back().update(bpy.context.evaluated_depsgraph_get(), CAMERA), fresh())
+
+
+@pytest.mark.parametrize("edit, exported", [(move, []), (paint, []), (brighten, []), (edit_other_mesh, ["Other"])])
+def test_switching_back_exports_what_has_changed(kept, monkeypatch, edit, exported):
+    names, export_mesh = [], mesh_table.export_mesh
+    monkeypatch.setattr(
+        mesh_table, "export_mesh", lambda mesh, name, *more: names.append(name) or export_mesh(mesh, name, *more)
+    )
+    before = kept.scene
+    assert switch_back().update(bpy.context.evaluated_depsgraph_get(), CAMERA) is before
+    kept_exports.keep(kept_exports.key_of(bpy.context.evaluated_depsgraph_get()), kept)
+    edit()
+    assert switch_back().update(bpy.context.evaluated_depsgraph_get(), CAMERA) is not before
+    assert names == exported
+
+
+def test_nothing_is_kept_beyond_undo_another_file_or_another_view_layer(kept):
+    graph = bpy.context.evaluated_depsgraph_get()
+    other = bpy.context.scene.view_layers.new("Other")
+    other.update()
+    assert kept_exports.take(other.depsgraph) is None
+    for what in (lambda: bpy.ops.ed.undo(), lambda: bpy.ops.wm.read_factory_settings(use_empty=True)):
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.ed.undo_push(message="after")
+        kept_exports.keep(kept_exports.key_of(graph), kept)
+        what()
+        graph = bpy.context.evaluated_depsgraph_get()
+        assert not kept_exports._kept
+
+
+def test_what_takes_too_much_memory_or_changes_all_at_once_is_not_kept(kept, monkeypatch):
+    monkeypatch.setattr(kept_exports, "_MOST_UPDATES", 2)
+    move()
+    edit_other_mesh()
+    assert switch_back() is None
+    monkeypatch.setattr(kept_exports, "MOST_BYTES", 100)
+    kept_exports.keep(kept_exports.key_of(bpy.context.evaluated_depsgraph_get()), kept)
+    assert switch_back() is None

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Evaluated Blender meshes to indexed arrays."""
 
+import functools
 from collections.abc import Callable, Hashable
 from typing import Any
 
@@ -17,6 +18,9 @@ FARTHEST = 1e18
 """Coordinates beyond overflow in single precision as soon as they are squared."""
 _BLOCK = 256
 """Corners whose squares are added up in single precision."""
+_COPIED_BYTES = 1 << 23
+"""Of an array, that are copied between two looks at the clock."""
+_Copy = Callable[[np.ndarray], np.ndarray]
 _PART = 1 << 16
 """Elements that are looked at while they lie in a cache."""
 
@@ -48,10 +52,10 @@ def export_mesh(
         return None
     before, slices, record = before or NO_MESH, slices or Slices(), {} if record is None else record
     slices.step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
-    arrays = {
-        field: slices.step(record, field, lambda read=read: read(mesh, getattr(before, field)))
-        for field, read in _READERS.items()
-    }
+    arrays = {}
+    for field, read in _READERS.items():
+        copy = functools.partial(_copied, slices, record, field)
+        arrays[field] = slices.step(record, field, lambda: read(mesh, getattr(before, field), copy))
     if not _all_near(arrays["positions"]):
         _skip_distant_vertices(arrays, name, report)
         if len(arrays["triangle_corners"]) == 0:
@@ -70,9 +74,9 @@ def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray
     before: as for export_mesh.
     """
     return (
-        _positions(mesh, before.positions),
-        _corner_vertices(mesh, before.corner_vertices),
-        _corner_normals(mesh, before.corner_normals),
+        _positions(mesh, before.positions, np.copy),
+        _corner_vertices(mesh, before.corner_vertices, np.copy),
+        _corner_normals(mesh, before.corner_normals, np.copy),
     )
 
 
@@ -86,24 +90,37 @@ def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
     return np.where(np.abs(velocities) < FARTHEST, velocities, np.float32(0.0))
 
 
-def _kept(before: np.ndarray, view: np.ndarray) -> np.ndarray:
+def _copied(slices: Slices, record: dict[Hashable, Any], field: str, view: np.ndarray) -> np.ndarray:
+    """A copy of Blender's array, made in parts."""
+    rows = max(_COPIED_BYTES // max(view[:1].nbytes, 1), 1)
+    if len(view) <= rows:
+        return view.copy()
+    result = record.setdefault((field, "copy"), np.empty_like(view))
+    for start in range(record.get((field, "place"), 0), len(view), rows):
+        result[start : start + rows] = view[start : start + rows]
+        record[field, "place"] = start + rows
+        slices.rest()
+    return result
+
+
+def _kept(before: np.ndarray, view: np.ndarray, copy: _Copy) -> np.ndarray:
     """The array before if it says the same as Blender's, or else a copy of that."""
-    return before if same_bits(before, view) else view.copy()
+    return before if same_bits(before, view) else copy(view)
 
 
-def _triangle_corners(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
-    return _kept(before, elements(mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32))
+def _triangle_corners(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
+    return _kept(before, elements(mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32), copy)
 
 
-def _positions(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
-    return _kept(before, _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32))
+def _positions(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
+    return _kept(before, _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32), copy)
 
 
-def _corner_vertices(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
-    return _kept(before, _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32))
+def _corner_vertices(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
+    return _kept(before, _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32), copy)
 
 
-def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray, _: _Copy) -> np.ndarray:
     count = len(mesh.loop_triangles)
     slots = _attribute(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
     if slots is None:
@@ -118,18 +135,14 @@ def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
     return slots.take(polygons)
 
 
-def _corner_normals(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+def _corner_normals(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
     """(corners, 3) float32, those of faces without area repaired: Blender may give 0 or NaN."""
     view = elements(mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32)
     if same_bits(before, view):
         return before
-    normals = np.empty_like(view)
-    any_length, good = _has_free_normals(mesh), True
-    for start in range(0, len(view), _PART):  # so many lie in a cache until they are looked at
-        part = slice(start, start + _PART)
-        normals[part] = view[part]
-        good = good and not any_length and _no_zeros_among(normals[part])
-    if not good:
+    normals = copy(view)
+    parts = (normals[start : start + _PART] for start in range(0, len(normals), _PART))
+    if _has_free_normals(mesh) or not all(map(_no_zeros_among, parts)):
         _make_unit(normals)
     return normals
 
@@ -157,14 +170,14 @@ def render_uv_name(mesh: bpy.types.Mesh) -> str | None:
     return next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
 
 
-def _render_uv(mesh: bpy.types.Mesh, before: np.ndarray | None) -> np.ndarray | None:
+def _render_uv(mesh: bpy.types.Mesh, before: np.ndarray | None, copy: _Copy) -> np.ndarray | None:
     name = render_uv_name(mesh)
     if name is None:
         return None
-    return read_uv(mesh, name, before)
+    return read_uv(mesh, name, before, copy)
 
 
-_READERS: dict[str, Callable[[bpy.types.Mesh, Any], np.ndarray | None]] = {
+_READERS: dict[str, Callable[[bpy.types.Mesh, Any, _Copy], np.ndarray | None]] = {
     "triangle_corners": _triangle_corners,
     "triangle_slots": _triangle_slots,
     "positions": _positions,
@@ -172,17 +185,18 @@ _READERS: dict[str, Callable[[bpy.types.Mesh, Any], np.ndarray | None]] = {
     "corner_normals": _corner_normals,
     "corner_uv": _render_uv,
 }
-"""Of the arrays of a mesh, by their names; each takes what the array may resemble."""
+"""Of the arrays of a mesh, by their names; each takes what the array may resemble, and what copies Blender's."""
 
 
-def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None) -> np.ndarray:
+def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None, copy: _Copy = np.copy) -> np.ndarray:
     """(corners, 2) float32 of a UV map, 0 where it is not finite; ``before`` itself if that says the same."""
     uv = elements(mesh.uv_layers[name].uv, "vector", len(mesh.loops), 2, np.float32)
     if before is not None and same_bits(before, uv):
         return before
+    uv = copy(uv)
     if np.isfinite(uv.min(initial=0.0)) and np.isfinite(uv.max(initial=0.0)):
-        return uv.copy()
-    return keep_equal(before, np.nan_to_num(uv, nan=0.0, posinf=0.0, neginf=0.0))
+        return uv
+    return keep_equal(before, np.nan_to_num(uv, copy=False, nan=0.0, posinf=0.0, neginf=0.0))
 
 
 def _attribute(mesh: bpy.types.Mesh, name: str, field: str, count: int, width: int, kind: type) -> np.ndarray | None:
