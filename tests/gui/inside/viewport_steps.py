@@ -3,6 +3,7 @@
 
 import importlib
 import time
+import types
 import zlib
 
 import bpy
@@ -109,6 +110,13 @@ def turn(degrees: float) -> None:
     """Orbit about the vertical axis."""
     view = space().region_3d
     view.view_rotation = Quaternion((0.0, 0.0, 1.0), np.radians(degrees)) @ view.view_rotation
+
+
+def edit_mesh(name: str) -> None:
+    """Raise the first vertex of a mesh object, and forget no other."""
+    mesh = bpy.data.objects[name].data
+    mesh.vertices[0].co.z += 0.1
+    mesh.update()
 
 
 def move_object(name: str, offset: list[float]) -> None:
@@ -268,19 +276,47 @@ def engine_busy() -> dict[str, list[float]]:
 _slices: list[list[int] | None] = []
 
 
+def _module(name: str) -> types.ModuleType:
+    """A module of the extension's export."""
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
+    return importlib.import_module(f"{engine.__module__.rpartition('.')[0]}.export.{name}")
+
+
 def count_slices() -> None:
     """From now on note each slice of a viewport's export."""
-    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
-    module = importlib.import_module(engine.__module__.rpartition(".")[0] + ".export.sync")
-    prepare = module.SceneSync.prepare
+    module = _module("sync")
+    advance = module.SceneSync.advance
     _slices.clear()
 
     def counted(self, *arguments):
-        progress = prepare(self, *arguments)
+        progress = advance(self, *arguments)
         _slices.append(None if progress is None else [progress.objects, progress.of])
         return progress
 
-    module.SceneSync.prepare = counted
+    module.SceneSync.advance = counted
+
+
+_exported: list[str] = []
+
+
+def count_meshes() -> None:
+    """From now on note whose mesh is exported."""
+    module = _module("meshes.mesh_table")
+    export_mesh = module.export_mesh
+
+    def counted(mesh, name, *arguments):
+        exported = export_mesh(mesh, name, *arguments)
+        _exported.append(name)
+        return exported
+
+    module.export_mesh = counted
+
+
+def exported_meshes() -> list[str]:
+    """Names of objects, in their order, since this was asked last."""
+    names = _exported.copy()
+    _exported.clear()
+    return names
 
 
 def slices() -> list[list[int] | None]:

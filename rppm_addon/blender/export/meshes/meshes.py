@@ -55,7 +55,7 @@ def export_mesh(
     arrays = {}
     for field, read in _READERS.items():
         copy = functools.partial(_copied, slices, record, field)
-        arrays[field] = slices.step(record, field, lambda: read(mesh, getattr(before, field), copy))
+        arrays[field] = slices.step(record, field, functools.partial(read, mesh, getattr(before, field), copy))
     if not _all_near(arrays["positions"]):
         _skip_distant_vertices(arrays, name, report)
         if len(arrays["triangle_corners"]) == 0:

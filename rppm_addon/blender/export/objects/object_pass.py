@@ -10,7 +10,6 @@ import numpy as np
 from ....scene import Instance, Light
 from ..meshes.attributes import GENERATED, ISLAND, TANGENT, title_of
 from ..omissions import objects_of
-from ..slices import Unfinished
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
 from .matrices import usable_matrices
