@@ -217,31 +217,15 @@ class OmissionList:
         self._users: dict[Omission, dict[int, str]] = {}
         """By what they use, the names of objects by session_uid."""
         self._known: set[int] = set()
+        """session_uid of those that were looked at."""
 
     def look_at_all(self, depsgraph: bpy.types.Depsgraph, slices: Slices) -> None:
-        """Take note of the objects of a depsgraph that it does not know, and forget those that are not there any more.
-
-        Raises Unfinished when the slice is over: what it has seen it knows then.
-        """
-        there = set()
-        for number, source in enumerate(objects_of(depsgraph)):
-            uid = source.original.session_uid
-            there.add(uid)
-            if uid not in self._known:
+        """Take note of the objects of a depsgraph that it does not know. Raises Unfinished when the slice is over."""
+        for source in objects_of(depsgraph):
+            if source.original.session_uid not in self._known:
                 self.look_at([source])
-                if number % _AT_ONCE == 0:
+                if len(self._known) % _AT_ONCE == 0:
                     slices.rest()
-        self._forget(self._known - there)
-
-    def expire(self, uids: Iterable[int]) -> None:
-        """Objects that may use others from now on."""
-        self._known.difference_update(uids)
-
-    def _forget(self, uids: set[int]) -> None:
-        self._known -= uids
-        for users in self._users.values() if uids else ():
-            for uid in uids & users.keys():
-                del users[uid]
 
     def look_at(self, sources: Iterable[bpy.types.Object]) -> None:
         """Take note of evaluated objects, anew of those that it knows."""

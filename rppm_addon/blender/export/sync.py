@@ -200,7 +200,6 @@ class SceneSync:
             self.relist()
             self._delays += 1
         self._objects.meshes.forget(edits.shapes)
-        self._omissions.expire(edits.objects.keys())
         if edits.world:
             self._world = None
         pending = self._pending
@@ -295,6 +294,7 @@ class SceneSync:
         if self._pass is None:
             unchanged, moved = ({}, {}) if self._pending.attributes else self._known()
             self._pass = self._objects.begin(unchanged, moved)
+            self._omissions = OmissionList()
         placed = self._objects.go_on(self._pass, depsgraph, shown)
         self._omissions.look_at_all(depsgraph, self._report.slices)
         self._placed = placed

@@ -211,7 +211,7 @@ def changed() -> float | None:
 
 # Gaps between timers.
 
-_ticks: list[float] = []
+_ticks: list[tuple[float, float]] = []
 _ticking = False
 
 
@@ -225,13 +225,18 @@ def tick() -> None:
 
 
 def _tick() -> float:
-    _ticks.append(time.perf_counter())
+    _ticks.append((time.perf_counter(), time.thread_time()))
     return GAP_SECONDS
 
 
 def gaps() -> list[float]:
     """Milliseconds between the calls since tick()."""
-    return [1000.0 * (after - before) for before, after in zip(_ticks, _ticks[1:])]
+    return [1000.0 * (after - before) for (before, _), (after, _) in zip(_ticks, _ticks[1:])]
+
+
+def busy_gaps() -> list[float]:
+    """Milliseconds of the processor that Blender's own thread took between them, however busy the machine is."""
+    return [1000.0 * (after - before) for (_, before), (_, after) in zip(_ticks, _ticks[1:])]
 
 
 # Time in the engine.
