@@ -104,7 +104,7 @@ def _export(
     image: bpy.types.Image, load: Callable[[], bpy.types.Image | None], slices: Slices, record: dict
 ) -> Image | None:
     """What ``load`` gives of an image; None when it has no pixels. record: what slices before have done of it."""
-    known = slices.step(record, "known", lambda: kept(image))  # which asks for its size: Blender decodes the file
+    known = slices.step_alone(record, "known", lambda: kept(image))  # asks for its size: Blender decodes the file
     if known is not None:
         return known
     loaded = load()
@@ -129,7 +129,7 @@ def _read_in_steps(image: bpy.types.Image, slices: Slices, record: dict) -> Imag
         return slices.step(record, "encoded", lambda: _read_at_once(image, look))
     make = np.ones if slices.are_limited else np.empty
     stored = slices.computed(record, "memory", lambda: make(shape, np.float32))
-    if not slices.step(record, "is read", lambda: _read(image, stored)):
+    if not slices.step_alone(record, "is read", lambda: _read(image, stored)):
         return None
     return slices.computed(record, "encoded", lambda: _encoded(look, _four_channels(stored, look.is_float)))
 

@@ -18,6 +18,8 @@ FARTHEST = 1e18
 """Coordinates beyond overflow in single precision as soon as they are squared."""
 _BLOCK = 256
 """Corners whose squares are added up in single precision."""
+_MANY = 1 << 19
+"""Corners whose normals Blender computes in a slice of its own."""
 _COPIED_BYTES = 1 << 23
 """Of an array, that are copied between two looks at the clock."""
 _Copy = Callable[[np.ndarray], np.ndarray]
@@ -51,7 +53,8 @@ def export_mesh(
     if len(mesh.loop_triangles) == 0:
         return None
     before, slices, record = before or NO_MESH, slices or Slices(), {} if record is None else record
-    slices.step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
+    step = slices.step_alone if len(mesh.loops) > _MANY else slices.step
+    step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
     arrays = {}
     for field, read in _READERS.items():
         copy = functools.partial(_copied, slices, record, field)
