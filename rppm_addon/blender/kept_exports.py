@@ -26,7 +26,7 @@ def key_of(depsgraph: bpy.types.Depsgraph) -> _Key:
 def keep(key: _Key, sync: SceneSync) -> None:
     """Keep what a viewport has exported, which from now on is told of all that changes."""
     scene = sync.scene
-    if scene is None or _bytes_of(scene) > MOST_BYTES:
+    if scene is not None and _bytes_of(scene) > MOST_BYTES:
         return
     _kept.pop(key, None)
     _kept[key] = sync

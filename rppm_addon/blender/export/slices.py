@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Hashable
 from typing import Any
 
-
 _MOST_STRETCH = 2.5
 """By how much a slice may last longer."""
 _FRESH_SECONDS = 0.005
@@ -22,8 +21,7 @@ class Slices:
     """The time of the slice that is under way. Without a beginning there is one, which never ends."""
 
     def __init__(self) -> None:
-        self._seconds = math.inf
-        self._began = self._began_busy = -math.inf
+        self.begin(math.inf)
 
     def begin(self, seconds: float) -> None:
         """A slice of about so many seconds begins."""

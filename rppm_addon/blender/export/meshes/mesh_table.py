@@ -120,9 +120,7 @@ class MeshTable:
             self._unfinished[key] = owner, {}
         return self._unfinished[key][1]
 
-    def _add(
-        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, key: int, owner: int, slices: Slices
-    ) -> None:
+    def _add(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, key: int, owner: int, slices: Slices) -> None:
         self._report.progress(f"Exporting {source.name}")
         exported = None
         if mesh is not None:
@@ -139,9 +137,7 @@ class MeshTable:
         self._tried[place] = set()
         self._keys[place] = key
 
-    def _complete(
-        self, place: int, mesh: bpy.types.Mesh, attributes: set[str], owner: int, slices: Slices
-    ) -> None:
+    def _complete(self, place: int, mesh: bpy.types.Mesh, attributes: set[str], owner: int, slices: Slices) -> None:
         """Read attributes that were not asked for before; meshes that were handed out stay as they are."""
         known, before = self.meshes[place], self._before.get(owner)
         found, record = dict(known.attributes), self._record(self._keys[place], owner)
