@@ -3,6 +3,7 @@
 
 import logging
 import math
+import threading
 import time
 from dataclasses import replace
 
@@ -108,7 +109,8 @@ class Viewport:
 
     def draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Draw the newest frame, and follow the view."""
-        if self._sync.scene is not None and not self._error:
+        is_up_to_date = self._exporting is None or self._scene is not None
+        if self._sync.scene is not None and is_up_to_date and not self._error:
             try:
                 self._follow(context, depsgraph)
             except RppmError as error:
@@ -332,8 +334,9 @@ def _on_undo(*_: object) -> None:
 @persistent
 def _on_evaluated(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """What changes in Solid is to be seen in Rendered."""
-    _close_freed()
-    kept_exports.note(depsgraph)
+    if threading.current_thread() is threading.main_thread():  # renders evaluate depsgraphs of their own
+        _close_freed()
+        kept_exports.note(depsgraph)
 
 
 _HANDLERS = (
