@@ -110,6 +110,8 @@ class MeshTable:
                     self._complete(place, evaluated, attributes, owner, slices)
             self._before.pop(owner, None)
             self._unfinished.pop(key, None)
+            self._owners[key].add(owner)
+            slices.rest()
         self._seen.add(key)
         self._owners[key].add(owner)
         return place

@@ -18,6 +18,8 @@ FARTHEST = 1e18
 """Coordinates beyond overflow in single precision as soon as they are squared."""
 _BLOCK = 256
 """Corners whose squares are added up in single precision."""
+_FEW = 1 << 14
+"""Corners up to which a mesh is read at once."""
 _MANY = 1 << 19
 """Corners whose normals Blender computes in a slice of its own."""
 _COPIED_BYTES = 1 << 23
@@ -52,13 +54,11 @@ def export_mesh(
     mesh.calc_loop_triangles()
     if len(mesh.loop_triangles) == 0:
         return None
-    before, slices, record = before or NO_MESH, slices or Slices(), {} if record is None else record
-    step = slices.step_alone if len(mesh.loops) > _MANY else slices.step
-    step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
-    arrays = {}
-    for field, read in _READERS.items():
-        copy = functools.partial(_copied, slices, record, field)
-        arrays[field] = slices.step(record, field, functools.partial(read, mesh, getattr(before, field), copy))
+    before = before or NO_MESH
+    if slices is None or record is None or len(mesh.loops) <= _FEW:
+        arrays = {field: read(mesh, getattr(before, field), np.copy) for field, read in _READERS.items()}
+    else:
+        arrays = _read_in_steps(mesh, before, slices, record)
     if not _all_near(arrays["positions"]):
         _skip_distant_vertices(arrays, name, report)
         if len(arrays["triangle_corners"]) == 0:
@@ -69,6 +69,18 @@ def export_mesh(
         texture_location=tuple(mesh.texspace_location),
         texture_size=tuple(mesh.texspace_size),
     )
+
+
+def _read_in_steps(
+    mesh: bpy.types.Mesh, before: Mesh, slices: Slices, record: dict[Hashable, Any]
+) -> dict[str, np.ndarray | None]:
+    step = slices.step_alone if len(mesh.loops) > _MANY else slices.step
+    step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
+    arrays = {}
+    for field, read in _READERS.items():
+        copy = functools.partial(_copied, slices, record, field)
+        arrays[field] = slices.step(record, field, functools.partial(read, mesh, getattr(before, field), copy))
+    return arrays
 
 
 def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
