@@ -32,6 +32,9 @@ class ExportContext:
     owner_reads: int = 0
     """How often an attribute was read from the owners."""
 
+    def __post_init__(self) -> None:
+        self.images.slices = self.report.slices
+
     @property
     def untracked_reads(self) -> int:
         """How often something was read that changes without the depsgraph telling."""

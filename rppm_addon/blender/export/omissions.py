@@ -10,6 +10,10 @@ from dataclasses import dataclass
 import bpy
 
 from .report import Report, listed
+from .slices import Slices
+
+_AT_ONCE = 32
+"""Objects between which nobody looks at the clock."""
 
 
 @dataclass(frozen=True)
@@ -143,11 +147,22 @@ class OmissionList:
     def __init__(self) -> None:
         self._users: dict[Omission, dict[int, str]] = {}
         """By what they use, the names of objects by session_uid."""
+        self._known: set[int] = set()
+        """session_uid of those that were looked at."""
+
+    def look_at_all(self, depsgraph: bpy.types.Depsgraph, slices: Slices) -> None:
+        """Take note of the objects of a depsgraph that it does not know. Raises Unfinished when the slice is over."""
+        for source in objects_of(depsgraph):
+            if source.original.session_uid not in self._known:
+                self.look_at([source])
+                if len(self._known) % _AT_ONCE == 0:
+                    slices.rest()
 
     def look_at(self, sources: Iterable[bpy.types.Object]) -> None:
         """Take note of evaluated objects, anew of those that it knows."""
         for source in sources:
             uid = source.original.session_uid
+            self._known.add(uid)
             for omission in OF_OBJECTS:
                 if omission.is_used(source):
                     self._users.setdefault(omission, {})[uid] = source.name

@@ -13,6 +13,9 @@ import sys
 import time
 from pathlib import Path
 
+SAMPLE_SECONDS = 0.03
+"""From one look at a process to the next."""
+
 started: dict[str, subprocess.Popen] = {}
 
 
@@ -72,7 +75,7 @@ def shared_memory() -> dict:
 
 def busy_share(pid: int, seconds: float) -> dict:
     """Share of moments at which a thread of a process runs or waits for a processor."""
-    samples = 50
+    samples = max(1, round(seconds / SAMPLE_SECONDS))
     busy = 0
     for _ in range(samples):
         states = []
