@@ -2,7 +2,7 @@
 """Inside Blender: does the steps that the test outside asks for, one at a time, from a timer of the window.
 
 Started as ``blender FILE --python agent.py -- FOLDER``. FOLDER/request.json holds [name, arguments] of a function of
-window_steps.py or another of MODULES; its result, or the error, goes to FOLDER/answer.json. Both files appear whole, by renaming.
+one of MODULES; its result, or the error, goes to FOLDER/answer.json. Both files appear whole, by renaming.
 """
 
 import importlib
