@@ -16,6 +16,7 @@ from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ..scene.passes import PassKind, RenderPass
 from .node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
 from .nodes import KINDS
+from .pieces import in_pieces
 
 LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
 """Rec.709: how a color becomes a number, measured in Cycles."""
@@ -99,7 +100,7 @@ class _Compiler:
         text += "".join(self._functions)
         text += (
             "void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {\n"
-            + "".join(f"    {line}\n" for line in scope.lines)
+            + "".join(f"    {line}\n" for line in in_pieces(scope.lines))
             + "}\n"
         )
         return CompiledGraph(text + aovs, self._constants)
@@ -119,7 +120,7 @@ class _Compiler:
             place += len(entry.channels)
         if not written:
             return ""
-        lines = "".join(f"    {line}\n" for line in [*scope.lines, *written])
+        lines = "".join(f"    {line}\n" for line in in_pieces([*scope.lines, *written]))
         return (
             f'#include "resolve/aovs.glsl"\nvoid evaluate_aovs(Surface surface, uint first, uint path) {{\n{lines}}}\n'
         )
@@ -314,7 +315,7 @@ class _Compiler:
 
 
 def _function(result: str, name: str, lines: list[str], value: str) -> str:
-    body = "".join(f"    {line}\n" for line in lines)
+    body = "".join(f"    {line}\n" for line in in_pieces(lines))
     return f"{result} {name}(Surface surface, uint first) {{\n{body}    return {value};\n}}\n"
 
 

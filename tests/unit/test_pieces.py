@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Long functions of nodes in pieces."""
+
+import re
+
+from rppm_addon.materials.compiler import compile_graph
+from rppm_addon.materials.pieces import PIECE, in_pieces
+from rppm_addon.scene import NodeGraph
+
+
+def test_short_functions_stay():
+    lines = [line for number in range(2 * PIECE) for line in (f"float n{number};", f"node(n{number});")]
+    assert in_pieces(lines) == lines
+
+
+def test_long_ones_declare_first_and_do_the_same_in_the_same_order():
+    lines = ["surface.normal = material_normal(surface, first);"]
+    for number in range(PIECE):
+        lines += [f"vec3 n{number};", f"node(n{number});", f"float w{number} = n{number}.x + 1.0;"]
+        lines += ["{ vec3 inside;", "  for (int k = 0; k < 3; ++k) {", "    float height = inside.x;", "  } }"]
+    made = in_pieces(lines)
+    count = 1 + 3 * PIECE
+    assert made[: 2 * PIECE] == [f"{kind}{n};" for n in range(PIECE) for kind in ("vec3 n", "float w")]
+    assert sum("once" in line for line in made) == -(-count // PIECE)
+    kept = [line.removeprefix("    ") for line in made[2 * PIECE :] if "once" not in line and line != "}"]
+    expected = [re.sub(r"^float (w\d+ = )", r"\1", line) for line in lines if not line.startswith("vec3 n")]
+    assert kept == expected
+    assert "\n".join(made).count("{") == "\n".join(made).count("}")
+
+
+def test_graphs_of_usual_length_are_as_they_were():
+    graph = NodeGraph()
+    value = graph.add("tex_coord", "uv")
+    for _ in range(30):
+        value = graph.add("math", "value", value=value)
+    graph.surface = graph.add("emission", "emission", color=value)
+    assert "once" not in compile_graph(graph).text
