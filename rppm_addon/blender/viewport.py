@@ -11,7 +11,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..scene import Camera, RenderSettings, Scene
-from ..scene.errors import RppmError
+from ..scene.errors import RppmError, unforeseen
 from ..scene.quantities import noise_text, rate_text
 from ..scene.sharing import share
 from ..session.process.client import ProcessState
@@ -92,7 +92,7 @@ class Viewport:
         except Exception as error:
             self._exporting = None
             logger.exception("the viewport's export failed")
-            self._fail(f"RPPM failed unexpectedly ({type(error).__name__}: {error}); see the system console")
+            self._fail(unforeseen(error, "see the system console"))
             return
         self._error = ""
         scene = self._sync.scene

@@ -184,7 +184,7 @@ def test_growing_buffers_keep_to_the_limit(context):
 
 
 def test_a_driver_without_memory_is_an_error_and_the_next_buffer_is_made(context, monkeypatch):
-    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 1 << 41)
+    monkeypatch.setattr(GrowingBuffer, "limit", 1 << 41)
     monkeypatch.setattr(Context, "available_memory", None)
     buffer = GrowingBuffer(context, "photons", "emit fewer")
     with pytest.raises(DeviceError, match="^photons needs 1048576 MiB, which the device does not have; emit fewer$"):
