@@ -48,7 +48,7 @@ def test_constants_are_read_in_one_place_of_a_piece():
         and f"constant_float(first + {4 * PIECE}u + k)" in text
     )
     assert f"node(held[4], vec3(held[5], held[6], held[7]), n{PIECE + 1});" in text
-    far = [*lines, "float m;", "node(constant_float(first + 100000u), m);"]
+    far = ["float m;", "node(constant_float(first + 100000u), m);", *lines]
     assert "constant_float(first + 100000u), m)" in "\n".join(in_pieces(far))  # for which no array would do
 
 
