@@ -53,6 +53,10 @@ class CompiledGraph:
 _DEEPEST_BUMP = 2
 """Each bump whose height depends on the normal of another asks for that three times: 3^2 are enough."""
 
+MOST_CALLS = 8192
+"""Nodes that a graph may compute, those of a bump's height as often as they are asked: drivers compile more for many
+minutes."""
+
 _LARGEST = float(np.finfo(np.float32).max)
 
 NEUTRAL_TEXT = """void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {
@@ -82,6 +86,7 @@ class _Compiler:
         self._functions: list[str] = []
         self._heights: dict[tuple[int, int], str] = {}
         self._numbers: dict[int, int] = {}
+        self._calls = 0
 
     def compile(self) -> CompiledGraph:
         scope = _Scope()
@@ -257,6 +262,12 @@ class _Compiler:
     def _call(self, scope: _Scope, index: int, weight: str | None) -> None:
         """Compute all outputs of a node, or add a shader with a weight."""
         node, kind = self._graph.nodes[index], self._kind(index)
+        self._calls += 1
+        if self._calls > MOST_CALLS:
+            raise GraphError(
+                f"it has more than {MOST_CALLS} nodes, which drivers compile for many minutes; bake them to a texture, "
+                "or take some out"
+            )
         if node.kind == BUMP:
             self._bump(scope, index)
             return
