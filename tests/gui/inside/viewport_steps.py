@@ -158,24 +158,33 @@ def playing() -> bool:
 # Pixels on the screen.
 
 _drawn: list[tuple[float, int, float, float]] = []
-_watching = False
+_watching: object = None
+"""The callback's handle."""
 
 
 def watch() -> None:
     """From now on note what the window shows in the viewport's middle, each time it is drawn."""
     global _watching
     _drawn.clear()
-    if not _watching:
-        _watching = True
+    if _watching is None:
         # The only callback that runs when the window's own buffer is complete; the mouse must be over the viewport.
-        bpy.types.WindowManager.draw_cursor_add(_note, (), "VIEW_3D", "WINDOW")
+        _watching = bpy.types.WindowManager.draw_cursor_add(_note, (), "VIEW_3D", "WINDOW")
+
+
+def watch_no_more() -> None:
+    """Note nothing any more."""
+    global _watching
+    if _watching is not None:
+        bpy.types.WindowManager.draw_cursor_remove(_watching)
+        _watching = None
+    _drawn.clear()
 
 
 @bpy.app.handlers.persistent
 def _on_load(*_: object) -> None:
     """Loading a file takes cursors' callbacks away."""
     global _watching
-    _watching = False
+    _watching = None
 
 
 bpy.app.handlers.load_post.append(_on_load)
