@@ -10,9 +10,11 @@ import re
 from collections.abc import Iterator, Sequence
 
 PIECE = 32
-"""Statements; shorter and longer ones than 16 to 64 take longer."""
-MOST_HELD = 16 * PIECE
-"""Constants of a piece that are held in an array; nodes that others were made between may be far apart."""
+"""Statements, at least: 12 and less take longer."""
+MOST_PIECES = 32
+"""What llvmpipe does with loops grows with the square of their number."""
+_MOST_HELD = 16
+"""Constants a statement that are held in an array; nodes that others were made between may be far apart."""
 _BEGIN = "for (uint once = 0u; once < uint(first != 0xFFFFFFFFu); ++once) {"
 """``first``, where the material's constants begin, is known to all functions of nodes."""
 _CONSTANT = re.compile(r"constant_(float|vec3)\(first \+ (\d+)u\)")
@@ -34,22 +36,23 @@ def in_pieces(lines: Sequence[str]) -> list[str]:
             statements.append([f"{name} = {value};"])
     if len(statements) <= 2 * PIECE:
         return list(lines)
-    pieces = [[line for statement in statements[k : k + PIECE] for line in statement]
-              for k in range(0, len(statements), PIECE)]  # fmt: skip
-    ranges = [_constants(piece) for piece in pieces]
+    length = max(PIECE, -(-len(statements) // MOST_PIECES))
+    starts = range(0, len(statements), length)
+    pieces = [[line for statement in statements[k : k + length] for line in statement] for k in starts]
+    ranges = [_constants(piece, _MOST_HELD * length) for piece in pieces]
     declared.append(f"float held[{max(1, *(count for _, count in ranges))}];")
     for piece, (lowest, count) in zip(pieces, ranges, strict=True):
         declared += [_BEGIN, *(f"    {line}" for line in _with_held_constants(piece, lowest, count)), "}"]
     return declared
 
 
-def _constants(lines: Sequence[str]) -> tuple[int, int]:
-    """The first of the constants that lines read, and how many there are from it to the last; 0 where they are not to
-    be held."""
+def _constants(lines: Sequence[str], most: int) -> tuple[int, int]:
+    """The first of the constants that lines read, and how many there are from it to the last; 0 where these are more
+    than may be held."""
     places = [(int(place), _SIZES[kind]) for line in lines for kind, place in _CONSTANT.findall(line)]
     lowest = min((place for place, _ in places), default=0)
     count = max((place + size for place, size in places), default=0) - lowest
-    return lowest, count if count <= MOST_HELD else 0
+    return lowest, count if count <= most else 0
 
 
 def _with_held_constants(lines: Sequence[str], lowest: int, count: int) -> list[str]:
