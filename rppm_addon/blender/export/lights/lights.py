@@ -11,6 +11,7 @@ from ....scene import UNLIMITED_BOUNCES, Light, LightKind, NodeGraph
 from ..context import ExportContext
 from ..layers import light_group_of
 from ..nodes.graphs import GraphExporter
+from ..nodes.inlining import readable_tree
 from ..report import Report
 from ..visibility import visibility_of
 
@@ -110,10 +111,10 @@ def _graph(data: bpy.types.Light, name: str, context: ExportContext) -> NodeGrap
     """What the light's nodes emit, as a factor of its power; None without nodes."""
     if not data.use_nodes or data.node_tree is None:
         return None
-    output = data.node_tree.get_output_node("CYCLES") or data.node_tree.get_output_node("ALL")
-    exporter = GraphExporter(f'Light "{name}"', context)
-    if output is not None:
-        exporter.graph.surface = exporter.surface(output)
+    tree = readable_tree(data)
+    exporter = GraphExporter(f'Light "{name}"', context, tree)
+    if tree.output is not None:
+        exporter.graph.surface = exporter.surface()
     if exporter.graph.surface is None:
         return exporter.graph
     varies = light_variation(exporter.graph)

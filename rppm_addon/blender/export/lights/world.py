@@ -14,7 +14,7 @@ from ....scene.sky import Sky
 from ..context import ExportContext
 from ..layers import light_group_of
 from ..nodes.graphs import GraphExporter
-from ..nodes.links import node_tree
+from ..nodes.inlining import readable_tree
 from .lights import max_bounces_of
 
 _EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}
@@ -43,17 +43,17 @@ def _visibility_of(world: bpy.types.World) -> RayVisibility:
 
 
 def _environment(world: bpy.types.World, context: ExportContext) -> tuple[World, list[Light]]:
-    tree = node_tree(world)
+    tree = readable_tree(world)
     if tree is None:
         return World(radiance=_finite(np.array(world.color, np.float64))), []
     owner = f'World "{world.name}"'
-    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+    output = tree.output
     if output is None:
         return World(), []
-    exporter = GraphExporter(owner, context)
+    exporter = GraphExporter(owner, context, tree)
     if output.inputs["Volume"].is_linked:
         context.report.warn(f"{owner}: its volume is not rendered yet and is ignored")
-    exporter.graph.surface = exporter.surface(output)
+    exporter.graph.surface = exporter.surface()
     if exporter.graph.surface is None:
         return World(), []
     suns = [_sun(exporter.graph, index, sky, owner) for index, sky in exporter.skies.items()]

@@ -12,7 +12,8 @@ from ....scene import Link, NodeGraph
 from ....scene.sky import Sky
 from ..context import ExportContext
 from ..meshes.attributes import GENERATED
-from .links import LinkTable, Path, Source, find_source, is_lost
+from .inlining import ReadableTree
+from .links import LinkTable, Path, Source, find_source
 
 Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
 """Gives the value of an output: a Link, a number or a color."""
@@ -70,10 +71,14 @@ class GraphExporter:
     What cannot be rendered gets a neutral value and a warning that names the node.
     """
 
-    def __init__(self, owner: str, context: ExportContext, pass_index: int = 0) -> None:
-        """owner: what warnings name, such as 'Material "Glass"'; pass_index: the material's."""
+    def __init__(
+        self, owner: str, context: ExportContext, tree: ReadableTree | None = None, pass_index: int = 0
+    ) -> None:
+        """owner: what warnings name, such as 'Material "Glass"'; tree: of the nodes, None if the user's nodes are read
+        one by one; pass_index: the material's."""
         self.graph = NodeGraph()
         self.owner = owner
+        self._tree = tree
         self.context = context
         self.images = context.images
         self.pass_index = pass_index
@@ -87,14 +92,21 @@ class GraphExporter:
 
     def warn(self, node: bpy.types.Node, text: str) -> None:
         """Tell the user what is done about a node."""
-        self.context.report.warn(f'{self.owner}: node "{node.name}" ({node.type}) {text}')
+        self.context.report.warn(f'{self.owner}: node "{self.name_of(node)}" ({node.type}) {text}')
 
-    def surface(self, output: bpy.types.Node) -> Link | None:
-        """The shader of an output node; groups that are lost are named even where Blender cut their links."""
-        for node in output.id_data.nodes:
-            if is_lost(node):
-                self.warn(node, _LOST)
-        return self.shader(output.inputs["Surface"])
+    def user_node(self, node: bpy.types.Node) -> bpy.types.Node:
+        """The node that the user sees, where Blender made the one that is read."""
+        return node if self._tree is None else self._tree.user_node(node)
+
+    def name_of(self, node: bpy.types.Node) -> str:
+        """The name by which the user knows a node."""
+        return self.user_node(node).name
+
+    def surface(self) -> Link | None:
+        """The shader of the tree's output; groups that are lost are named even where Blender cut their links."""
+        for node in self._tree.lost_groups:
+            self.warn(node, _LOST)
+        return self.shader(self._tree.output.inputs["Surface"])
 
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
         """The shader that feeds an input; a color in place of it glows, as in Cycles."""
@@ -106,10 +118,10 @@ class GraphExporter:
             return None
         value = self._output(source)
         if value is None and _is_undefined(source.node):
-            return self.graph.add("bsdf_diffuse", "bsdf", name=source.node.name, color=0.8)
+            return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(source.node), color=0.8)
         if isinstance(value, Link) and KINDS[self.graph.nodes[value.node].kind].outputs[value.output] is SHADER:
             return value
-        return None if value is None else self.graph.add("emission", "emission", name=source.node.name, color=value)
+        return None if value is None else self.graph.add("emission", "emission", name=self.name_of(source.node), color=value)
 
     def value(self, socket: bpy.types.NodeSocket, path: Path) -> object:
         """What an input of a node gets: a Link, a number, or a tuple of three."""
@@ -209,7 +221,7 @@ class GraphExporter:
         options = self._options(declared, node) | members.pop("options", {})
         if fallback := declared.fallback(options):
             self.warn(node, f"is not rendered as such; {fallback} stands in")
-        return self.graph.add(kind, output, name=node.name, options=options, **members, **inputs)
+        return self.graph.add(kind, output, name=self.name_of(node), options=options, **members, **inputs)
 
     def _inputs(self, kind: NodeKind, node: bpy.types.Node, path: Path) -> dict[str, object]:
         sockets = {snake_case(socket.identifier): socket for socket in node.inputs}
@@ -279,7 +291,7 @@ class GraphExporter:
                 return None
             self.warn(node, "is not rendered yet; a diffuse surface of its color stands in")
             color = 0.8 if socket is None or socket.type == "SHADER" else self.value(socket, path)
-            return self.graph.add("bsdf_diffuse", "bsdf", name=node.name, color=color)
+            return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(node), color=color)
         if socket is not None and socket.type not in {"SHADER", "STRING"}:
             self.warn(node, f'is not rendered yet; the value of its "{socket.name}" passes through')
             return self.value(socket, path)

@@ -11,7 +11,8 @@ from ..context import ExportContext
 from ..meshes.attributes import NO_ATTRIBUTE
 from . import surface_nodes, value_nodes  # noqa: F401  register their handlers
 from .graphs import GraphExporter
-from .links import Path, node_tree
+from .inlining import ReadableTree, readable_tree
+from .links import Path
 
 
 class MaterialTable:
@@ -79,27 +80,27 @@ def plain_surface(color: tuple[float, float, float]) -> NodeGraph:
 
 def export_material(material: bpy.types.Material, context: ExportContext) -> Material:
     """The surface and the interior of a material; what has no counterpart is reported and left out."""
-    tree = node_tree(material)
+    tree = readable_tree(material)
     if tree is None:
         return Material(material.name, plain_surface(tuple(material.diffuse_color[:3])), pass_index=material.pass_index)
     owner = f'Material "{material.name}"'
-    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+    output = tree.output
     if output is None:
         context.report.warn(f"{owner}: it has no Material Output node and is black")
         return Material(material.name, pass_index=material.pass_index)
-    exporter = GraphExporter(owner, context, material.pass_index)
+    exporter = GraphExporter(owner, context, tree, material.pass_index)
     graph = exporter.graph
     if exporter.is_linked(output.inputs["Displacement"], ()):
         _bump(exporter, material, output)
-    graph.surface = exporter.surface(output)
+    graph.surface = exporter.surface()
     graph.aovs = [
         AovOutput(name, *(exporter.value(node.inputs[socket], path) for socket in ("Color", "Value")))
-        for node, path, name in _aov_outputs(tree, ())
+        for node, path, name in _aov_outputs(tree.tree, ())
     ]
     shadow = getattr(material, "use_transparent_shadow", True)
     exported = Material(material.name, graph, transparent_shadow=shadow, pass_index=material.pass_index)
     if exporter.is_linked(output.inputs["Volume"], ()):
-        exported.interior = _interior(owner, context, output)
+        exported.interior = _interior(owner, context, tree)
         if not exporter.is_linked(output.inputs["Surface"], ()):
             # Only an interior: the boundary itself is not there.
             graph.surface = graph.add("bsdf_transparent", "bsdf")
@@ -127,7 +128,7 @@ def _bump(exporter: GraphExporter, material: bpy.types.Material, output: bpy.typ
     graph.normal = graph.add("bump", "normal", name=output.name, height=height)
 
 
-def _interior(owner: str, context: ExportContext, output: bpy.types.Node) -> NodeGraph:
-    exporter = GraphExporter(owner, context)
-    exporter.graph.surface = exporter.shader(output.inputs["Volume"], Path())
+def _interior(owner: str, context: ExportContext, tree: ReadableTree) -> NodeGraph:
+    exporter = GraphExporter(owner, context, tree)
+    exporter.graph.surface = exporter.shader(tree.output.inputs["Volume"], Path())
     return exporter.graph

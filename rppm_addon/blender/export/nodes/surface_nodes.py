@@ -32,8 +32,8 @@ def _principled(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types
         exporter.append("bsdf_principled", node, path, "bsdf", options={"thin_wall": thin}) for thin in (False, True)
     )
     for operation in ("TRUNC", "ABSOLUTE"):
-        value = exporter.graph.add("math", "value", name=node.name, options={"operation": operation}, value=value)
-    return exporter.graph.add("mix_shader", "shader", name=node.name, fac=value, shader=thick, shader_001=thin)
+        value = exporter.graph.add("math", "value", name=exporter.name_of(node), options={"operation": operation}, value=value)
+    return exporter.graph.add("mix_shader", "shader", name=exporter.name_of(node), fac=value, shader=thick, shader_001=thin)
 
 
 @handles("TEX_COORD")
@@ -44,7 +44,7 @@ def _coordinates(exporter: GraphExporter, node: bpy.types.Node, output: bpy.type
     if name == "object" and node.object is not None:
         rows = np.array(node.object.matrix_world.inverted_safe())
         return exporter.graph.add(
-            "object_coord", "object", name=node.name, row0=tuple(rows[0, :3]), row1=tuple(rows[1, :3]),
+            "object_coord", "object", name=exporter.name_of(node), row0=tuple(rows[0, :3]), row1=tuple(rows[1, :3]),
             row2=tuple(rows[2, :3]), offset=tuple(rows[:3, 3]),
         )  # fmt: skip
     return exporter.shared("tex_coord", name)
@@ -63,20 +63,25 @@ def _geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.N
 
 @handles("UVMAP")
 def _uv_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
-    return exporter.shared("uvmap", "uv", node.uv_map, node.name) if node.uv_map else exporter.shared("tex_coord", "uv")
+    if not node.uv_map:
+        return exporter.shared("tex_coord", "uv")
+    return exporter.shared("uvmap", "uv", node.uv_map, exporter.name_of(node))
 
 
 @handles("VERTEX_COLOR")
 def _color_attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
-    return exporter.shared("attribute", snake_case(output.identifier), node.layer_name or ACTIVE_COLOR, node.name)
+    attribute, name = node.layer_name or ACTIVE_COLOR, exporter.name_of(node)
+    return exporter.shared("attribute", snake_case(output.identifier), attribute, name)
 
 
 @handles("ATTRIBUTE")
 def _attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     if node.attribute_type == "VIEW_LAYER":
         return _view_layer_attribute(exporter, node, output)
-    name = node.attribute_name if node.attribute_type == "GEOMETRY" else f"{node.attribute_type}:{node.attribute_name}"
-    return exporter.shared("attribute", snake_case(output.identifier), name or NO_ATTRIBUTE, node.name)
+    is_geometry = node.attribute_type == "GEOMETRY"
+    attribute = node.attribute_name if is_geometry else f"{node.attribute_type}:{node.attribute_name}"
+    name = exporter.name_of(node)
+    return exporter.shared("attribute", snake_case(output.identifier), attribute or NO_ATTRIBUTE, name)
 
 
 def _view_layer_attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket) -> object:
@@ -148,22 +153,22 @@ def _ies_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.type
     if not exporter.is_linked(vector, path):
         incoming = exporter.shared("new_geometry", "incoming")
         inputs["vector"] = exporter.graph.add(
-            "vector_transform", "vector", name=node.name, vector=incoming,
+            "vector_transform", "vector", name=exporter.name_of(node), vector=incoming,
             options={"vector_type": "NORMAL", "convert_from": "WORLD", "convert_to": "OBJECT"},
         )  # fmt: skip
     try:
-        table = profile_table(_profile(node))
+        table = profile_table(_profile(node, exporter.user_node(node).id_data.library))
     except (ProfileError, OSError) as error:
         exporter.warn(node, f"has no IES profile that can be read ({error}); its value is 100, as in Cycles")
         table = FLAT_PROFILE
     return exporter.add("tex_ies", node, path, "fac", table=table, inputs=inputs)
 
 
-def _profile(node: bpy.types.Node) -> str:
-    """The text of a node's IES profile. Raises OSError."""
+def _profile(node: bpy.types.Node, library: bpy.types.Library | None) -> str:
+    """The text of the IES profile of a node that comes from a library. Raises OSError."""
     if node.mode == "INTERNAL":
         return "" if node.ies is None else node.ies.as_string()
-    file = pathlib.Path(bpy.path.abspath(node.filepath, library=node.id_data.library))
+    file = pathlib.Path(bpy.path.abspath(node.filepath, library=library))
     if is_no_file(file):
         raise OSError(f"{file} is no file")
     return file.read_text(encoding="latin-1")
@@ -177,9 +182,10 @@ def _other_geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.t
 @handles("TEX_SKY")
 def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
     sky = sky_of(node)
-    image = exporter.images.computed((node.name, sky), lambda: _sky_image(node.name, sky))
+    name = exporter.name_of(node)
+    image = exporter.images.computed((name, sky), lambda: _sky_image(name, sky))
     vector = exporter.coordinates_of(node, path)
-    link = exporter.graph.add("tex_environment", "color", name=node.name, image=image, vector=vector)
+    link = exporter.graph.add("tex_environment", "color", name=name, image=image, vector=vector)
     exporter.skies[link.node] = sky
     return link
 
