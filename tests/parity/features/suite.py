@@ -5,6 +5,7 @@ from . import (  # noqa: F401
     cameras,
     coordinates,
     image_textures,
+    inlined_nodes,
     light_limits,
     light_linking,
     lights,
