@@ -105,7 +105,7 @@ class GraphExporter:
     def surface(self) -> Link | None:
         """The shader of the tree's output; groups that are lost are named even where Blender cut their links."""
         for node in self._tree.lost_groups:
-            self.warn(node, _LOST)
+            self.warn(node, _LOST if self._tree.owner is None else _CUT_OFF)
         return self.shader(self._tree.output.inputs["Surface"])
 
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
@@ -121,7 +121,11 @@ class GraphExporter:
             return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(source.node), color=0.8)
         if isinstance(value, Link) and KINDS[self.graph.nodes[value.node].kind].outputs[value.output] is SHADER:
             return value
-        return None if value is None else self.graph.add("emission", "emission", name=self.name_of(source.node), color=value)
+        return (
+            None
+            if value is None
+            else self.graph.add("emission", "emission", name=self.name_of(source.node), color=value)
+        )
 
     def value(self, socket: bpy.types.NodeSocket, path: Path) -> object:
         """What an input of a node gets: a Link, a number, or a tuple of three."""
@@ -300,6 +304,7 @@ class GraphExporter:
 
 
 _LOST = "is a group whose node tree is missing; a neutral value or a gray surface stands in"
+_CUT_OFF = "is a group whose node tree is missing; its links are left out"
 
 
 def _is_undefined(node: bpy.types.Node) -> bool:

@@ -65,7 +65,7 @@ def readable_tree(owner: bpy.types.Material | bpy.types.World | bpy.types.Light)
         inlined = blender.from_light(owner)
     nodes = {(node.bl_idname, node.name): node for node in reversed(list(_all_nodes(tree, set())))}
     found = ReadableTree(inlined.node_tree, inlined, nodes)
-    # Links in a circle leave nothing of a tree; reading it here names them.
+    # Where links run in a circle Blender makes nothing of a tree: then the rest is rendered and such nodes are named.
     return found if found.output is not None or plain.output is None else plain
 
 

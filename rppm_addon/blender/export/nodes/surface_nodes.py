@@ -32,8 +32,12 @@ def _principled(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types
         exporter.append("bsdf_principled", node, path, "bsdf", options={"thin_wall": thin}) for thin in (False, True)
     )
     for operation in ("TRUNC", "ABSOLUTE"):
-        value = exporter.graph.add("math", "value", name=exporter.name_of(node), options={"operation": operation}, value=value)
-    return exporter.graph.add("mix_shader", "shader", name=exporter.name_of(node), fac=value, shader=thick, shader_001=thin)
+        value = exporter.graph.add(
+            "math", "value", name=exporter.name_of(node), options={"operation": operation}, value=value
+        )
+    return exporter.graph.add(
+        "mix_shader", "shader", name=exporter.name_of(node), fac=value, shader=thick, shader_001=thin
+    )
 
 
 @handles("TEX_COORD")
@@ -110,6 +114,12 @@ def _normal_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types
 def _environment(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     exporter.warn(node, "would need rays of its own, which are not traced; it is left out")
     return exporter.add(node.type.lower(), node, path, snake_case(output.identifier))
+
+
+@handles("MATERIAL_RAYCAST")  # of Blender 5.2
+def _raycast(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    exporter.warn(node, "would need rays of its own, which are not traced; nothing is hit")
+    return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
 
 
 @handles("OBJECT_INFO")

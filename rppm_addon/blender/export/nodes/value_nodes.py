@@ -19,6 +19,14 @@ def _rgb(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSo
     return exporter.stored(output)
 
 
+@handles("INPUT_SCENE_TIME")  # of Blender 5.2
+def _scene_time(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> float:
+    exporter.context.owner_reads += 1  # materials do not count as changed with the frame
+    scene = next(owner for owner in exporter.context.owners if isinstance(owner, bpy.types.Scene))
+    frame = scene.frame_current_final
+    return frame if output.identifier == "Frame" else frame * scene.render.fps_base / scene.render.fps
+
+
 @handles("MIX")
 def _mix(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link | None:
     """A kind for each type of data."""
