@@ -5,7 +5,6 @@ from . import (  # noqa: F401
     cameras,
     coordinates,
     image_textures,
-    inlined_nodes,
     light_limits,
     light_linking,
     lights,
@@ -14,6 +13,7 @@ from . import (  # noqa: F401
     shadow_terminator,
     values,
     worlds,
+    zones_and_closures,
 )
 from .rows import ROWS
 

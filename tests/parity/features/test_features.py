@@ -9,10 +9,10 @@ and all but the first of those kinds of nodes whose values have tests of their o
 import numpy as np
 import pytest
 
-from . import inlined_nodes
 from .flip import flip
 from .measure import measure, shortcomings
 from .suite import ROWS
+from .zones_and_closures import GROUP
 
 PART = 0.5
 """Of the iterations that `make parity` takes: as many as the limits ask for."""
@@ -33,7 +33,7 @@ def takes_long(row, first_of_group: bool) -> bool:
 
 def parameters():
     groups = set()
-    for row in (row for row in ROWS if row.group != inlined_nodes.GROUP):  # those have a module of their own
+    for row in (row for row in ROWS if row.group != GROUP):  # those have a module of their own
         long = takes_long(row, row.group not in groups)
         groups.add(row.group)
         yield pytest.param(row, id=row.id, marks=[pytest.mark.long] if long else [])

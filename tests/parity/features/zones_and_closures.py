@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes that Blender 5 resolves before renderers see them: zones, closures, bundles, menu switches.
 
-test_inlined_nodes.py holds them to their limits.
+test_zones_and_closures.py holds them to their limits.
 """
 
 import bpy
