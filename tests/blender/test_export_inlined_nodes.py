@@ -4,11 +4,16 @@
 What they look like is compared with Cycles in tests/parity/features.
 """
 
+from types import SimpleNamespace
+
 import bpy
 import pytest
 from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, to_surface
 
+from rppm_addon.blender.export.context import ExportContext
+from rppm_addon.blender.export.nodes.graphs import HANDLERS, GraphExporter
 from rppm_addon.blender.export.nodes.inlining import readable_tree
+from rppm_addon.blender.export.report import Report
 
 pytestmark = pytest.mark.skipif(bpy.app.version < (5, 0), reason="Blender 5 is the first that has such nodes")
 
@@ -159,3 +164,13 @@ def test_passes_of_groups_are_kept(scene):
     (output,) = graph.aovs
     assert output.name == "Height" and graph.nodes[output.value.node].kind == "tex_noise"
     assert not warnings
+
+
+@pytest.mark.parametrize(("output", "value"), [("Frame", 12.0), ("Seconds", 0.4)])
+def test_scene_time_of_blender_5_2(scene, output, value):
+    """With a stand-in for the node, which this Blender may not have; what reads it is read again at other frames."""
+    scene.frame_set(12)
+    scene.render.fps = 30
+    exporter = GraphExporter("Material", ExportContext(Report(), owners=(None, scene, None)))
+    found = HANDLERS["INPUT_SCENE_TIME"](exporter, None, SimpleNamespace(identifier=output), ())
+    assert found == pytest.approx(value) and exporter.context.untracked_reads == 1
