@@ -103,7 +103,9 @@ def expand(
         if name in seen:
             return ""
         seen.add(name)
-        return declared[name].glsl()
+        found = declared[name]
+        parts = [declare(part.name) for part in found.parts] if isinstance(found, Record) else []
+        return " ".join([*filter(None, parts), found.glsl()])
 
     def read(name: str, includer: str) -> None:
         if name in files:

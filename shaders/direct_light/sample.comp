@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
+#include "common/bsdf/stored_lobes.glsl"
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 2) readonly buffer CameraPaths;
 layout(std430, binding = 3) writeonly buffer ShadowRays;
@@ -33,10 +34,10 @@ float smoothest_lit(bool gathered) {
 }
 
 // Whether any part of a closure is.
-bool can_be_lit(Closure closure, bool gathered) {
+bool can_be_lit(uint index, Closure closure, bool gathered) {
     bool lit = largest(closure.diffuse) > 0.0 || largest(closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        lit = lit || lobe_stores(closure_lobe(closure, k), smoothest_lit(gathered));
+        lit = lit || lobe_stores(stored_lobe(index, k), smoothest_lit(gathered));
     return lit;
 }
 
@@ -45,8 +46,8 @@ bool can_be_lit(Closure closure, bool gathered) {
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
 // choice of the light included. by_rays: what photons leave to rays, of the parts that store them.
-vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers, vec3 wo,
-                      vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays,
+vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers,
+                      vec3 wo, vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays,
                       out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front)
@@ -59,7 +60,7 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool 
     }
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         vec3 normal = lobe_normal(lobe);
         float cosine = dot(normal, wi);
         if (!lobe_stores(lobe, smoothest_lit(gathered)) || (cosine > 0.0) != front) continue;
@@ -78,10 +79,10 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool 
     return value;
 }
 
-bool lit_from_behind(Closure closure) {
+bool lit_from_behind(uint index, Closure closure) {
     bool transmits = largest(closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        transmits = transmits || lobe_transmits(closure_lobe(closure, k).kind);
+        transmits = transmits || lobe_transmits(stored_lobe(index, k).kind);
     return transmits;
 }
 
@@ -108,18 +109,19 @@ void add_candidate(inout Candidates candidates, float weight, Arriving arriving)
 
 // Of light objects and emissive triangles, where smooth lobes that reflect little reflect them. A path would go there
 // as seldom.
-Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares, vec3 wo, uint flags, uvec4 choices) {
+Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathShares shares, vec3 wo, uint flags,
+                            uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
+        looks = looks || lobe_is_specular(stored_lobe(index, k), alpha);
     if (!looks) return NOTHING_ARRIVES;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec2 disk = sample_disk(scrambled_sobol(parameters.light_sample, pcg4d(choices + 1u)));
     Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
                                        scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).x);
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, disk, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
@@ -156,13 +158,13 @@ float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 d
 // Of a light that is chosen by what it may give at the point.
 Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 throughput, PathShares shares, vec3 wo,
                              bool gathered, bool gathers, uvec4 choices) {
-    if (!can_be_lit(closure, gathered)) return NOTHING_ARRIVES;
+    if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
                   scrambled_sobol(parameters.light_sample, pcg4d(choices)));
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(closure)),
+    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(index, closure)),
                                          environment_irradiance, u.x, u.y);
     if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
     Light light = lights[choice.light];
@@ -176,7 +178,7 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     bool environment = light.kind == LIGHT_WORLD;
     float by_rays = environment ? left_to_rays(index, path, closure, wo, sampled.direction, gathered) : 1.0;
     Parts parts;
-    vec3 scattered = evaluate_closure(closure, throughput, shares, gathered, gathers, wo, sampled.direction,
+    vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
                     choice.light, sampled.triangle,
@@ -201,11 +203,11 @@ void main() {
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
     vec3 viewer = -ray.direction;
-    PathShares shares = path_shares(closure, throughput, viewer, parameters.specular_alpha, gathers);
+    PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
     Arriving arriving = arriving_from_light(index, path, closure, throughput, shares, viewer, gathered, gathers,
                                             choices);
     Arriving reflected = NOTHING_ARRIVES;
-    if (!gathered) reflected = arriving_reflected(closure, throughput, shares, viewer, flags, choices);
+    if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);
     // One ray for both: by what they would add.
     float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);
     if (!(weight + reflected_weight > 0.0)) return;

@@ -17,6 +17,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
+#include "common/bsdf/stored_lobes.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer CameraPaths;
 layout(std430, binding = 3) buffer Importons;
@@ -27,8 +28,8 @@ layout(std430, binding = 9) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 
-Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius, float radius,
-                       float u, uint gathers, uint history) {
+Importon make_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius,
+                       float radius, float u, uint gathers, uint history) {
     Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
                                  throughput * closure.diffuse / PI, closure.diffuse_normal,
                                  throughput * closure.translucent / PI, closure.diffuse_roughness,
@@ -39,7 +40,7 @@ Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, vec4 share
     for (int k = 0; k < closure_lobes(closure); ++k) {
         float share = shares[1 + k];
         if (!(share > 0.0)) continue;
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         total += share;
         if (takes_candidate(share, total, u)) {
             importon.lobe_weight = throughput * lobe.weight / share;
@@ -143,12 +144,12 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
 }
 
 // u: behind the share of what is no lobe.
-Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec2 disk, float u_event, vec4 shares,
-                 float total) {
+Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, float u, vec2 disk, float u_event,
+                 vec4 shares, float total) {
     Event event;
     int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
     event.probability = shares[1 + chosen];
-    MicrofacetLobe lobe = closure_lobe(closure, chosen);
+    MicrofacetLobe lobe = stored_lobe(index, chosen);
     event.normal = lobe_normal(lobe);
     LobeSample sampled = sample_lobe(lobe, event.normal, viewer, disk, u_event, true);
     event.pdf = 0.0;
@@ -192,7 +193,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
         vec3 facing = event.transmitted ? -event.normal : event.normal;
         found_weight = diffuse_factor(closure, facing, viewer, event.direction);
     } else if (u < shares.x) event = straight_event(path, closure, ray.direction, shares);
-    else event = lobe_event(path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
+    else event = lobe_event(index, path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
     if (event.probability <= 0.0) return;
     importons[index].history = history_word(history, scattered_history(history, event.scatter));
     path.flags = event.flags;
@@ -265,13 +266,14 @@ void main() {
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
-    PathShares shares = path_shares(closure, path.throughput, -ray.direction, parameters.specular_alpha, gathers);
+    PathShares shares = path_shares(index, closure, path.throughput, -ray.direction, parameters.specular_alpha,
+                                    gathers);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
         gathering_vertices[index].hit = closure.position;
         gathering_vertices[index].hit_normal = closure.geometric_normal;
     }
     float least_radius = gathered ? caustic_radius : radius;
-    importons[index] = make_importon(closure, path.throughput, -ray.direction, shares.stored, least_radius,
+    importons[index] = make_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
                                      caustic_radius, u_lobe.y,
                                      (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history);
     if (parameters.last_segment == 0u)

@@ -19,6 +19,20 @@ struct ClosureBuilder {
     int lobes;
 };
 
+// By constant numbers: what is indexed by others many drivers keep in memory.
+MicrofacetLobe closure_lobe(Closure closure, int k) {
+    if (k == 0) return unpacked_lobe(closure.lobes[0]);
+    if (k == 1) return unpacked_lobe(closure.lobes[1]);
+    return unpacked_lobe(closure.lobes[2]);
+}
+
+void set_closure_lobe(inout Closure closure, int k, MicrofacetLobe lobe) {
+    ClosureLobe made = packed_lobe(lobe);
+    if (k == 0) closure.lobes[0] = made;
+    else if (k == 1) closure.lobes[1] = made;
+    else closure.lobes[2] = made;
+}
+
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
     ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice,
                                             false, 0);

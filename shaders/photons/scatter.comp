@@ -8,10 +8,10 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/photon.glsl"
-#include "photons/parts.glsl"
-#include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
+#include "photons/parts.glsl"
+#include "materials/medium.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) writeonly buffer Photons;
@@ -35,7 +35,7 @@ struct Scattering {
 const float SHARPEST_ALPHA = 0.05;
 
 // One event by its share of the flux; what is left of the probability is absorption.
-Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
+Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
     Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT,
                                    PHOTON_NOT_DIFFUSE, true, PART_DIFFUSE, 1.0);
@@ -44,7 +44,7 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
           transparent = largest(flux * closure.transparent) * scale;
     vec3 shares = vec3(0.0);
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         shares[k] = largest(flux * lobe_albedo(lobe, lobe_cosine(lobe, arrival))) * scale;
     }
     if ((closure.flags & CLOSURE_KEEPS_LIGHT) != 0u) {
@@ -75,7 +75,7 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     u -= transparent;
     int chosen = u < shares.x ? 0 : (u < shares.x + shares.y ? 1 : 2);
     float probability = shares[chosen];
-    MicrofacetLobe lobe = closure_lobe(closure, chosen);
+    MicrofacetLobe lobe = stored_lobe(index, chosen);
     LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, u_event, false);
     float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     return Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
@@ -115,7 +115,7 @@ void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec
     AdjointQuery query = AdjointQuery(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
     if (matters) {
         query.part = scattering.part;
-        query.share = part_share(closure, scattering.part, scattering.ior, arrival, scattering.direction);
+        query.share = part_share(index, closure, scattering.part, scattering.ior, arrival, scattering.direction);
     } else photon_paths[index].flags = path_flags;
     adjoint_queries[index] = query;
     rays[index].direction = -scattering.direction;
@@ -145,7 +145,7 @@ void go_on(uint index, Closure closure, uint path_flags, PhotonDifferential diff
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
-    Scattering scattering = scatter(closure, photon.flux, photon.direction, random);
+    Scattering scattering = scatter(index, closure, photon.flux, photon.direction, random);
     float side = dot(scattering.direction, geometric);
     bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
     if (!(largest(scattering.weight) > 0.0 && passes)) return;
@@ -210,7 +210,7 @@ void main() {
     photon.geometric_normal = closure.geometric_normal;
     bool stores = largest(closure.diffuse + closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
+        stores = stores || lobe_stores(stored_lobe(index, k), parameters.specular_alpha);
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) photon.flags |= PHOTON_STORED;
 
     if (parameters.segment + 1u < parameters.segments && largest(photon.flux) > 0.0)
