@@ -128,23 +128,19 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_
     return result;
 }
 
-// Of a pair of directions: the microfacet normal that links them and their cosines to it. False when
-// the lobe links none.
+// Of a pair of directions: the microfacet normal that links them and their cosines to it. False when the lobe links
+// none. All at once: what branches leave undone would have to be kept as well.
 bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, out float oh, out float ih) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
-    h = n;
-    oh = ih = 0.0;
-    if (cosine_o <= 0.0 || cosine_i == 0.0 || lobe.kind == LOBE_NONE) return false;
-    bool transmitted = cosine_i < 0.0;
-    if (transmitted && !lobe_transmits(lobe.kind)) return false;
+    bool transmitted = cosine_i < 0.0, behind = transmitted && lobe.ior < 1.0;
     h = transmitted ? -(lobe.ior * wi + wo) : wi + wo;
     float length_h = length(h);
-    if (length_h < 1e-8) return false;
     h /= length_h;
-    if (transmitted && lobe.ior < 1.0) h = -h;
+    if (behind) h = -h;
     oh = dot(wo, h);
     ih = dot(wi, h);
-    return dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
+    return cosine_o > 0.0 && cosine_i != 0.0 && lobe.kind != LOBE_NONE && !(transmitted && !lobe_transmits(lobe.kind))
+        && length_h >= 1e-8 && dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
 }
 
 // What a lobe gives of a pair of directions, unit vectors away from the surface.
@@ -168,22 +164,22 @@ LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     vec3 h;
     float oh, ih;
     if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return value;
+    // Where the facets lie first: of that two numbers are kept while the colors are computed.
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
-    vec3 local_h = to_frame(frame, h), local_wo = to_frame(frame, wo);
-    FacetShares shares = facet_shares(lobe, oh);
+    vec3 local_h = to_frame(frame, h), local_wo = to_frame(frame, wo), local_wi = to_frame(frame, wi);
     float distribution = facet_distribution(frame, local_h);
-    float masking = 1.0 / (1.0 + facet_lambda(frame, local_wo) + facet_lambda(frame, to_frame(frame, wi)));
+    float masking = 1.0 / (1.0 + facet_lambda(frame, local_wo) + facet_lambda(frame, local_wi));
     float visible = ggx_distribution(local_h, frame.alpha) * oh
                     / (cosine_o * (1.0 + ggx_lambda(local_wo, frame.alpha)));
-    if (cosine_i > 0.0) {
-        value.bsdf = lobe.weight * shares.reflectance * (distribution * masking / (4.0 * cosine_o * cosine_i));
-        value.pdf = visible * shares.reflected / (4.0 * oh);
-        return value;
-    }
+    bool reflected = cosine_i > 0.0;
     float spread = lobe.ior * ih + oh;
-    value.bsdf = shares.transmittance
-        * (distribution * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * max(spread * spread, 1e-12)));
-    value.pdf = visible * (1.0 - shares.reflected) * lobe.ior * lobe.ior * abs(ih) / max(spread * spread, 1e-12);
+    float spread2 = max(spread * spread, 1e-12);
+    float factor = reflected ? distribution * masking / (4.0 * cosine_o * cosine_i)
+                             : distribution * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * spread2);
+    FacetShares shares = facet_shares(lobe, oh);
+    value.bsdf = factor * (reflected ? lobe.weight * shares.reflectance : shares.transmittance);
+    value.pdf = reflected ? visible * shares.reflected / (4.0 * oh)
+                          : visible * (1.0 - shares.reflected) * lobe.ior * lobe.ior * abs(ih) / spread2;
     return value;
 }
 
