@@ -86,11 +86,10 @@ bool lit_from_behind(uint index, Closure closure) {
     return transmits;
 }
 
-// Light that arrives along a direction if nothing is in the way; parts: shares of it.
-struct Arriving { vec3 radiance; vec3 direction; float distance; uint light; uint triangle; Parts parts; };
+// Light that arrives along a direction if nothing is in the way.
+struct Arriving { vec3 radiance; vec3 direction; float distance; uint light; uint triangle; };
 
-const Parts ALL_GLOSSY = Parts(vec3(1.0), vec3(0.0));
-const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE, Parts(vec3(0.0), vec3(0.0)));
+const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE);
 
 vec3 share_of(vec3 part, vec3 whole) {
     return mix(part / max(whole, vec3(1e-35)), vec3(0.0), lessThanEqual(whole, vec3(0.0)));
@@ -133,31 +132,36 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
         vec3 radiance = reflected * passed.chosen * passed.weights;
         add_candidate(candidates, largest(radiance),
-                      Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE, ALL_GLOSSY));
+                      Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE));
         uint emissive;
         Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         reflected *= exp(-path_absorption(flags) * hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
-                      Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle, ALL_GLOSSY));
+                      Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle));
     }
     candidates.chosen.radiance *= candidates.weights;
     return candidates.chosen;
 }
 
-// What photons leave to rays of the environment's direct light along a direction.
-float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 direction, bool gathered) {
-    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+// Of photons that bring the environment's direct light.
+float direct_radius(uint index, CameraPath path, Closure closure, vec3 wo, bool gathered) {
     float least = vertex_radius(path, -wo, closure);
     float most = caustic_radius_of(index, least, gathered);
-    return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction),
-                                     disk_radius(gathered ? most : least, most));
+    return disk_radius(gathered ? most : least, most);
+}
+
+// What they leave to rays along a direction.
+float left_to_rays(vec3 direction, float radius) {
+    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+    return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction), radius);
 }
 
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 throughput, PathShares shares, vec3 wo,
-                             bool gathered, bool gathers, uvec4 choices) {
+Arriving arriving_from_light(uint index, float radius, Closure closure, vec3 throughput, PathShares shares, vec3 wo,
+                             bool gathered, bool gathers, uvec4 choices, out Parts parts) {
+    parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
                   scrambled_sobol(parameters.light_sample, pcg4d(choices)));
@@ -176,13 +180,12 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     float light_pdf = sampled.pdf * light.selection_probability;
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
     bool environment = light.kind == LIGHT_WORLD;
-    float by_rays = environment ? left_to_rays(index, path, closure, wo, sampled.direction, gathered) : 1.0;
-    Parts parts;
+    float by_rays = environment ? left_to_rays(sampled.direction, radius) : 1.0;
     vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
+    parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
-                    choice.light, sampled.triangle,
-                    Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered)));
+                    choice.light, sampled.triangle);
 }
 
 void main() {
@@ -204,8 +207,9 @@ void main() {
                                 STAGE_DIRECT_LIGHT << 24u));
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
-    Arriving arriving = arriving_from_light(index, path, closure, throughput, shares, viewer, gathered, gathers,
-                                            choices);
+    Parts parts;  // shares of it
+    Arriving arriving = arriving_from_light(index, direct_radius(index, path, closure, viewer, gathered), closure,
+                                            throughput, shares, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);
     // One ray for both: by what they would add.
@@ -215,13 +219,16 @@ void main() {
         float total = weight + reflected_weight;
         float u = scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).y;
         bool takes_reflected = takes_candidate(reflected_weight, total, u);
-        if (takes_reflected) arriving = reflected;
+        if (takes_reflected) {
+            arriving = reflected;
+            parts = Parts(vec3(1.0), vec3(0.0));
+        }
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
     }
     contributions[index] = vec4(parameters.sample_weight * arriving.radiance, gathered ? 1.0 : 0.0);
     light_triangles[index] = arriving.triangle;
     if (parameters.splits_light != 0u)
-        light_splits[index] = LightSplit(arriving.parts.glossy, arriving.light, arriving.parts.transmission, 0.0);
+        light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec3 origin = offset_from_surface(closure.position,
                                       dot(geometric, arriving.direction) > 0.0 ? geometric : -geometric);

@@ -33,6 +33,22 @@ void set_closure_lobe(inout Closure closure, int k, MicrofacetLobe lobe) {
     else closure.lobes[2] = made;
 }
 
+#ifdef LOBES_IN_MEMORY
+// In the path's closure itself, since processors have no registers for them beside what nodes compute. The includer
+// declares before the block Closures and the number resolved_path, and includes materials/usable.glsl.
+MicrofacetLobe held_lobe(ClosureBuilder builder, int k) { return unpacked_lobe(closures[resolved_path].lobes[k]); }
+
+void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
+    closures[resolved_path].lobes[k] = usable_lobe(packed_lobe(lobe));
+}
+#else
+MicrofacetLobe held_lobe(ClosureBuilder builder, int k) { return closure_lobe(builder.closure, k); }
+
+void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
+    set_closure_lobe(builder.closure, k, lobe);
+}
+#endif
+
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
     ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice,
                                             false, 0);
@@ -129,17 +145,17 @@ void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
     float brightness = largest(lobe_albedo(lobe, lobe_cosine(lobe, builder.viewer)));
     if (brightness <= 0.0 && largest(lobe.weight) <= 0.0) return;
     if (builder.lobes < CLOSURE_LOBES) {
-        set_closure_lobe(builder.closure, builder.lobes, lobe);
+        hold_lobe(builder, builder.lobes, lobe);
         builder.lobes += 1;
         return;
     }
-    MicrofacetLobe held = closure_lobe(builder.closure, CLOSURE_LOBES - 1);
+    MicrofacetLobe held = held_lobe(builder, CLOSURE_LOBES - 1);
     float held_brightness = largest(lobe_albedo(held, lobe_cosine(held, builder.viewer)));
     float probability = brightness / max(brightness + held_brightness, 1e-20);
     bool chosen = chance(builder, probability);
     if (!chosen) lobe = held;
     scale_lobe(lobe, 1.0 / max(chosen ? probability : 1.0 - probability, 1e-20));
-    set_closure_lobe(builder.closure, CLOSURE_LOBES - 1, lobe);
+    hold_lobe(builder, CLOSURE_LOBES - 1, lobe);
 }
 
 void add_holdout(inout ClosureBuilder builder, float weight) {

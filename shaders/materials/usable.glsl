@@ -11,6 +11,15 @@ vec3 usable(vec3 value, float low, float high) {
     return is_finite(value) ? clamp(value, low, high) : vec3(max(low, 0.0));
 }
 
+ClosureLobe usable_lobe(ClosureLobe lobe) {
+    lobe.weight = usable(lobe.weight, 0.0, LARGEST_WEIGHT);
+    // The coefficients of a sheen may be negative.
+    lobe.f0 = usable(lobe.f0, -LARGEST_WEIGHT, LARGEST_WEIGHT);
+    lobe.alpha = usable(vec3(lobe.alpha), 0.0, 1.0).x;
+    lobe.ior = usable(vec3(lobe.ior), 1e-5, 1e5).x;
+    return lobe;
+}
+
 void make_usable(inout Closure closure) {
     closure.emission = usable(closure.emission, 0.0, LARGEST_EMISSION);
     closure.diffuse = usable(closure.diffuse, 0.0, LARGEST_WEIGHT);

@@ -179,7 +179,7 @@ def test_items_of_what_is_only_written_are_stored(context, shader, buffers, tmp_
         found.append([buffer.read(np.uint32, buffer.size // 4) for buffer in (copies, sizes)])
         program.release()
     (things, sizes_found), (stored, sizes_stored) = found
-    things, stored = (copied.reshape(2 * COUNT, -1)[:, :-1] for copied in (things, stored))  # behind it lies no member
+    things, stored = (np.delete(copied.reshape(2 * COUNT, -1), 23, 1) for copied in (things, stored))  # no member's
     assert things[:COUNT].any() and not things[COUNT:].any()
     np.testing.assert_array_equal(stored, things)
     np.testing.assert_array_equal(sizes_stored, sizes_found)
