@@ -33,21 +33,17 @@ void set_closure_lobe(inout Closure closure, int k, MicrofacetLobe lobe) {
     else closure.lobes[2] = made;
 }
 
+// Where LOBES_IN_MEMORY names the array of closures, lobes go to that of the path resolved_path but for the last, which
+// another may take the place of: processors have no registers for them beside what nodes compute.
+void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
 #ifdef LOBES_IN_MEMORY
-// In the path's closure itself, since processors have no registers for them beside what nodes compute. The includer
-// declares before the block Closures and the number resolved_path, and includes materials/usable.glsl.
-MicrofacetLobe held_lobe(ClosureBuilder builder, int k) { return unpacked_lobe(closures[resolved_path].lobes[k]); }
-
-void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
-    closures[resolved_path].lobes[k] = usable_lobe(packed_lobe(lobe));
-}
-#else
-MicrofacetLobe held_lobe(ClosureBuilder builder, int k) { return closure_lobe(builder.closure, k); }
-
-void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
+    if (k < CLOSURE_LOBES - 1) {
+        LOBES_IN_MEMORY[resolved_path].lobes[k] = usable_lobe(packed_lobe(lobe));
+        return;
+    }
+#endif
     set_closure_lobe(builder.closure, k, lobe);
 }
-#endif
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
     ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice,
@@ -149,7 +145,7 @@ void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
         builder.lobes += 1;
         return;
     }
-    MicrofacetLobe held = held_lobe(builder, CLOSURE_LOBES - 1);
+    MicrofacetLobe held = closure_lobe(builder.closure, CLOSURE_LOBES - 1);
     float held_brightness = largest(lobe_albedo(held, lobe_cosine(held, builder.viewer)));
     float probability = brightness / max(brightness + held_brightness, 1e-20);
     bool chosen = chance(builder, probability);

@@ -10,12 +10,10 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; };
 #include "materials/usable.glsl"
-// Drivers on the processor have registers in memory anyway.
-#ifdef READS_TEXELS
 layout(std430, binding = 2) writeonly buffer Closures;
-#else
-#define LOBES_IN_MEMORY
-layout(std430, binding = 2) buffer Closures;
+// Drivers on the processor have registers in memory anyway.
+#ifndef READS_TEXELS
+#define LOBES_IN_MEMORY closures
 uint resolved_path;
 #endif
 #include "materials/data.glsl"
@@ -123,7 +121,9 @@ void store(uint index, Closure closure) {
     closures[index].distance = closure.distance;
     closures[index].material = closure.material;
     closures[index].diffuse_roughness = closure.diffuse_roughness;
-#ifndef LOBES_IN_MEMORY
+#ifdef LOBES_IN_MEMORY
+    LOBES_IN_MEMORY[index].lobes[CLOSURE_LOBES - 1] = closure.lobes[CLOSURE_LOBES - 1];
+#else
     closures[index].lobes = closure.lobes;
 #endif
 }
