@@ -38,6 +38,14 @@ class _Member:
     """Of an array of records; else 0."""
 
 
+def _format(member: _Member) -> np.dtype:
+    if member.count:
+        part: np.dtype = Record.registry[member.kind].dtype
+        return np.dtype((part, (member.count,)))
+    element, shape, _, _ = KINDS[member.kind]
+    return np.dtype((element, shape))
+
+
 class Record:
     """A struct of named members, e.g. ``Record("Ray", origin="vec3", source_triangle="uint")``.
 
@@ -62,15 +70,12 @@ class Record:
             self.members.append(_Member(member, kind[0].name if isinstance(kind, tuple) else kind, offset, count))
             offset += size
             self.alignment = max(self.alignment, align)
-        self.size = -(-offset // self.alignment) * self.alignment
+        self.size: int = -(-offset // self.alignment) * self.alignment
         self._names = frozenset(members)
-        self.dtype = np.dtype(
+        self.dtype: np.dtype = np.dtype(
             {
                 "names": [m.name for m in self.members],
-                "formats": [
-                    np.dtype((self.registry[m.kind].dtype, m.count) if m.count else KINDS[m.kind][:2])
-                    for m in self.members
-                ],
+                "formats": [_format(m) for m in self.members],
                 "offsets": [m.offset for m in self.members],
                 "itemsize": self.size,
             }
