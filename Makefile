@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui lock lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui soak lock lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -30,7 +30,7 @@ extension: setup ## Build the zip that Blender installs, to build/extension/ (EX
 COMPILE_BOUND = tests/parity/features tests/parity/test_node_values.py tests/parity/test_texture_values.py \
 	tests/parity/test_shader_nodes.py tests/parity/test_thin_wall.py tests/parity/test_texture_export.py \
 	tests/blender/test_bad_materials.py tests/blender/test_material_fuzz.py tests/blender/test_animation.py \
-	tests/blender/test_animations.py tests/gl/test_material_programs.py
+	tests/blender/test_animations.py tests/gl/test_material_programs.py tests/gl/test_gl_layer.py
 # Two at a time: most tests compile, or wait for one of the two engines, on a single core.
 PYTEST = timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=2 --dist=worksteal
 
@@ -55,13 +55,17 @@ fuzz: setup ## Give every way in what nobody means (MINUTES=10), and count
 coverage: setup ## Report which lines tests/unit, gl, session and cli reach (TESTS=...: others)
 	$(PYTEST) -m 'not long' --cov --cov-report=term $(or $(TESTS),tests/unit tests/gl tests/session tests/cli)
 
-# They ask the window to answer soon: no other may be beside it.
-WINDOW_ALONE = tests/gui/test_window_viewport.py tests/gui/test_window_panels.py
+# Its tests ask the window to answer soon: no other may be beside it.
+WINDOW_ALONE = tests/gui/test_window_response.py
 PYTEST_GUI = timeout --kill-after=10 2400 .venv/bin/python -m pytest -m 'not long'
 
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
 	$(PYTEST_GUI) $(WINDOW_ALONE)
-	$(PYTEST_GUI) --numprocesses=2 --dist=worksteal tests/gui $(WINDOW_ALONE:%=--ignore=%)
+	$(PYTEST_GUI) --numprocesses=3 --dist=worksteal tests/gui $(WINDOW_ALONE:%=--ignore=%)
+
+HOURS ?= 2
+soak: setup ## Use a real Blender window for long (HOURS=2), and tell what grew, or was another picture: out/soak/
+	.venv/bin/python tools/soak.py $$(awk 'BEGIN { print 60 * $(HOURS) }')
 
 lock: setup ## Pin anew what set-up installs, by version and hash
 	.venv/bin/python tools/lock.py

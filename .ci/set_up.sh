@@ -4,6 +4,7 @@
 # Quick when all is there. PYTHON names the Python 3.11 to use.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+unset PYTHONDONTWRITEBYTECODE # compiling the programs imports, and so compiles, what rppm does
 
 # Mesa's software and hardware drivers behind EGL, and the libraries that the bpy wheel links to.
 system_packages=(
@@ -62,7 +63,9 @@ install_python_packages() {
     fi
     echo "set-up: Python packages into .venv (Blender as a module among them: a few minutes the first time)"
     [ -x .venv/bin/python ] || "$python" -m venv .venv
-    local install=(.venv/bin/python -m pip install --quiet --disable-pip-version-check --root-user-action=ignore)
+    # A hundred megabytes of Python take half a minute to compile; what is imported is compiled then, and kept.
+    local install=(.venv/bin/python -m pip install --no-compile --quiet --disable-pip-version-check)
+    install+=(--root-user-action=ignore)
     "${install[@]}" --require-hashes -r .ci/requirements.txt
     "${install[@]}" --no-deps --no-build-isolation -e .
     echo "$wanted" >"$stamp"

@@ -184,7 +184,7 @@ def main(folder: Path = FOLDER) -> int:
     tried = folder.with_name(f"{folder.name}.tried")
     if VARIABLE in os.environ or has_gpu() or is_unpacked(folder):
         return 0
-    if tried.exists() and time.time() - tried.stat().st_mtime < TRY_AGAIN_SECONDS:
+    if tried.exists() and abs(time.time() - tried.stat().st_mtime) < TRY_AGAIN_SECONDS:
         return 0
     try:
         version = unpack(folder)

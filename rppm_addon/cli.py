@@ -25,7 +25,7 @@ from .denoising.places import library_places
 from .gl.devices import Device, list_devices
 from .pictures import PictureError, make_folder
 from .scene import RenderSettings
-from .scene.errors import DenoiserError, DeviceError, RppmError, SettingsError
+from .scene.errors import DenoiserError, DeviceError, RppmError, SettingsError, unforeseen
 from .scene.quantities import count_text
 
 
@@ -54,7 +54,7 @@ def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECO
     except KeyboardInterrupt:
         message, status = "interrupted", INTERRUPTED
     except Exception as error:  # the last floor: a user gets a line, a developer --debug
-        message = f"unexpected {type(error).__name__}: {error}; run again with --debug and report it"
+        message = unforeseen(error, "run again with --debug and report it")
         status = 1
     bar.clear()
     if options.debug:

@@ -5,7 +5,7 @@ Arrays have row 0 at the bottom, as frames do; files have the top row first.
 """
 
 import contextlib
-import os
+import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -255,8 +255,8 @@ def make_folder(path: Path) -> None:
     """Make the folder that ``path`` is to lie in, and see that it can be written to. Raises PictureError."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not os.access(path.parent, os.W_OK):
-            raise PermissionError(f"no permission to write in {path.parent}")
+        with tempfile.TemporaryFile(dir=path.parent):  # what systems say of permissions does not hold for each disk
+            pass
     except OSError as error:
         raise PictureError(f"{path} cannot be written ({error}); choose another place") from error
 

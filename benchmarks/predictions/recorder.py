@@ -86,8 +86,8 @@ class Recorder:
 
         made = programs._Program.__init__
 
-        def init_noted(program, context, sources) -> None:  # type: ignore[no-untyped-def]
-            made(program, context, sources)
+        def init_noted(program, context, pacing, sources) -> None:  # type: ignore[no-untyped-def]
+            made(program, context, pacing, sources)
             texts = self._sources.setdefault(program.name, [])
             texts += [source.text for source in sources if source.text not in texts]
 

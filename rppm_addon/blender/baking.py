@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ..scene import Scene
-from ..scene.errors import RppmError
+from ..scene.errors import RppmError, unforeseen
 from ..scene.passes import COMBINED
 from ..session.bake_passes import BakePass
 from ..session.render_job import RenderJob
@@ -45,8 +45,7 @@ def bake(
         engine.report({"ERROR"}, str(error))
     except Exception as error:
         logger.exception("RPPM failed")
-        text = f"RPPM failed unexpectedly ({type(error).__name__}: {error}); please report the system console's text"
-        engine.report({"ERROR"}, text)
+        engine.report({"ERROR"}, unforeseen(error, "please report the system console's text"))
     finally:
         engine.end_result(result)
 

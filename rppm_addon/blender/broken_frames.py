@@ -8,7 +8,6 @@ background Blender then ends with another status than 0.
 
 import contextlib
 import logging
-import time
 from pathlib import Path
 
 import bpy
@@ -18,15 +17,16 @@ from . import background
 
 logger = logging.getLogger(__name__)
 
-_broken: tuple[int, int, float] | None = None
-"""session_uid of the scene, frame, and time of the last one."""
+_Identity = tuple[int, int, int, int] | None
+_broken: tuple[int, int, _Identity] | None = None
+"""session_uid of the scene, frame, and what its file was before, of the last one."""
 
 
 def report(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, text: str) -> None:
     """Tell that the frame that an animation is at has no picture, and why."""
     global _broken
     scene = depsgraph.scene
-    _broken = scene.session_uid, scene.frame_current, time.time()
+    _broken = scene.session_uid, scene.frame_current, _identity(_path(scene))
     background.lose_frame()
     engine.report({"WARNING"}, f"Frame {scene.frame_current} has no picture: {text}")
     # Blender crashes when it is to save layers of which it was given none.
@@ -38,11 +38,24 @@ def report(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, text:
 def _on_write(scene: bpy.types.Scene, *_: object) -> None:
     if _broken is None or _broken[:2] != (scene.session_uid, scene.frame_current) or scene.render.is_movie_format:
         return
-    path = Path(bpy.path.abspath(scene.render.frame_path(frame=scene.frame_current)))
+    path = _path(scene)
     with contextlib.suppress(OSError):
-        if path.stat().st_mtime >= _broken[2] - 1.0:  # file systems round
+        if _identity(path) != _broken[2]:  # else the file is none that was written now
             path.unlink()
             logger.warning("frame %d has no picture: %s is removed", scene.frame_current, path)
+
+
+def _path(scene: bpy.types.Scene) -> Path:
+    return Path(bpy.path.abspath(scene.render.frame_path(frame=scene.frame_current)))
+
+
+def _identity(path: Path) -> _Identity:
+    """Another one once a file was written, whatever clocks say: those of servers differ, and some are set back."""
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
 
 
 def register() -> None:

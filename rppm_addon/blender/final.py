@@ -13,7 +13,7 @@ import numpy as np
 
 from ..pictures import PictureError, PictureName
 from ..scene import Scene, cryptomatte
-from ..scene.errors import RppmError, SceneError
+from ..scene.errors import RppmError, SceneError, unforeseen
 from ..scene.passes import COMBINED
 from ..scene.quantities import clock_text, count_text, noise_text
 from ..session.observers import RenderObserver, current_observer
@@ -60,12 +60,7 @@ def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph)
         _fail(engine, depsgraph, observer, str(error))
     except Exception as error:
         logger.exception("RPPM failed")
-        _fail(
-            engine,
-            depsgraph,
-            observer,
-            f"RPPM failed unexpectedly ({type(error).__name__}: {error}); please report the system console's text",
-        )
+        _fail(engine, depsgraph, observer, unforeseen(error, "please report the system console's text"))
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,10 @@ _RESOLUTION, _WINDOW = 64, (-1.0, 1.0, -1.0, 1.0)
 class _NoImages(ImageTable):
     """Images cost their reading, and no program depends on them."""
 
+    def computed(self, *_: object) -> int:
+        """None of skies."""
+        return MISSING
+
     def _index(self, *_: object) -> int:
         return MISSING
 

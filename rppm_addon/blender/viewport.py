@@ -2,6 +2,8 @@
 """The rendered viewport: hands changes to the renderer process and draws the newest frame; it never waits."""
 
 import logging
+import math
+import threading
 import time
 from dataclasses import replace
 
@@ -9,12 +11,12 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..scene import Camera, RenderSettings, Scene
-from ..scene.errors import RppmError
+from ..scene.errors import RppmError, unforeseen
 from ..scene.quantities import noise_text, rate_text
 from ..scene.sharing import share
 from ..session.process.client import ProcessState
 from ..session.process.sessions import SessionKind, SessionStatus
-from . import panels, reports, studio_lights
+from . import kept_exports, panels, reports, studio_lights
 from .export import ExportProgress, SceneSync, export_exposure, export_settings, export_view
 from .export.layers import world_of
 from .export.lights.view_lighting import relit, view_lighting
@@ -42,6 +44,10 @@ class Viewport:
     def __init__(self, engine: bpy.types.RenderEngine) -> None:
         self.engine = engine
         self._sync = SceneSync()
+        self._depsgraph_key: tuple | None = None
+        """Of what is exported; None before the first export."""
+        self._extent: tuple = ()
+        """What of the viewport says which objects it shows, without Blender telling of a change."""
         self._scene: Scene | None = None
         self._session = renderer_process().open(SessionKind.VIEWPORT)
         self._texture = FrameTexture()
@@ -68,12 +74,17 @@ class Viewport:
 
         try:
             camera = export_view(context, depsgraph)
-            self._exporting = self._sync.prepare(depsgraph, SLICE_SECONDS, shown)
+            self._take_kept(depsgraph)
+            extent = space.local_view is not None, space.use_local_collections
+            if extent != self._extent:
+                self._extent = extent
+                self._sync.relist()
+            seconds = math.inf if _is_playing(context) and self._sync.scene is not None else SLICE_SECONDS
+            self._exporting = self._sync.advance(depsgraph, camera, shown, seconds)
             if self._exporting is not None:
                 self.engine.tag_update()
                 poll_soon()
                 return
-            scene = self._sync.update(depsgraph, camera, shown)
         except RppmError as error:
             self._exporting = None
             self._fail(str(error))
@@ -81,14 +92,25 @@ class Viewport:
         except Exception as error:
             self._exporting = None
             logger.exception("the viewport's export failed")
-            self._fail(f"RPPM failed unexpectedly ({type(error).__name__}: {error}); see the system console")
+            self._fail(unforeseen(error, "see the system console"))
             return
         self._error = ""
+        scene = self._sync.scene
         self._show(context, replace(_lit(context, depsgraph, scene), settings=_settings(context, depsgraph)))
+
+    def _take_kept(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Go on from what another viewport of the depsgraph has exported."""
+        key = kept_exports.key_of(depsgraph)
+        if key == self._depsgraph_key:
+            return
+        self._keep_export()
+        self._depsgraph_key, self._extent = key, ()
+        self._sync = kept_exports.take(depsgraph) or SceneSync()
 
     def draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Draw the newest frame, and follow the view."""
-        if self._sync.scene is not None and not self._error:
+        is_up_to_date = self._exporting is None or self._scene is not None
+        if self._sync.scene is not None and is_up_to_date and not self._error:
             try:
                 self._follow(context, depsgraph)
             except RppmError as error:
@@ -113,7 +135,7 @@ class Viewport:
         self._show(context, replace(_lit(context, depsgraph, self._sync.scene), **members))
 
     def _show(self, context: bpy.types.Context, scene: Scene) -> None:
-        playing = context.screen is not None and context.screen.is_animation_playing
+        playing = _is_playing(context)
         if not playing:
             scene = _picture_by_picture(scene)
         if self._scene is not None:
@@ -143,7 +165,8 @@ class Viewport:
         elif error:
             text = error
         elif self._exporting is not None:
-            text = f"Exporting {self._exporting.objects} of {self._exporting.of}"
+            progress = self._exporting
+            text = f"Exporting {progress.objects} of {progress.of}" if progress.of else "Exporting"
         elif starting:
             text = "Starting the renderer"
         elif not status.iterations and status.programs_started:
@@ -184,8 +207,7 @@ class Viewport:
         return process.state, status.generation, status.programs_started, status.iteration, status.error, shown
 
     def poll(self) -> None:
-        """Ask for a redraw when there is something new. Raises ReferenceError when Blender has freed the engine."""
-        _ = self.engine.is_preview  # any property tells; its __del__ is not called while it is held here
+        """Ask for a redraw when there is something new."""
         if self._exporting is not None:
             self.engine.tag_update()  # Blender calls update() again, with a depsgraph that is up to date
             now = time.monotonic()
@@ -195,9 +217,27 @@ class Viewport:
         elif self._state() != self._seen:
             self.engine.tag_redraw()
 
+    @property
+    def is_open(self) -> bool:
+        """Whether Blender has not freed the engine."""
+        try:
+            _ = self.engine.is_preview  # any property tells; its __del__ is not called while it is held here
+        except ReferenceError:
+            return False
+        return True
+
     def close(self) -> None:
         """Render this no more."""
         self._session.close()
+        self._keep_export()
+
+    def _keep_export(self) -> None:
+        if self._depsgraph_key is not None:
+            kept_exports.keep(self._depsgraph_key, self._sync)
+
+
+def _is_playing(context: bpy.types.Context) -> bool:
+    return context.screen is not None and context.screen.is_animation_playing
 
 
 def _settings(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> RenderSettings:
@@ -264,6 +304,11 @@ def close(key: int) -> None:
         viewport.close()
 
 
+def _close_freed() -> None:
+    for key in [key for key, viewport in _viewports.items() if not viewport.is_open]:
+        close(key)
+
+
 def close_all() -> None:
     """Forget all viewports; nothing asks for redraws any more."""
     for key in list(_viewports):
@@ -276,17 +321,45 @@ def close_all() -> None:
 def _on_load(*_: object) -> None:
     """The viewports of the file before are gone."""
     close_all()
+    kept_exports.forget()
+
+
+@persistent
+def _on_undo(*_: object) -> None:
+    """Blocks may lie where others lay."""
+    _close_freed()
+    kept_exports.forget()
+
+
+@persistent
+def _on_evaluated(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """What changes in Solid is to be seen in Rendered."""
+    if threading.current_thread() is threading.main_thread():  # renders evaluate depsgraphs of their own
+        _close_freed()
+        kept_exports.note(depsgraph)
+
+
+_HANDLERS = (
+    (bpy.app.handlers.load_pre, _on_load),
+    (bpy.app.handlers.undo_post, _on_undo),
+    (bpy.app.handlers.redo_post, _on_undo),
+    (bpy.app.handlers.depsgraph_update_post, _on_evaluated),
+    (bpy.app.handlers.frame_change_post, _on_evaluated),
+)
 
 
 def register() -> None:
     """Have viewports end with their file."""
-    bpy.app.handlers.load_pre.append(_on_load)
+    for handlers, handler in _HANDLERS:
+        handlers.append(handler)
 
 
 def unregister() -> None:
     """End all viewports."""
-    bpy.app.handlers.load_pre.remove(_on_load)
+    for handlers, handler in _HANDLERS:
+        handlers.remove(handler)
     close_all()
+    kept_exports.forget()
     studio_lights.forget()
 
 
@@ -298,11 +371,9 @@ def poll_soon() -> None:
 
 def _poll() -> float | None:
     lit_anew = studio_lights.load_wanted()
-    for key, viewport in list(_viewports.items()):
-        try:
-            viewport.poll()
-            if lit_anew:
-                viewport.engine.tag_redraw()
-        except ReferenceError:
-            close(key)
+    _close_freed()
+    for viewport in list(_viewports.values()):
+        viewport.poll()
+        if lit_anew:
+            viewport.engine.tag_redraw()
     return POLL_SECONDS if _viewports else None

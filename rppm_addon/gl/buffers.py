@@ -126,18 +126,23 @@ class GrowingBuffer:
                 f"has {available / 2**20:.0f} MiB left; {self.remedy}"
             )
         self.release()
+        self._context.refuse_lost_memory()  # what else ran out of it is not to be taken for this
         # What lies in a part of a texel could not be read.
         least = -(-size // TEXEL_SIZE) * TEXEL_SIZE if self._texel_bytes else size
         try:
             self._buffer = self._context.moderngl.buffer(reserve=allocated_size(max(least, SMALLEST)))
-            self._size = max(size, SMALLEST)
-            self._is_large = size > self._context.whole_limit
-            self._context.large_buffers += self._is_large
         except moderngl.Error as error:
-            raise DeviceError(
-                f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}"
-            ) from error
+            raise self._no_memory(size) from error
+        if self._context.lacks_memory:
+            self.release()
+            raise self._no_memory(size)
+        self._size = max(size, SMALLEST)
+        self._is_large = size > self._context.whole_limit
+        self._context.large_buffers += self._is_large
         return True
+
+    def _no_memory(self, size: int) -> DeviceError:
+        return DeviceError(f"{self.name} needs {size / 2**20:.0f} MiB, which the device does not have; {self.remedy}")
 
     def upload(self, array: np.ndarray | np.void) -> None:
         """Hold a contiguous array's bytes from the buffer's start. Raises DeviceError as require does."""

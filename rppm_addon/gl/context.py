@@ -279,6 +279,20 @@ class Context:
         self.finish()
         return time.perf_counter() - start
 
+    @property
+    def lacks_memory(self) -> bool:
+        """Whether the driver had none left for what it was given since this was asked last, which moderngl does not
+        ask it: a buffer is without memory then, and what is to be in it is lost."""
+        return self.moderngl.error == "GL_OUT_OF_MEMORY"
+
+    def refuse_lost_memory(self) -> None:
+        """Raise DeviceError where the device lacks memory: some allocate it only as they draw."""
+        if self.lacks_memory:
+            raise DeviceError(
+                f"the device {self.information.name} has run out of memory; lower the resolution or the photons, "
+                "simplify the scene, or close what else uses the device"
+            )
+
     def release(self) -> None:
         """Close the context; nothing made in it may be used any more."""
         self.moderngl.release()

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ..scene.meshes import RayVisibility
 from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .common.known import known
@@ -86,8 +87,9 @@ class Learning:
         return self.photon_counts.of(iteration.number + 1) / iteration.photon_count
 
     def direct_world_flux(self, lights: Lights) -> float:
-        """Iteration's, of the next one: where few rays leave the scene, and photons find in."""
-        return lights.world_photon_flux if self._shares_world_light else 0.0
+        """Iteration's, of the next one: where few rays leave the scene, photons find in, and all rays see the world."""
+        shares = self._shares_world_light and lights.world_visibility == RayVisibility.ALL
+        return lights.world_photon_flux if shares else 0.0
 
     def tally(self, context: StageContext, photons: Photons, photons_taken: list[np.ndarray]) -> None:
         """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band."""

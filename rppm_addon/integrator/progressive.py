@@ -106,6 +106,7 @@ class ProgressivePhotonMapper:
         direct_world_flux = self.learning.direct_world_flux(self.device_scene.lights)  # as the scene stands now
         iteration = dataclasses.replace(iteration, direct_world_flux=direct_world_flux)
         yield from iterate(self.device_scene.context, self.stages, self.learning, iteration)
+        self.context.refuse_lost_memory()
 
     def skip(self, iterations: int) -> Iterator[None]:
         """Begin after so many iterations, in steps, which are left out of the film: to be said before the first.

@@ -16,6 +16,7 @@ from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ..scene.passes import PassKind, RenderPass
 from .node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
 from .nodes import KINDS
+from .pieces import in_pieces
 
 LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
 """Rec.709: how a color becomes a number, measured in Cycles."""
@@ -52,6 +53,10 @@ class CompiledGraph:
 _DEEPEST_BUMP = 2
 """Each bump whose height depends on the normal of another asks for that three times: 3^2 are enough."""
 
+MOST_CALLS = 8192
+"""Nodes that a graph may compute, those of a bump's height as often as they are asked: drivers compile more for many
+minutes."""
+
 _LARGEST = float(np.finfo(np.float32).max)
 
 NEUTRAL_TEXT = """void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {
@@ -81,6 +86,7 @@ class _Compiler:
         self._functions: list[str] = []
         self._heights: dict[tuple[int, int], str] = {}
         self._numbers: dict[int, int] = {}
+        self._calls = 0
 
     def compile(self) -> CompiledGraph:
         scope = _Scope()
@@ -99,7 +105,7 @@ class _Compiler:
         text += "".join(self._functions)
         text += (
             "void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {\n"
-            + "".join(f"    {line}\n" for line in scope.lines)
+            + "".join(f"    {line}\n" for line in in_pieces(scope.lines))
             + "}\n"
         )
         return CompiledGraph(text + aovs, self._constants)
@@ -119,7 +125,7 @@ class _Compiler:
             place += len(entry.channels)
         if not written:
             return ""
-        lines = "".join(f"    {line}\n" for line in [*scope.lines, *written])
+        lines = "".join(f"    {line}\n" for line in in_pieces([*scope.lines, *written]))
         return (
             f'#include "resolve/aovs.glsl"\nvoid evaluate_aovs(Surface surface, uint first, uint path) {{\n{lines}}}\n'
         )
@@ -256,6 +262,12 @@ class _Compiler:
     def _call(self, scope: _Scope, index: int, weight: str | None) -> None:
         """Compute all outputs of a node, or add a shader with a weight."""
         node, kind = self._graph.nodes[index], self._kind(index)
+        self._calls += 1
+        if self._calls > MOST_CALLS:
+            raise GraphError(
+                f"it has more than {MOST_CALLS} nodes, which drivers compile for many minutes; bake them to a texture, "
+                "or take some out"
+            )
         if node.kind == BUMP:
             self._bump(scope, index)
             return
@@ -314,7 +326,7 @@ class _Compiler:
 
 
 def _function(result: str, name: str, lines: list[str], value: str) -> str:
-    body = "".join(f"    {line}\n" for line in lines)
+    body = "".join(f"    {line}\n" for line in in_pieces(lines))
     return f"{result} {name}(Surface surface, uint first) {{\n{body}    return {value};\n}}\n"
 
 

@@ -3,7 +3,8 @@
 
 from .camera import Aperture, Camera, Panorama, PanoramaKind, Texels
 from .images import Image
-from .lights import Light, LightKind, Mist, World
+from .light_linking import ALL_SETS, LIGHT_SETS, LightLinking
+from .lights import UNLIMITED_BOUNCES, Light, LightKind, Mist, World
 from .materials import Material
 from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
 from .motion import CameraMovement, Deformation, Movement, Shutter
@@ -14,6 +15,9 @@ from .settings import DensityEstimation, DirectLight, FirstPhotonHits, PixelFilt
 from .storage import load_scene, save_scene
 
 __all__ = [
+    "ALL_SETS",
+    "LIGHT_SETS",
+    "UNLIMITED_BOUNCES",
     "AovOutput",
     "Aperture",
     "AttributeDomain",
@@ -27,6 +31,7 @@ __all__ = [
     "Instance",
     "Light",
     "LightKind",
+    "LightLinking",
     "Link",
     "Material",
     "Mesh",

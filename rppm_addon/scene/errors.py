@@ -32,3 +32,13 @@ class DenoiserError(RppmError):
 
 class RendererError(RppmError):
     """The renderer's process has failed."""
+
+
+NO_MEMORY = "there is not enough memory; lower the resolution, simplify the scene, or close other programs"
+
+
+def unforeseen(error: Exception, remedy: str) -> str:
+    """What users are told of an error that is none of the above; a lack of memory is their own to mend."""
+    if isinstance(error, MemoryError):
+        return NO_MEMORY
+    return f"RPPM failed unexpectedly ({type(error).__name__}: {error}); {remedy}"

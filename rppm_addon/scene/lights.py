@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .declared import declared
+from .light_linking import LightLinking
 from .meshes import RayVisibility
 from .node_graphs import NodeGraph
 
@@ -18,6 +19,10 @@ class LightKind(enum.Enum):
     SPOT = "spot"
     SUN = "sun"
     AREA = "area"
+
+
+UNLIMITED_BOUNCES = 1024
+"""Of light, as Blender has it."""
 
 
 @dataclass
@@ -58,6 +63,12 @@ class Light:
     """Weight of this light when photons are allocated (paper section 4.3), on top of its power."""
     light_group: str = ""
     """Whose pass its light belongs to (RenderSettings.light_groups); "" is none."""
+    linking: LightLinking | None = None
+    """None: it shines on all objects, and all cast shadows."""
+    casts_shadow: bool = True
+    """Whether objects cast shadows in its light at all; without, it passes through them straight from the light."""
+    max_bounces: int = field(default=UNLIMITED_BOUNCES, metadata=declared(minimum=0, maximum=UNLIMITED_BOUNCES))
+    """How often its light is scattered beyond the surface that it falls on; 0 is direct light alone."""
 
 
 @dataclass
@@ -80,3 +91,7 @@ class World:
     mist: Mist = field(default_factory=Mist)
     light_group: str = ""
     """As of a light."""
+    visibility: RayVisibility = RayVisibility.ALL
+    """What sees it or is lit by it, as of a light."""
+    max_bounces: int = field(default=UNLIMITED_BOUNCES, metadata=declared(minimum=0, maximum=UNLIMITED_BOUNCES))
+    """As of a light, where the world is not even; the light of one that is has no limit, as in Cycles."""

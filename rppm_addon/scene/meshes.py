@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .declared import declared
+from .light_linking import LightLinking
 
 
 class AttributeDomain(enum.Enum):
@@ -111,3 +112,9 @@ class Instance:
     """Values of attributes that the object or its instancer has as a whole, in place of those of the mesh."""
     light_group: str = ""
     """Whose pass the light belongs to that it emits (RenderSettings.light_groups); "" is none."""
+    linking: LightLinking | None = None
+    """None: all lights shine on it, and it stops them."""
+    terminator_geometry_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
+    """Up to which cosine shadow rays begin on the surface that the normals tell of, not on its triangles."""
+    terminator_shading_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
+    """How much earlier than at the horizon the light of lights fades out; 1 is at 45 degrees."""

@@ -9,21 +9,18 @@ from ..scene.meshes import Mesh
 def polygons(name: str, positions: np.ndarray, faces: list[tuple[int, ...]], smooth: bool = False) -> Mesh:
     """A mesh of convex faces, (n, 3) positions in meters; smooth normals point away from the origin."""
     positions = np.asarray(positions, np.float32)
-    face_corners: list[int] = []
-    face_normals: list[np.ndarray] = []
-    triangles: list[tuple[int, int, int]] = []
-    for face in faces:
-        a, b, c = (positions[face[k]].astype(float) for k in range(3))
-        normal = np.cross(b - a, c - a)
-        first = len(face_corners)
-        face_corners += face
-        face_normals += [normal / np.linalg.norm(normal)] * len(face)
-        triangles += [(first, first + k, first + k + 1) for k in range(1, len(face) - 1)]
-    corners = np.array(face_corners, np.int32)
-    normals = np.array(face_normals, np.float32)
+    sizes, corners = np.array([len(face) for face in faces]), np.concatenate(faces).astype(np.int32)
+    first = np.cumsum(sizes) - sizes
+    a, b, c = (positions[corners[first + k]].astype(float) for k in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.repeat(normals, sizes, axis=0).astype(np.float32)
     if smooth:
         normals = positions[corners] / np.linalg.norm(positions[corners], axis=1, keepdims=True)
-    return Mesh(name, positions, corners, normals, np.array(triangles, np.int32), np.zeros(len(triangles), np.int32))
+    fan = np.arange(1, sizes.max() - 1)
+    triangles = first[:, None, None] + np.stack([0 * fan, fan, fan + 1], -1)
+    triangles = triangles[fan < sizes[:, None] - 1].astype(np.int32)
+    return Mesh(name, positions, corners, normals, triangles, np.zeros(len(triangles), np.int32))
 
 
 def rectangle(name: str, *corners: tuple[float, float, float]) -> Mesh:

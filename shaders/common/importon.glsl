@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer declares before the members photon_count, photon_flux, direct_world_flux and most_scattered of its
-// parameters, and the blocks Importons and Photons.
+// The includer declares before ESTIMATE_PARAMETERS among its parameters, and the blocks Importons and Photons.
 #include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/sampling.glsl"
 #include "common/whole_numbers.glsl"
 #include "common/gathering.glsl"
 #include "common/world_light.glsl"
-layout(std430, binding = 6) readonly buffer WorldDirections;
+#include "common/path_history.glsl"
+layout(std430, binding = 6) readonly buffer PhotonOrigins;
 
 // An importon, by its number: its members are read where they are asked for, since processors have no registers for
 // all of them. Where reading them each time costs more (gl/texel_buffers.py), a copy.
@@ -63,13 +63,13 @@ const float PHOTON_PLANE_TOLERANCE = 0.35;
 // Of direct light: rays find the rest. All of it where only the photons bring it.
 float direct_share(uint photon_number, float radius) {
     if (!(parameters.direct_world_flux > 0.0)) return 1.0;
-    WorldDirection world = world_directions[photon_number % parameters.photon_count];
+    PhotonOrigin world = photon_origins[photon_number % parameters.photon_count];
     return world_direct_photon_share(world.radiance, world.pdf, parameters.direct_world_flux, radius);
 }
 
 // The gathering ray finds the rest, unless its path ends before.
 float caustic_share(uint photon_number, float radius) {
-    float radiance = world_directions[photon_number % parameters.photon_count].radiance;
+    float radiance = photon_origins[photon_number % parameters.photon_count].radiance;
     bool found = radiance > 0.0 && photon_number / parameters.photon_count <= parameters.most_scattered;
     return found ? world_photon_share(radiance, parameters.photon_flux, radius) : 1.0;
 }
@@ -79,6 +79,15 @@ float caustic_share(uint photon_number, float radius) {
 bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
     if ((gathers & GATHERS_BY_RAY) != 0u && (photon_flags & PHOTON_INDIRECT) != 0u) return false;
     return dot(offset, offset) < radius * radius;
+}
+
+// Whether light has scattered more often than its own is to, from what it lights first to the camera. Transparency on
+// either way does not count where nothing else has scattered there.
+bool exceeds_bounces(uint importon_history, uint photon_flags, uint photon_number) {
+    bool straight = first_scatter(arrived_history(importon_history)) == SCATTER_NONE;
+    uint bounces = (straight ? 0u : parameters.camera_segment)
+                 + ((photon_flags & PHOTON_DIRECT) != 0u ? 0u : photon_number / parameters.photon_count);
+    return bounces > photon_origins[photon_number % parameters.photon_count].max_bounces;
 }
 
 // Light that a photon adds to an importon, what of it is diffuse, and whether it came from the viewer's side.
@@ -93,6 +102,7 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     float radius = photon_radius(flags, ITS.least_radius, ITS.radius, wide_radius);
     float radius2 = radius * radius;
     if (!(ITS.radius > 0.0) || !within_reach(ITS.gathers, offset, radius, flags)) return false;
+    if (parameters.limits_bounces != 0u && exceeds_bounces(ITS.history, flags, photon_number)) return false;
     float disks = ITS.radius * ITS.radius / radius2;
     stands_for = whole_word(floor(max(disks, 1.0) + 0.5));
     vec3 geometric = unpack_unit_vector(ITS.geometric_normal);

@@ -43,6 +43,9 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
     vec4 vertex0 = triangle_vertex(3u * triangle);
     if (walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
+#ifdef SHADOW_LINKING
+    if (walk.any_hit && !has_set(shadow_sets, shadow_set_of(vertex0.w))) return;
+#endif
 #ifdef DEEP_CUBEMAP_COUNT
     ++walk_counts.y;
 #endif

@@ -115,6 +115,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
     for (int k = 0; k < closure_lobes(closure); ++k)
         looks = looks || lobe_is_specular(stored_lobe(index, k), alpha);
     if (!looks) return NOTHING_ARRIVES;
+    uint light_set = light_set_at(closure.triangle);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec2 disk = sample_disk(scrambled_sobol(parameters.light_sample, pcg4d(choices + 1u)));
     Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
@@ -126,7 +127,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
         PassedLights passed = passed_lights(closure.position, sampled.direction, INFINITY_DISTANCE, RAY_GLOSSY, 0.0,
-                                            candidates.u);
+                                            light_set, candidates.u);
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
@@ -134,7 +135,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         add_candidate(candidates, largest(radiance),
                       Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE));
         uint emissive;
-        Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, emissive);
+        Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         reflected *= exp(-path_absorption(flags) * hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
@@ -159,22 +160,24 @@ float left_to_rays(vec3 direction, float radius) {
 }
 
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(uint index, float radius, Closure closure, vec3 throughput, PathShares shares, vec3 wo,
-                             bool gathered, bool gathers, uvec4 choices, out Parts parts) {
+Arriving arriving_from_light(uint index, uint flags, float radius, Closure closure, vec3 throughput, PathShares shares,
+                             vec3 wo, bool gathered, bool gathers, uvec4 choices, out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
                   scrambled_sobol(parameters.light_sample, pcg4d(choices)));
-    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
+    vec3 facing = lit_normal(closure);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-    LightChoice choice = choose_light_at(LitPoint(closure.position, geometric, lit_from_behind(index, closure)),
+    LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(index, closure),
+                                                  light_set_at(closure.triangle)),
                                          environment_irradiance, u.x, u.y);
     if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
     Light light = lights[choice.light];
+    if (((flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces) return NOTHING_ARRIVES;
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return NOTHING_ARRIVES;
-    float side = dot(geometric, sampled.direction);
+    float side = dot(facing, sampled.direction);
     if (side == 0.0) return NOTHING_ARRIVES;
     // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
     float light_pdf = sampled.pdf * light.selection_probability;
@@ -186,6 +189,15 @@ Arriving arriving_from_light(uint index, float radius, Closure closure, vec3 thr
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
                     choice.light, sampled.triangle);
+}
+
+// The LightLink by which a shadow ray meets what is in its way. Reflections of lights without shadows are hidden like
+// others.
+uint arriving_link(Arriving arriving, bool reflected) {
+    if (parameters.links_lights == 0u) return 0u;
+    if (arriving.triangle != NO_TRIANGLE) return emitter_traits(arriving.triangle) >> EMITTER_LINK_SHIFT;
+    Light light = lights[arriving.light];
+    return reflected && (light.flags & LIGHT_SHADOWLESS) != 0u ? 0u : light.link;
 }
 
 void main() {
@@ -208,30 +220,32 @@ void main() {
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
     Parts parts;  // shares of it
-    Arriving arriving = arriving_from_light(index, direct_radius(index, path, closure, viewer, gathered), closure,
-                                            throughput, shares, viewer, gathered, gathers, choices, parts);
+    Arriving arriving = arriving_from_light(index, flags, direct_radius(index, path, closure, viewer, gathered),
+                                            closure, throughput, shares, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);
     // One ray for both: by what they would add.
+    bool takes_reflected = false;
     float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);
     if (!(weight + reflected_weight > 0.0)) return;
     if (reflected_weight > 0.0) {
         float total = weight + reflected_weight;
         float u = scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).y;
-        bool takes_reflected = takes_candidate(reflected_weight, total, u);
+        takes_reflected = takes_candidate(reflected_weight, total, u);
         if (takes_reflected) {
             arriving = reflected;
             parts = Parts(vec3(1.0), vec3(0.0));
         }
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
     }
-    contributions[index] = vec4(parameters.sample_weight * arriving.radiance, gathered ? 1.0 : 0.0);
+    uint link = arriving_link(arriving, takes_reflected);
+    contributions[index] = vec4(parameters.sample_weight * arriving.radiance, signed_code(gathered, link));
     light_triangles[index] = arriving.triangle;
     if (parameters.splits_light != 0u)
         light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec3 origin = offset_from_surface(closure.position,
-                                      dot(geometric, arriving.direction) > 0.0 ? geometric : -geometric);
+                                      dot(lit_normal(closure), arriving.direction) > 0.0 ? geometric : -geometric);
     Ray shadow = Ray(origin, closure.triangle, arriving.direction, INFINITY_DISTANCE);
     if (arriving.distance < INFINITY_DISTANCE) {
         // From the moved origin to the light, and just short of it: its own surface must not hide it.

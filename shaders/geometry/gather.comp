@@ -76,11 +76,12 @@ void main() {
         uvs[k] = instance.mesh_uv == NO_UV ? vec2(0.0)
                  : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
     }
-    // A triangle without finite corners becomes a point, which no ray meets. Fourth components: 1 where the triangle
-    // casts no shadow; its chance among the emitters, and its traits as one (lights/mark.comp).
+    // A triangle without finite corners becomes a point, which no ray meets. Fourth components: the sets that it is in
+    // and whether it casts no shadow (common/light_sets.glsl); its chance among the emitters, and its traits as one
+    // (lights/mark.comp).
     for (uint k = 0u; k < 3u; ++k)
         triangle_vertices[3u * index + k] =
-            vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? float(instance.shadowless) : 0.0);
+            vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? instance.set_code : 0.0);
     uint slot = min(triangle_slots[local], instance.slot_count - 1u);
     attributes[index] = TriangleAttributes(normals[0], normals[1], normals[2],
                                               slot_materials[instance.first_slot + slot],

@@ -77,6 +77,15 @@ float environment_weight(CameraPath path, float shadow_ray_pdf) {
     return scatter_mis_weight(path.scatter_pdf, left_to_rays ? 0.0 : shadow_ray_pdf);
 }
 
+// Radiance of the world for a path that comes to no surface. What gathering rays find lights the surface before; what
+// others see is no matter of bounces, as in Cycles.
+vec3 found_world(uint flags, vec3 direction) {
+    bool gathered = (flags & PATH_GATHERED) != 0u;
+    if ((camera_ray_kind(flags) & parameters.world_visibility & RAYS_WITH_VISIBILITY) == 0u
+        || (gathered && parameters.segment > parameters.world_bounces + 1u)) return vec3(0.0);
+    return world_radiance(direction, (flags & PATH_STRAIGHT) != 0u && !gathered);
+}
+
 // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left to
 // photons but for the environment's. Shadow rays find direct light, and share the environment's with this ray.
 // shadow_ray_pdf: of these.
@@ -206,7 +215,8 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     else if (diffuse) {
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
-        found_weight = diffuse_factor(closure, facing, viewer, event.direction);
+        found_weight = diffuse_factor(closure, facing, viewer, event.direction)
+                     * terminator_factor(closure.flags, facing, event.direction);
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
     importons[index].history = history_word(history, scattered_history(history, event.scatter));
@@ -251,7 +261,7 @@ void main() {
     vec3 world = vec3(0.0);
     float shadow_ray_pdf = 0.0;
     if (!hit) {
-        world = world_radiance(ray.direction, (path.flags & PATH_STRAIGHT) != 0u && !gathered);
+        world = found_world(path.flags, ray.direction);
         shadow_ray_pdf = world_shadow_ray_pdf(ray.direction);
     }
     if (gathered && !hit) {
@@ -261,7 +271,8 @@ void main() {
     vec3 lights_passed = vec3(0.0);
     if (!gathered && (path.flags & PATH_LIGHTS_FOUND) == 0u)
         lights_passed = visible_light(ray.origin, ray.direction, hit ? closures[index].distance : INFINITY_DISTANCE,
-                                      camera_ray_kind(path.flags), path.scatter_pdf);
+                                      camera_ray_kind(path.flags), path.scatter_pdf,
+                                      light_set_at(ray.source_triangle));
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);
     if (!hit) {
         radiances[index] += seen + seen_environment(path, world, shadow_ray_pdf, largest(lights_passed) <= 0.0);

@@ -37,7 +37,8 @@ void main() {
         path_throughput = camera_paths[path_index].throughput;
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
         passed = path_throughput * visible_light(ray.origin, ray.direction, distance, camera_ray_kind(flags),
-                                                 camera_paths[path_index].scatter_pdf);
+                                                 camera_paths[path_index].scatter_pdf,
+                                                 light_set_at(ray.source_triangle));
     }
     seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
 }

@@ -5,6 +5,7 @@
 #include <LightNode>
 #include "lights/lights.glsl"
 #include "common/intersection.glsl"
+#include "common/light_sets.glsl"
 layout(std430, binding = 13) readonly buffer LightNodes { LightNode light_nodes[]; };
 
 // Random numbers of 24 bits last for so many levels.
@@ -20,8 +21,14 @@ float cosine_of_difference(float cosine, float less_cosine) {
     return cosine > less_cosine ? 1.0 : cosine * less_cosine + sine_of(cosine) * sine_of(less_cosine);
 }
 
-// Where light is asked for: one side of the surface may be all that it can reach.
-struct LitPoint { vec3 position; vec3 normal; bool both_sides; };
+// Where light is asked for: one side of the surface may be all that it can reach; in a light set.
+struct LitPoint { vec3 position; vec3 normal; bool both_sides; uint light_set; };
+
+// The light set of the object that a triangle is of; 0 where lights shine on all alike.
+uint light_set_at(uint triangle) {
+    if (parameters.links_lights == 0u || triangle == NO_TRIANGLE) return 0u;
+    return light_set_of(triangle_vertices[3u * triangle].w);
+}
 
 float facing(LitPoint point, vec3 direction) {
     float cosine = dot(point.normal, direction);
@@ -30,7 +37,7 @@ float facing(LitPoint point, vec3 direction) {
 
 // Irradiance, W/m^2, that the lights below a node may give: 0 only where they give none.
 float node_importance(LightNode node, LitPoint point) {
-    if (!(node.intensity > 0.0)) return 0.0;
+    if (!(node.intensity > 0.0) || !has_set(node.light_sets, point.light_set)) return 0.0;
     vec3 to_center = 0.5 * (node.low + node.high) - point.position, half_size = 0.5 * (node.high - node.low);
     float distance2 = dot(to_center, to_center), radius2 = dot(half_size, half_size);
     if (distance2 <= radius2 * 1.0001) return node.intensity / max(radius2, 1e-20);
@@ -53,6 +60,7 @@ float tree_importance(uint first, uint leaves, LitPoint point) {
 }
 
 float sun_importance(LightNode sun, LitPoint point) {
+    if (!has_set(sun.light_sets, point.light_set)) return 0.0;
     return sun.intensity * max(0.0, cosine_of_difference(facing(point, -sun.axis), sun.cosine_normals));
 }
 
@@ -166,10 +174,10 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
     passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
-// The light objects that a ray passes; they hide nothing. Suns first, then down the tree: one loop, since drivers
-// without calls have the code of a light as often as it stands here.
+// The light objects that a ray from an object in a light set passes; they hide nothing, and the camera sees all. Suns
+// first, then down the tree: one loop, since drivers without calls have the code of a light as often as it stands here.
 PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf,
-                           float u) {
+                           uint light_set, float u) {
     PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint sun = maximum_distance >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
@@ -189,7 +197,8 @@ PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, 
             node >>= uint(findLSB(node));
             if (node == 1u) node = 0u;
         }
-        if (met) pass_light(passed, at.member, origin, direction, maximum_distance, ray, scatter_pdf);
+        if (met && ((ray & RAY_CAMERA) != 0u || has_set(at.light_sets, light_set)))
+            pass_light(passed, at.member, origin, direction, maximum_distance, ray, scatter_pdf);
     }
     return passed;
 }
@@ -197,8 +206,8 @@ PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, 
 // --- emissive triangles that a ray meets ---------------------------------------------------------------
 
 // The nearest of those that smooth surfaces look for, as a hit of the watertight test; from_triangle: where the ray
-// begins, which it does not meet. emissive: its number among emissive_triangles[].
-Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, out uint emissive) {
+// begins, which it does not meet; on an object in a light set. emissive: its number among emissive_triangles[].
+Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set, out uint emissive) {
     Hit nearest = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
     if (parameters.triangle_tree_leaves == 0u) return nearest;
     WatertightRay ray = make_watertight_ray(origin, direction);
@@ -209,6 +218,7 @@ Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, out uint emissi
         bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, nearest.distance);
         if (met && node < parameters.triangle_tree_leaves) { node *= 2u; continue; }
         uint triangle = met ? emissive_triangles[at.member].triangle : NO_TRIANGLE;
+        met = met && has_set(at.light_sets, light_set);
         if (met && triangle != from_triangle && (emissive_triangles[at.member].traits & EMITTER_REFLECTED) != 0u) {
             vec3 v0, v1, v2;
             triangle_corners(triangle, v0, v1, v2);
@@ -221,6 +231,6 @@ Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, out uint emissi
     return nearest;
 }
 
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf) {
-    return passed_lights(origin, direction, maximum_distance, ray, scatter_pdf, 0.0).radiance;
+vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf, uint light_set) {
+    return passed_lights(origin, direction, maximum_distance, ray, scatter_pdf, light_set, 0.0).radiance;
 }

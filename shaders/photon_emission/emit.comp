@@ -14,7 +14,7 @@ layout(std430, binding = 0) writeonly buffer Rays;
 layout(std430, binding = 1) writeonly buffer PhotonPaths;
 layout(std430, binding = 8) writeonly buffer PhotonCells;
 
-layout(std430, binding = 9) writeonly buffer WorldDirections;
+layout(std430, binding = 9) writeonly buffer PhotonOrigins;
 layout(std430, binding = 10) writeonly buffer PhotonDifferentials;
 
 #include <GuideCells>
@@ -88,10 +88,10 @@ void main() {
         | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
         | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
         | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
-    world_directions[index] = WorldDirection(0.0, 0.0);
+    photon_origins[index] = PhotonOrigin(0.0, 0.0, light.max_bounces);
     if (light.kind == LIGHT_WORLD)
-        world_directions[index] = WorldDirection(largest(world_radiance(-emission.direction)),
-                                                 world_shadow_ray_pdf(-emission.direction));
+        photon_origins[index] = PhotonOrigin(largest(world_radiance(-emission.direction)),
+                                                 world_shadow_ray_pdf(-emission.direction), light.max_bounces);
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);

@@ -20,6 +20,7 @@ uint resolved_path;
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
 #include "common/photon.glsl"
+#include "common/light_sets.glsl"
 #include "resolve/ranges.glsl"
 
 layout(std430, binding = 0) readonly buffer Rays;
@@ -107,6 +108,14 @@ void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool 
                              | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
 }
 
+// Whether light that a camera path meets shines on where its ray began; the camera sees all.
+bool shines_there(Surface surface, ShadingInstance instance, uint source_triangle) {
+    uvec2 light_sets = uvec2(instance.light_sets0, instance.light_sets1);
+    if (light_sets == uvec2(~0u) || parameters.path_kind != PATH_OF_CAMERA || (surface.ray & RAY_CAMERA) != 0u
+        || source_triangle == NO_TRIANGLE) return true;
+    return has_set(light_sets, light_set_of(triangle_vertices[3u * source_triangle].w));
+}
+
 void store(uint index, Closure closure) {
     closures[index].position = closure.position;
     closures[index].triangle = closure.triangle;
@@ -161,6 +170,7 @@ void main() {
     if (seen_first && !unseen) evaluate_aovs(surface, materials[material].first_constant, index);
 #endif
     hold_out_and_catch(surface, instance, unseen, builder);
+    if (!shines_there(surface, instance, ray.source_triangle)) builder.closure.emission = vec3(0.0);
     let_light_pass(surface, instance, flags, unseen, materials[material].opaque_shadow != 0u, builder);
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
@@ -168,7 +178,7 @@ void main() {
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
     builder.closure.shading_normal = pack_unit_vector(builder.shading);
-    builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT;
+    builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT | instance.terminator_flags;
     make_usable(builder.closure);
     store(index, builder.closure);
 }

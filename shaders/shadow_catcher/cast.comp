@@ -9,11 +9,15 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
+#include "common/light_sets.glsl"
+#include <LightLink>
 layout(std140, binding = 0) uniform Parameters { ShadowCatcherParameters parameters; };
 #include "lights/lights.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 3) writeonly buffer ShadowRays;
+layout(std430, binding = 2) writeonly buffer Contributions;
+layout(std430, binding = 8) readonly buffer LightLinks;
 
 const int CANDIDATES = 64;
 
@@ -22,12 +26,14 @@ void main() {
     if (index == NO_PATH) return;
     Ray none = Ray(vec3(0.0), NO_TRIANGLE, vec3(0.0, 0.0, 1.0), 0.0);
     shadow_rays[index] = none;
+    contributions[index] = vec4(0.0);
     Closure closure = closures[index];
     if (!(rays[index].maximum_distance > 0.0) || !closure_hit(closure)
         || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u) return;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SHADOW_CATCHER,
                                             parameters.segment, parameters.first_pixel + index);
+    uint light_set = light_set_of(triangle_vertices[3u * closure.triangle].w), chosen_link = 0u;
     float total = 0.0;
     Ray chosen = none;
     for (int k = 0; k < CANDIDATES; ++k) {
@@ -35,7 +41,10 @@ void main() {
         vec2 u_place = next_random2(random);
         Light light = lights[choose_light((float(k) + u) / float(CANDIDATES))];
         LightSample sampled = sample_whole_light(light, closure.position, u_part, u_place);
-        bool lights_diffuse = (light.flags & RAY_DIFFUSE) != 0u && sampled.triangle != closure.triangle;
+        uint link = sampled.triangle == NO_TRIANGLE ? light.link
+                    : emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT;
+        bool lights_diffuse = (light.flags & RAY_DIFFUSE) != 0u && sampled.triangle != closure.triangle
+                           && has_set(light_links[link].light_sets, light_set);
         float given = largest(sampled.weight) * max(dot(shading, sampled.direction), 0.0) / light.selection_probability;
         if (!lights_diffuse || !(given > 0.0) || dot(geometric, sampled.direction) <= 0.0) continue;
         total += given;
@@ -43,7 +52,9 @@ void main() {
             vec3 origin = offset_from_surface(closure.position, geometric);
             float reach = sampled.distance < INFINITY_DISTANCE ? sampled.distance * (1.0 - 1e-4) : INFINITY_DISTANCE;
             chosen = Ray(origin, closure.triangle, sampled.direction, reach);
+            chosen_link = link;
         }
     }
     shadow_rays[index] = chosen;
+    contributions[index].w = signed_code(false, chosen_link);
 }

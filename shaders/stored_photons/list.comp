@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { StoredParameters parameters; };
 layout(std430, binding = 0) readonly buffer Photons;
 layout(std430, binding = 1) buffer StoredPhotons;
-layout(std430, binding = 2) readonly buffer WorldDirections;
+layout(std430, binding = 2) readonly buffer PhotonOrigins;
 
 void main() {
     uint index = invocation_index();
@@ -22,7 +22,7 @@ void main() {
     bool direct = (flags & PHOTON_DIRECT) != 0u;
     if (direct && parameters.takes_direct == DIRECT_NONE) return;
     if (direct && parameters.takes_direct == DIRECT_OF_WORLD
-        && !(world_directions[index % parameters.photon_count].radiance > 0.0)) return;
+        && !(photon_origins[index % parameters.photon_count].radiance > 0.0)) return;
     stored_photons[atomicAdd(stored_count, 1u)] = index;
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(diffused_count, 1u);
     if ((flags & PHOTON_INDIRECT) != 0u) atomicAdd(indirect_count, 1u);

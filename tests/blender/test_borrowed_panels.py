@@ -70,13 +70,16 @@ COUNTERPARTS = {
     "CYCLES_RENDER_PT_passes_data": "RPPM_PT_passes",
     # world
     "CYCLES_WORLD_PT_preview": "RPPM_PT_world_preview",
+    "CYCLES_WORLD_PT_ray_visibility": "RPPM_PT_world_ray_visibility",
+    # object
+    "OBJECT_PT_shadow_terminator": "RPPM_PT_shadow_terminator",
     "CYCLES_WORLD_PT_surface": "RPPM_PT_world_surface",
 }
 """Panels of Cycles, and those that stand in their place."""
 
 EXCLUDED = {
     "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are refused",
-    "CYCLES_LIGHT_PT_settings": f"portals, bounces and unshadowed lights: {NOT_RENDERED}",
+    "CYCLES_LIGHT_PT_settings": "RPPM_PT_light shows bounces and shadows; portals need no sampling of their own",
     "CYCLES_MATERIAL_PT_settings_volume": OF_CYCLES,
     "CYCLES_OBJECT_PT_shading_caustics": "caustics need no switch",
     "CYCLES_OBJECT_PT_shading_gi_approximation": OF_CYCLES,
@@ -98,16 +101,14 @@ EXCLUDED = {
     "CYCLES_RENDER_PT_subdivision": OF_CYCLES,
     "CYCLES_RENDER_PT_volumes": OF_CYCLES,
     "CYCLES_WORLD_PT_mist": f"the mist pass: {NOT_RENDERED}",
-    "CYCLES_WORLD_PT_ray_visibility": NOT_RENDERED,
     "CYCLES_WORLD_PT_volume": NOT_RENDERED,
-    "OBJECT_PT_shadow_terminator": OF_CYCLES,
 }
 """Panels of Cycles that RPPM has nothing for, and why."""
 OLDER = {
-    "CYCLES_OBJECT_PT_light_linking": f"light linking: {NOT_RENDERED}",
-    "CYCLES_OBJECT_PT_shading": "is empty without the panels in it",
+    "CYCLES_OBJECT_PT_light_linking": OF_CYCLES,
+    "CYCLES_OBJECT_PT_shading": OF_CYCLES,
     "CYCLES_OBJECT_PT_shading_shadow_terminator": OF_CYCLES,
-    "CYCLES_OBJECT_PT_shadow_linking": f"light linking: {NOT_RENDERED}",
+    "CYCLES_OBJECT_PT_shadow_linking": OF_CYCLES,
     "CYCLES_RENDER_PT_override": "RPPM_PT_override shows it",
 }
 """Panels that Cycles had before Blender 5, and why RPPM has nothing for them."""
@@ -163,7 +164,7 @@ def test_the_lists_name_nothing_that_is_not_there(scene):
     {
         "camera": {"DATA_PT_lens", "DATA_PT_camera", "DATA_PT_camera_dof", "DATA_PT_camera_safe_areas",
                    "DATA_PT_camera_background_image", "DATA_PT_camera_display"},
-        "object": {"OBJECT_PT_visibility"},
+        "object": {"OBJECT_PT_visibility", "OBJECT_PT_shading"},
         "particle": {"PARTICLE_PT_render_object", "PARTICLE_PT_render_collection", "PARTICLE_PT_emission"},
         "texture": {"TEXTURE_PT_image", "TEXTURE_PT_context"},
         "output": {"RENDER_PT_format", "RENDER_PT_frame_range", "RENDER_PT_output", "RENDER_PT_encoding",

@@ -37,27 +37,6 @@ def add_hair(scene):
     the(scene, "MESH").particle_systems[0].settings.type = "HAIR"
 
 
-def link_light(member):
-    def use(scene):
-        setattr(the(scene, "LIGHT").light_linking, member, bpy.data.collections.new("few"))
-
-    return use
-
-
-def hide_world(scene):
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.cycles_visibility.glossy = False
-
-
-def limit_world(scene):
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.cycles.max_bounces = 2
-
-
-def limit_light(scene):
-    set_of_cycles(the(scene, "LIGHT").data, "max_bounces", 3)
-
-
 def set_of_cycles(block, name, value):
     """As the window does: Python's own changes of what add-ons add are not told to depsgraphs."""
     setattr(block.cycles, name, value)
@@ -72,10 +51,14 @@ def simplify(name, value):
     return use
 
 
+def subdivide_adaptively(mesh, used=True):
+    modifier = next(iter(mesh.modifiers), None) or mesh.modifiers.new("smooth", "SUBSURF")
+    owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else mesh.cycles
+    owner.use_adaptive_subdivision = used
+
+
 def subdivide(scene):
-    modifier = the(scene, "MESH").modifiers.new("smooth", "SUBSURF")
-    owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else the(scene, "MESH").cycles
-    owner.use_adaptive_subdivision = True
+    subdivide_adaptively(the(scene, "MESH"))
 
 
 def roll(scene):
@@ -95,16 +78,7 @@ def look_around_with_both_eyes(scene):
 
 USES = {
     "Hair of particle systems": add_hair,
-    "Light Linking": link_light("receiver_collection"),
-    "Shadow Linking": link_light("blocker_collection"),
-    "Lights without Cast Shadow": lambda scene: setattr(the(scene, "LIGHT").data, "use_shadow", False),
-    "Max Bounces of lights": limit_light,
     "Adaptive Subdivision": subdivide,
-    "Shading Offset of the shadow terminator": lambda scene: setattr(
-        the(scene, "MESH"), "shadow_terminator_shading_offset", 0.2
-    ),
-    "Ray Visibility of the world": hide_world,
-    "Max Bounces of the world": limit_world,
     "Culling (Simplify)": simplify("use_camera_cull", True),
     "Texture Limit (Simplify)": simplify("texture_limit_render", "512"),
     "Rolling Shutter": roll,
@@ -124,7 +98,7 @@ def test_what_is_used_is_named_once(lit, omission):
 
 def test_previews_name_nothing(lit):
     """Their scene is Blender's own, and none of the user's doing."""
-    the(lit, "LIGHT").data.use_shadow = False
+    add_hair(lit)
     lit.view_layers[0].update()
     engine = SimpleNamespace(is_preview=True, test_break=lambda: False, update_stats=lambda *_: None)
     scene = export_scene(bpy.context.evaluated_depsgraph_get(), engine)
@@ -133,9 +107,9 @@ def test_previews_name_nothing(lit):
 
 def test_many_objects_make_one_line(scene):
     for _ in range(5):
-        add_light(scene, "POINT").data.use_shadow = False
-    (text,) = warnings_about(scene, "Lights without Cast Shadow")
-    assert '"Light", "Light.001", "Light.002" and 2 more' in text
+        subdivide_adaptively(add_mesh(scene))
+    (text,) = warnings_about(scene, "Adaptive Subdivision")
+    assert '"Mesh", "Mesh.001", "Mesh.002" and 2 more' in text
 
 
 def test_passes_that_are_missing(lit):
@@ -153,16 +127,16 @@ def test_portals_give_no_light(lit):
 def test_a_viewport_follows_edits(lit):
     sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
     camera = export(lit).camera
-    title = "Lights without Cast Shadow"
+    title = "Adaptive Subdivision"
 
     def told():
         depsgraph.update()
         return any(text.startswith(title) for text in sync.update(depsgraph, camera).warnings)
 
     assert not told()
-    the(lit, "LIGHT").data.use_shadow = False
+    subdivide_adaptively(the(lit, "MESH"))
     assert told()
-    the(lit, "LIGHT").data.use_shadow = True
+    subdivide_adaptively(the(lit, "MESH"), used=False)
     assert not told()
 
 

@@ -1,12 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A viewport's scene follows every edit: it equals one exported anew, and shares what did not change."""
 
+import collections
 import random
+import time
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
 
+from rppm_addon.blender import kept_exports
+from rppm_addon.blender.export.images import images
+from rppm_addon.blender.export.meshes import mesh_table, meshes
 from rppm_addon.blender.export.sync import SceneSync
 from rppm_addon.scene import Camera, Instance, Scene
 from rppm_addon.scene.documents import field_names
@@ -256,7 +262,7 @@ def test_what_objects_lack_is_told_until_they_have_it(synced):
 def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
     """What an edit costs does not grow with the scene: the depsgraph's instances are not listed again."""
     passes = []
-    monkeypatch.setattr(synced._objects, "export", lambda *a: passes.append(a))
+    monkeypatch.setattr(synced._objects, "begin", lambda *a: passes.append(a))
     for edit in (move, edit_mesh, paint, brighten, move_light, recolor_world):
         edit()
         bpy.context.view_layer.update()
@@ -349,12 +355,14 @@ def test_what_changes_while_an_export_is_in_slices(synced, edit):
         edit()
         bpy.context.view_layer.update()
     sync, graph = SceneSync(), bpy.context.evaluated_depsgraph_get()
-    first = sync.prepare(graph, 0.0)
-    assert first is not None and 0 < first.objects < first.of
+    first = advance(sync, graph)
+    while first.objects == 0:
+        first = advance(sync, graph)
+    assert 0 < first.objects < first.of
     prepared = []
 
     def follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-        prepared.append(sync.prepare(depsgraph, 0.0))
+        prepared.append(advance(sync, depsgraph))
 
     bpy.app.handlers.depsgraph_update_post.append(follow)
     bpy.app.handlers.frame_change_post.append(follow)
@@ -365,27 +373,81 @@ def test_what_changes_while_an_export_is_in_slices(synced, edit):
     bpy.app.handlers.depsgraph_update_post.remove(follow)
     bpy.app.handlers.frame_change_post.remove(follow)
     graph = bpy.context.evaluated_depsgraph_get()
-    slices = 0
-    while sync.prepare(graph, 0.0) is not None:
+    finish(sync, graph)
+    assert same(sync.scene, fresh())
+
+
+def advance(sync: SceneSync, graph: bpy.types.Depsgraph):
+    """A slice without time: one step and no more is done."""
+    return sync.advance(graph, CAMERA, None, 0.0)
+
+
+def finish(sync: SceneSync, graph: bpy.types.Depsgraph) -> int:
+    """Slices until the scene is up to date."""
+    slices = 1
+    while advance(sync, graph) is not None:
         slices += 1
-        assert slices < 20
-    assert same(sync.update(graph, CAMERA), fresh())
+        assert slices < 2000
+        time.sleep(0.001)  # threads may have something to do
+    return slices
 
 
-def test_what_was_prepared_is_not_exported_again(synced, monkeypatch):
+def test_no_slice_reads_what_another_has_read(synced, monkeypatch):
+    """Each array of each mesh is read once, however short the slices are."""
+    for name, read in meshes._READERS.items():
+        monkeypatch.setitem(meshes._READERS, name, counted(name, read))
+    monkeypatch.setattr(meshes, "_FEW", 0)
+    reads.clear()
+    assert finish(SceneSync(), bpy.context.evaluated_depsgraph_get()) > 10
+    assert collections.Counter(reads) == dict.fromkeys(meshes._READERS, 2)
+
+
+reads: list[str] = []
+
+
+def counted(name, read):
+    def reading(*arguments):
+        reads.append(name)
+        return read(*arguments)
+
+    return reading
+
+
+def test_slices_give_what_is_exported_at_once(synced, monkeypatch):
+    """Arrays in parts, an image in steps; tangents and islands by threads; and a curve, which Blender converts."""
+    mesh, tree = bpy.data.meshes["Cube"], bpy.data.materials["Red"].node_tree
+    map_ = mesh.uv_layers.new(name="Map")
+    map_.uv.foreach_set("vector", np.random.default_rng(1).random(2 * len(mesh.loops)))
+    image = bpy.data.images.new("Noise", 32, 16)
+    image.pixels.foreach_set(np.random.default_rng(2).random(32 * 16 * 4, np.float32))
+    shader = tree.nodes["Principled BSDF"]
+    for kind, output, socket in (
+        ("ShaderNodeTexImage", "Color", "Base Color"),
+        ("ShaderNodeNormalMap", "Normal", "Normal"),
+        ("ShaderNodeNewGeometry", "Random Per Island", "Roughness"),
+    ):
+        node = tree.nodes.new(kind)
+        tree.links.new(node.outputs[output], shader.inputs[socket])
+    next(node for node in tree.nodes if node.type == "TEX_IMAGE").image = image
+    curve = bpy.data.curves.new("Curve", "CURVE")
+    curve.splines.new("POLY").points.add(3)
+    curve.extrude = 0.5
+    for number, point in enumerate(curve.splines[0].points):
+        point.co = (number, number % 2, 0.0, 1.0)
+    _add("Curve", curve)
     bpy.context.view_layer.update()
-    sync, graph = SceneSync(), bpy.context.evaluated_depsgraph_get()
-    assert not len(graph.updates)
-    while sync.prepare(graph, 0.0) is not None:
-        pass
-    monkeypatch.setattr("rppm_addon.blender.export.meshes.mesh_table.export_mesh", None)
-    assert same(sync.update(graph, CAMERA), synced.scene)
+    whole = fresh()
+    assert len(whole.images) == 1 and any(len(mesh.attributes) == 2 for mesh in whole.meshes)
+    monkeypatch.setattr(meshes, "_FEW", 0)
+    monkeypatch.setattr(meshes, "_COPIED_BYTES", 24)
+    monkeypatch.setattr(images, "_LARGE", 1)
+    sync = SceneSync()
+    finish(sync, bpy.context.evaluated_depsgraph_get())
+    assert same(sync.scene, whole) and equal(sync.scene.images, whole.images)
 
 
-def test_many_new_objects_are_prepared_for(synced, monkeypatch):
+def test_many_new_objects_are_exported_in_slices(synced):
     graph = bpy.context.evaluated_depsgraph_get()
-    assert synced.prepare(graph, 0.0) is None
-    monkeypatch.setattr("rppm_addon.blender.export.sync._FEW_NEW", 2)
     handlers = list(bpy.app.handlers.depsgraph_update_post)
     bpy.app.handlers.depsgraph_update_post.clear()
     for number in range(4):
@@ -393,9 +455,103 @@ def test_many_new_objects_are_prepared_for(synced, monkeypatch):
     bpy.context.view_layer.update()
     bpy.app.handlers.depsgraph_update_post.extend(handlers)
     graph = bpy.context.evaluated_depsgraph_get()
-    slices = 0
-    while synced.prepare(graph, 0.0) is not None:
-        slices += 1
-        assert slices < 20
-    assert slices >= 4
-    assert same(synced.update(graph, CAMERA), fresh())
+    before = synced.scene
+    assert advance(synced, graph) is not None and synced.scene is before
+    assert finish(synced, graph) >= 4
+    assert same(synced.scene, fresh())
+
+
+@pytest.fixture
+def kept(synced):
+    """What a viewport had exported that was switched to Solid; the engine's own handlers note what changes."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    kept_exports.keep(kept_exports.key_of(graph), synced)
+    follow = next(f for f in bpy.app.handlers.depsgraph_update_post if f.__name__ == "follow")
+    for handlers in (bpy.app.handlers.depsgraph_update_post, bpy.app.handlers.frame_change_post):
+        handlers.remove(follow)
+    yield synced
+    kept_exports.forget()
+    for handlers in (bpy.app.handlers.depsgraph_update_post, bpy.app.handlers.frame_change_post):
+        handlers.append(follow)
+
+
+def switch_back() -> SceneSync | None:
+    """What a viewport that is switched to Rendered finds."""
+    bpy.context.view_layer.update()
+    return kept_exports.take(bpy.context.evaluated_depsgraph_get())
+
+
+def edit_in_edit_mode():
+    """Enter edit mode, move a vertex, and stay there."""
+    bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.view_layer.update()
+    edited = bmesh.from_edit_mesh(bpy.data.meshes["Cube"])
+    edited.verts.ensure_lookup_table()
+    edited.verts[0].co.x -= 0.3
+    bmesh.update_edit_mesh(bpy.data.meshes["Cube"])
+
+
+def edit_and_leave_edit_mode():
+    """And leave it."""
+    edit_in_edit_mode()
+    bpy.context.view_layer.update()
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.parametrize("edit", [*EDITS, add_same_place, edit_in_edit_mode, edit_and_leave_edit_mode])
+def test_what_changes_in_another_shading_is_seen_after_switching_back(kept, edit):
+    edit()
+    found = switch_back()
+    assert found is kept
+    graph = bpy.context.evaluated_depsgraph_get()
+    assert len(graph.updates) == 0
+    assert same(found.update(graph, CAMERA), fresh())
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_many_edits_in_another_shading_are_seen_after_switching_back(kept, seed):
+    generator = random.Random(seed)
+    for edit in generator.sample([*EDITS, add_same_place], 8):
+        if edit not in {move_twin, hide} or "Twin" in bpy.data.objects:
+            edit()
+            bpy.context.view_layer.update()
+    assert same(switch_back().update(bpy.context.evaluated_depsgraph_get(), CAMERA), fresh())
+
+
+@pytest.mark.parametrize("edit, exported", [(move, []), (paint, []), (brighten, []), (edit_other_mesh, ["Other"])])
+def test_switching_back_exports_what_has_changed(kept, monkeypatch, edit, exported):
+    names, export_mesh = [], mesh_table.export_mesh
+    monkeypatch.setattr(
+        mesh_table, "export_mesh", lambda mesh, name, *more: names.append(name) or export_mesh(mesh, name, *more)
+    )
+    before = kept.scene
+    assert switch_back().update(bpy.context.evaluated_depsgraph_get(), CAMERA) is before
+    kept_exports.keep(kept_exports.key_of(bpy.context.evaluated_depsgraph_get()), kept)
+    edit()
+    assert switch_back().update(bpy.context.evaluated_depsgraph_get(), CAMERA) is not before
+    assert names == exported
+
+
+def test_nothing_is_kept_beyond_undo_another_file_or_another_view_layer(kept):
+    graph = bpy.context.evaluated_depsgraph_get()
+    other = bpy.context.scene.view_layers.new("Other")
+    other.update()
+    assert kept_exports.take(other.depsgraph) is None
+    for what in (lambda: bpy.ops.ed.undo(), lambda: bpy.ops.wm.read_factory_settings(use_empty=True)):
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.ed.undo_push(message="after")
+        kept_exports.keep(kept_exports.key_of(graph), kept)
+        what()
+        graph = bpy.context.evaluated_depsgraph_get()
+        assert not kept_exports._kept
+
+
+def test_what_takes_too_much_memory_or_changes_all_at_once_is_not_kept(kept, monkeypatch):
+    monkeypatch.setattr(kept_exports, "_MOST_UPDATES", 2)
+    move()
+    edit_other_mesh()
+    assert switch_back() is None
+    monkeypatch.setattr(kept_exports, "MOST_BYTES", 100)
+    kept_exports.keep(kept_exports.key_of(bpy.context.evaluated_depsgraph_get()), kept)
+    assert switch_back() is None

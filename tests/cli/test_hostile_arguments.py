@@ -15,6 +15,7 @@ from rppm_addon.cli import main
 from rppm_addon.commands.picture_files import is_whole
 from rppm_addon.commands.terminal import LineFormatter
 from rppm_addon.gl.binary_cache import cache_folder
+from rppm_addon.gl.context import Context
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene import save_scene
 
@@ -103,3 +104,12 @@ def test_without_a_home(monkeypatch, tmp_path):
     monkeypatch.setattr(pwd, "getpwuid", {}.__getitem__)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     assert cache_folder() == tmp_path / f"rppm-{os.getuid()}" / "programs"
+
+
+def test_too_little_memory_is_no_fault_to_report(saved_scene, tmp_path, capsys, monkeypatch):
+    def fail(*_):
+        raise MemoryError
+
+    monkeypatch.setattr(Context, "create", fail)
+    assert main(["render", str(saved_scene), "-o", str(tmp_path / "a.exr")]) == 1
+    assert capsys.readouterr().err.splitlines()[-1].startswith("rppm: there is not enough memory; lower the resolution")

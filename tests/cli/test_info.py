@@ -3,6 +3,10 @@
 
 import json
 
+import pytest
+
+from rppm_addon.gl.context import device_information
+
 from .conftest import rppm_here
 
 
@@ -50,3 +54,13 @@ def test_the_device_alone_as_json(tmp_path):
     told = json.loads((tmp_path / "info.json").read_text())
     assert set(told) == {"blender", "device", "denoiser"} and told["device"]["limits"]
     assert f"Denoise  {told['denoiser']}\n" in output
+
+
+@pytest.mark.parametrize("lacking", ["MESA_GL_VERSION_OVERRIDE=4.2", "MESA_EXTENSION_OVERRIDE=-GL_ARB_compute_shader"])
+def test_a_driver_without_a_feature(rppm, monkeypatch, lacking):
+    if "Mesa" not in device_information().driver:
+        pytest.skip("only Mesa lets features be taken away")
+    monkeypatch.setenv(*lacking.split("=", 1))
+    status, _, errors = rppm("info")
+    assert status == 1 and errors.startswith("rppm: no OpenGL 4.3 context") and "install a driver" in errors
+    assert errors.count("\n") == 1

@@ -16,7 +16,7 @@ from rppm_addon.commands.picture_files import is_whole
 from rppm_addon.pictures import read_exr
 from rppm_addon.session.checkpoint_file import read_summary
 
-from .conftest import ROOT, dask, renders_below, start_rppm, wait_for, workers_of
+from .conftest import ROOT, dask, renders_below, rppm_here, start_rppm, wait_for, workers_of
 
 
 def farm(blend, folder, *options):
@@ -128,8 +128,8 @@ def test_a_picture_that_cannot_be_put_in_place_is_told(tmp_path, rppm, blend_fil
         (("a.blend", "--frames", "1..2", "-o", "all.exr"), "####"),
     ],
 )
-def test_wrong_calls_are_one_line(tmp_path, rppm, arguments, words):
-    status, _, errors = rppm("farm", *arguments, "-o", tmp_path / "####.exr")
+def test_wrong_calls_are_one_line(tmp_path, arguments, words):
+    status, _, errors = rppm_here("farm", *arguments, "-o", tmp_path / "####.exr")
     assert status == 1
     assert words in errors
     assert errors.count("rppm: ") == 1
@@ -138,7 +138,7 @@ def test_wrong_calls_are_one_line(tmp_path, rppm, arguments, words):
 
 def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
     whole, merged = tmp_path / "whole.exr", tmp_path / "merged.exr"
-    status, _, errors = rppm("render", saved_scene, "-o", whole, "--samples", 40)
+    status, _, errors = rppm_here("render", saved_scene, "-o", whole, "--samples", 40)
     assert status == 0, errors
     still = ("farm", saved_scene, "--samples", 40, "--parts", 3, "-o", merged, "-o", tmp_path / "merged.png")
     status, output, errors = rppm(*still, "--workers", 2)
@@ -151,9 +151,9 @@ def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
     assert is_whole(tmp_path / "merged.png")
     assert [path.name for path in (tmp_path / "merged.farm").iterdir()] == ["job.json"]
 
-    status, output, _ = rppm(*still)
+    status, output, _ = rppm_here(*still)
     assert (status, " s on " in output) == (0, False)
-    status, _, errors = rppm(*still[:4], "--parts", 4, "-o", merged)
+    status, _, errors = rppm_here(*still[:4], "--parts", 4, "-o", merged)
     assert status == 1
     assert "other parts" in errors
 

@@ -9,36 +9,26 @@ from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE, RAY
 _LEAF = 4
 
 
-@numba.njit(cache=True)
-def _build(low, high, centers):
-    """Nodes of a median split: boxes, and (first child or place, count or 0); and the triangles' order."""
-    order = np.arange(low.shape[0])
-    boxes = np.zeros((2 * low.shape[0] + 1, 6), np.float32)
-    links = np.zeros((2 * low.shape[0] + 1, 2), np.int64)
-    stack = [(0, 0, low.shape[0])]
-    used = 1
-    while len(stack) > 0:
+def _build(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes of a median split: boxes, and (first child or place, count or 0); and the triangles' order.
+
+    Not by numba, which would compile it for longer than it takes.
+    """
+    order, centers = np.arange(len(low)), (low + high) * np.float32(0.5)
+    boxes, links = np.zeros((2 * len(low) + 1, 6), np.float32), np.zeros((2 * len(low) + 1, 2), np.int64)
+    stack, used = [(0, 0, len(low))], 1
+    while stack:
         node, begin, end = stack.pop()
-        axis, widest = 0, -1.0
-        for k in range(3):
-            least, greatest = np.inf, -np.inf
-            first, last = np.inf, -np.inf
-            for i in range(begin, end):
-                triangle = order[i]
-                least, greatest = min(least, low[triangle, k]), max(greatest, high[triangle, k])
-                first, last = min(first, centers[triangle, k]), max(last, centers[triangle, k])
-            boxes[node, k], boxes[node, 3 + k] = least, greatest
-            if last - first > widest:
-                axis, widest = k, last - first
+        part = order[begin:end]
+        boxes[node, :3], boxes[node, 3:] = low[part].min(0), high[part].max(0)
         if end - begin <= _LEAF:
             links[node] = begin, end - begin
             continue
-        part = order[begin:end].copy()
+        axis = np.argmax(np.ptp(centers[part], axis=0))
         order[begin:end] = part[np.argsort(centers[part, axis])]
         middle = (begin + end) // 2
         links[node] = used, 0
-        stack.append((used, begin, middle))
-        stack.append((used + 1, middle, end))
+        stack += [(used, begin, middle), (used + 1, middle, end)]
         used += 2
     return boxes[:used], links[:used], order
 
@@ -68,13 +58,13 @@ def _intersect(origin, axis, shear, vertices):
     return distance, area1 / area, area2 / area
 
 
-@numba.njit(cache=True, parallel=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy")
 def _trace(boxes, links, order, triangles, origins, directions, limits, sources, slack):
     count = origins.shape[0]
     nearest = np.empty(count, np.float32)
     found = np.full(count, NO_TRIANGLE, np.uint32)
     weights = np.zeros((count, 2), np.float32)
-    for ray in numba.prange(count):
+    for ray in range(count):
         origin, direction = origins[ray], directions[ray]
         axis = 0
         size = np.abs(direction)
@@ -126,8 +116,7 @@ class Reference:
 
     def __init__(self, triangles: np.ndarray) -> None:
         self._triangles = np.ascontiguousarray(triangles)
-        low, high = triangles.min(1), triangles.max(1)
-        self._nodes = _build(low, high, (low + high) * np.float32(0.5))
+        self._nodes = _build(triangles.min(1), triangles.max(1))
         # boxes are widened by more than the rounding of distances in float32
         self._slack = 1e-5 * float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
 

@@ -22,12 +22,12 @@ void main() {
             float distance, pdf;
             all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
-        results[index] = vec4(visible_light(origin, direction, parameters.reach, RAYS_WITH_VISIBILITY, 0.0).xy, all.xy);
+        results[index] = vec4(visible_light(origin, direction, parameters.reach, RAYS_WITH_VISIBILITY, 0.0, 0u).xy, all.xy);
         return;
     }
     // Evenly spaced numbers: each choice gets the part of them that is its probability.
     float u = (float(index) + 0.5) / float(parameters.count);
-    LightChoice choice = choose_light_at(LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u),
+    LightChoice choice = choose_light_at(LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u, 0u),
                                          parameters.environment_irradiance, u, next_random(random));
     results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(choice.triangle), choice.probability, 0.0);
 }

@@ -56,20 +56,17 @@ def diffuse(normal: np.ndarray, wi: np.ndarray, wo: np.ndarray) -> np.ndarray:
 def glossy(roughness: float) -> Scatter:
     """Single scattering by GGX microfacets that reflect everything (Walter et al. 2007, eq. 20 and 33), with the
     height-correlated masking of Heitz (2014, eq. 99); alpha is the squared roughness."""
-    alpha = roughness**2
-
-    def smith(cosine: np.ndarray) -> np.ndarray:
-        tangent2 = (1 - cosine**2) / cosine**2
-        return (np.sqrt(1 + alpha**2 * tangent2) - 1) / 2
+    alpha2 = roughness**4
 
     def scatter(normal: np.ndarray, wi: np.ndarray, wo: np.ndarray) -> np.ndarray:
         ci, co = dot(normal, wi), dot(normal, wo)
         lit = (ci > 0) & (co > 0)
-        ci, co = np.where(lit, ci, 1.0), np.where(lit, co, 1.0)
-        ch = np.clip(dot(normal, unit(wi + wo)), 1e-9, 1.0)
-        tangent2 = (1 - ch**2) / ch**2
-        distribution = alpha**2 / (np.pi * ch**4 * (alpha**2 + tangent2) ** 2)
-        return np.where(lit, distribution / (1 + smith(ci) + smith(co)) / (4 * ci * co), 0.0)
+        ci2, co2 = ci**2, co**2
+        ch2 = (ci + co) ** 2 / np.maximum(2 + 2 * dot(wi, wo), 1e-18)  # of the unit vector between both
+        distribution = alpha2 / (np.pi * (1 - ch2 + alpha2 * ch2) ** 2)
+        # 2 ci co (1 + smith(ci) + smith(co)) without a division by a cosine
+        masked = co * np.sqrt(ci2 + alpha2 * (1 - ci2)) + ci * np.sqrt(co2 + alpha2 * (1 - co2))
+        return np.where(lit, distribution / np.where(lit, 2 * masked, 1.0), 0.0)
 
     return scatter
 

@@ -140,12 +140,12 @@ def test_hits_equal_those_of_boxes(context, library, tmp_path, name):
     assert by_boxes <= 1e-4 * number
 
 
-@numba.njit(cache=True, parallel=True)
+@numba.njit(cache=True)
 def nearest_in_float64(triangles, origins, directions, sources):
     """Moeller and Trumbore's test of all triangles: distances (infinite where nothing is hit) and triangles."""
     count = len(origins)
     nearest, hit = np.full(count, np.inf), np.full(count, -1, np.int64)
-    for ray in numba.prange(count):
+    for ray in range(count):
         o, d = origins[ray], directions[ray]
         for i in range(len(triangles)):
             if i == sources[ray]:

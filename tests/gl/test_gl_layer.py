@@ -203,6 +203,20 @@ def test_growing_buffers_keep_to_the_limit(context):
     np.testing.assert_array_equal(buffer.read(np.uint32, 5), np.arange(5))
 
 
+def test_a_driver_without_memory_is_an_error_and_the_next_buffer_is_made(context, monkeypatch):
+    monkeypatch.setattr(GrowingBuffer, "limit", 1 << 41)
+    monkeypatch.setattr(Context, "available_memory", None)
+    buffer = GrowingBuffer(context, "photons", "emit fewer")
+    with pytest.raises(DeviceError, match="^photons needs 1048576 MiB, which the device does not have; emit fewer$"):
+        buffer.require(1 << 40)
+    assert buffer.size == 0 and not context.lacks_memory
+    assert buffer.require(1 << 10) and buffer.size == 1 << 10
+    context.moderngl.buffer(reserve=1 << 40)  # which moderngl says nothing of
+    with pytest.raises(DeviceError, match="has run out of memory; lower"):
+        buffer.require(1 << 11)
+    buffer.release()
+
+
 def test_a_buffer_larger_than_the_memory_left_is_an_error_in_time(context, monkeypatch):
     assert context.available_memory is None or context.available_memory > 1 << 20
     buffer = GrowingBuffer(context, "rocks", "carry fewer")

@@ -74,7 +74,7 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     rays, hits = photons._rays.buffer, photons._hits
     count, lights = scene.settings.photons, context.lights
     photons._living.fill(count)
-    paths, directions, differentials = photons._paths, photons.world_directions, photons._differentials
+    paths, directions, differentials = photons._paths, photons.photon_origins, photons._differentials
     PhotonEmission(library).emit(
         lights, rays, paths.buffer, directions.buffer, differentials.buffer, count, Iteration(2, seed=3)
     )

@@ -10,6 +10,7 @@ import pytest
 import scenes
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.materials import compiler
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene import AttributeDomain, Image, Material, MeshAttribute, NodeGraph, Scene
 
@@ -120,6 +121,21 @@ def test_a_long_chain_of_nodes(mapper, count):
     scene = shown(graph)
     radiance = picture(mapper, scene)
     assert radiance.max() > 0.9 and scene.warnings == []
+
+
+def test_pieces_of_a_long_function_compute_the_same_bits(mapper, monkeypatch):
+    graph = NodeGraph()
+    value = graph.add("attribute", "fac", attribute="heat")
+    for number in range(70):
+        operation = ("ADD", "MULTIPLY", "SINE")[number % 3]
+        value = graph.add("math", "value", options={"operation": operation}, value=value, value_001=0.7 + 0.01 * number)
+        if number % 10 == 9:
+            value = graph.add("mix_rgb", "color", fac=0.3, color1=(0.9, 0.2, 0.1), color2=value)
+    graph.surface = graph.add("emission", "emission", color=value)
+    made = picture(mapper, shown(graph))
+    monkeypatch.setattr(compiler, "in_pieces", list)
+    np.testing.assert_array_equal(made, picture(mapper, shown(graph)))
+    assert np.ptp(made) > 0.1
 
 
 def unknown() -> NodeGraph:

@@ -16,7 +16,7 @@ from rppm_addon.integrator.stages.noise_estimate import BLOCK, LEAST_MEASURED, M
 from rppm_addon.scene.errors import CheckpointError
 from rppm_addon.session.continuation import Continuation
 
-WIDTH, HEIGHT, EXPOSURE, THRESHOLD = 40, 24, 1.5, 0.05
+WIDTH, HEIGHT, EXPOSURE, THRESHOLD = 40, 24, 1.5, 0.06
 
 
 def noisy_room(**settings):
@@ -46,7 +46,7 @@ def iterated(mapper, scene, iterations):
 
 
 def test_the_half_is_the_mean_of_its_iterations(mapper, other_mapper, monkeypatch):
-    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", WIDTH * 7)
+    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", WIDTH * 13)
     scene = noisy_room()
     means = iterated(mapper, scene, 32)
     sums = np.array([number * mean.astype(np.float64) for number, mean in enumerate(means, 1)])

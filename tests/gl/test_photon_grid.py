@@ -10,7 +10,7 @@ from rppm_addon.integrator.common.records import (
     IMPORTON,
     PHOTON,
     PHOTON_FLAG_BITS,
-    WORLD_DIRECTION,
+    PHOTON_ORIGIN,
     GatherFlag,
     PhotonFlag,
 )
@@ -40,8 +40,8 @@ class Device:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(photons,) bool of those that contributed, (importons,) diffused photons taken, (importons,) bool of those
         whose sums are more than 0."""
-        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "world directions")]
-        directions = WORLD_DIRECTION.zeros(len(photons))
+        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "photon origins")]
+        directions = PHOTON_ORIGIN.zeros(len(photons))
         for buffer, array in zip(buffers, (photons, importons, directions), strict=True):
             buffer.upload(array)
         sizes = StageSizes(len(importons), 1, photons=len(photons), segments=1)

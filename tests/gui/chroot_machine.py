@@ -88,6 +88,10 @@ class ChrootMachine:
         """Names of the shared memory that exists inside."""
         return self._ask("shared_memory")["names"]
 
+    def resources(self, *folders: str) -> dict[str, dict]:
+        """What each living process holds, by its number, and the bytes of the files in folders, by their paths."""
+        return self._ask("resources", folders=list(folders))
+
     def busy_share(self, pid: int, seconds: float) -> float:
         """Share of moments, in the next seconds, at which a thread of a process runs or waits for a processor."""
         return self._ask("busy_share", seconds + START_SECONDS, pid=pid, seconds=seconds)["share"]

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from blender_window import BlenderWindow, blender_in_background
 from chroot_machine import ChrootMachine, chroot_folder
+from viewport_window import from_camera
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -129,6 +130,12 @@ def open_blender(machine):
         return BlenderWindow(machine, file, width, height)
 
     return open_blender
+
+
+@pytest.fixture
+def viewport(open_blender) -> BlenderWindow:
+    """A window whose viewport is about to be rendered, from the camera."""
+    return from_camera(open_blender("small.blend"))
 
 
 def pytest_terminal_summary(terminalreporter) -> None:

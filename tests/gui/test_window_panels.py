@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 from blender_window import StepError
-from viewport_window import renderer_pid
+from viewport_window import renderer_pid, wait_for_rest
 
 
 def shot(blender, name, kind="PROPERTIES"):
@@ -69,9 +69,9 @@ def test_the_viewport_reports_and_pauses(open_blender):
     assert list(found["watts"]) == ['Light "Lamp"'] and found["watts"]['Light "Lamp"'] > 0.0
     shot(blender, "status")
     blender.step("assign", path="scene.rppm.preview_pause", value=True)
-    time.sleep(5.0)  # what is under way comes to its end
+    wait_for_rest(blender)  # what is under way comes to its end
     before = blender.step("readings")["iterations"]
-    time.sleep(5.0)
+    time.sleep(2.0)
     assert blender.step("readings")["iterations"] == before
     blender.screenshot("paused")
     blender.step("assign", path="scene.rppm.preview_pause", value=False)

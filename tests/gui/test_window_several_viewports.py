@@ -2,7 +2,7 @@
 """Several viewports at once, and what one of them shows alone."""
 
 import numpy as np
-from viewport_window import arrange, assert_alike, blocks, report, show_rendered, wait_for_rest
+from viewport_window import WIDE, arrange, assert_alike, blocks, report, show_rendered, wait_for_rest
 
 ALONE = ["Gold Band", "Lamp", "Floor"]
 
@@ -21,7 +21,7 @@ def likeness(one, other):
 
 def test_viewports_render_at_once_and_alone(open_blender):
     blender = open_blender("small.blend")
-    arrange(blender)
+    arrange(blender, WIDE)
     blender.step("free_view")
     show_rendered(blender)
     blender.step("halve_viewport")

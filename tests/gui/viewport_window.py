@@ -7,22 +7,36 @@ import time
 import numpy as np
 from blender_window import BlenderWindow, StepError, read_png
 
-SIZE = (480, 270)
-"""Pixels of the viewport, about."""
+SIZE, WIDE = (320, 180), (480, 270)
+"""Pixels of the viewport, about; and where two share them, or what it costs to show them is measured."""
+ITERATIONS, PHOTONS = 4, 16384
+"""Of the viewport and of final renders."""
 BORDER = 8
 """Pixels at the edges of the viewport where Blender draws its rounded frame."""
 IDLE_SHARE = 0.1
 """Of moments at which the renderer process runs, below which it is at rest: it answers pings."""
-REST_SECONDS = 1.5
+REST_LOOKS, LOOK_SECONDS = 5, 0.3
+"""How often in a row it is looked at, and for how long each time, until it is believed to be at rest."""
 
 
-def arrange(blender: BlenderWindow) -> None:
-    """A plain viewport of SIZE, the Properties editor on RPPM's settings, F12 without a window of its own."""
-    blender.shrink("VIEW_3D", *SIZE)
+def arrange(blender: BlenderWindow, size: tuple[int, int] = SIZE) -> None:
+    """A plain viewport of a size, the Properties editor on RPPM's settings, F12 without a window of its own."""
+    blender.shrink("VIEW_3D", *size)
     blender.step("plain_viewport")
     blender.step("properties_tab", name="RENDER")
     blender.step("assign", path="bpy.context.preferences.view.render_display_type", value="NONE")
     blender.point_at("VIEW_3D")
+
+
+def from_camera(blender: BlenderWindow, size: tuple[int, int] = SIZE) -> BlenderWindow:
+    """A window whose viewport of a size is about to be rendered, from the camera."""
+    arrange(blender, size)
+    for name in ("samples", "preview_samples"):
+        blender.step("assign", path=f"scene.rppm.{name}", value=ITERATIONS)
+    for name in ("photons", "preview_photons"):
+        blender.step("assign", path=f"scene.rppm.{name}", value=PHOTONS)
+    blender.step("camera_view")
+    return blender
 
 
 def renderer_pid(blender: BlenderWindow) -> int:
@@ -38,8 +52,10 @@ def wait_for_rest(blender: BlenderWindow, seconds: float = 240.0) -> None:
     end = time.monotonic() + seconds
     pid = renderer_pid(blender)
     time.sleep(0.2)  # the change has arrived
+    shares: list[float] = []
     while time.monotonic() < end:
-        if blender.machine.busy_share(pid, REST_SECONDS) < IDLE_SHARE:
+        shares = [*shares, blender.machine.busy_share(pid, LOOK_SECONDS)][-REST_LOOKS:]
+        if len(shares) == REST_LOOKS and sum(shares) / REST_LOOKS < IDLE_SHARE:
             return
     raise StepError(f"the viewport did not come to rest in {seconds:.0f} s:\n{blender.log()[-4000:]}")
 

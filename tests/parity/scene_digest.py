@@ -118,6 +118,10 @@ class _Digest:
             for link in owner.links:
                 ends = (link.from_node.name, link.from_socket.identifier, link.to_node.name, link.to_socket.identifier)
                 self.text(*ends, link.is_muted)
+        if isinstance(owner, bpy.types.Object):  # whose linking has the same address
+            for name in ("receiver_collection", "blocker_collection"):
+                if (collection := getattr(owner.light_linking, name)) is not None:
+                    self.text(name, collection.name)
         self.inside.remove(pointer)
 
     def reference(self, value: object) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cycles' Sky Texture as numbers: renders of nothing but the world, a value per pixel center."""
 
+import functools
 import math
 from collections.abc import Iterable, Iterator
 
@@ -79,18 +80,24 @@ def _look_around() -> None:
     (data if hasattr(data, "panorama_type") else data.cycles).panorama_type = "EQUIRECTANGULAR"
 
 
+@functools.cache
+def _directions_around() -> np.ndarray:
+    _world(Sky())
+    _look_around()
+    return _directions()
+
+
 def panorama(sky: Sky) -> tuple[np.ndarray, np.ndarray]:
     """Radiance and unit directions, (2 HEIGHT^2, 3) float64 each, evenly spaced in azimuth and elevation."""
+    directions = _directions_around()
     _world(sky)
     _look_around()
-    return _seen(), _directions()
+    return _seen(), directions
 
 
 def panoramas(skies: Iterable[Sky]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """As panorama, for many skies."""
-    _world(Sky())
-    _look_around()
-    directions = _directions()
+    directions = _directions_around()
     node = _world(Sky())
     _look_around()
     for sky in skies:
@@ -98,13 +105,17 @@ def panoramas(skies: Iterable[Sky]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         yield _seen(), directions
 
 
-def close_up(sky: Sky, angle: float, size: int = 48) -> tuple[np.ndarray, np.ndarray]:
-    """Radiance and unit directions, (size^2, 3) float64 each, of a square picture of the sun.
+def close_ups(skies: Iterable[Sky], angle: float, size: int = 48) -> tuple[list[np.ndarray], np.ndarray]:
+    """Radiance of each sky, and unit directions, (size^2, 3) float64 each, of square pictures of the sun, which is at
+    the same place in all skies.
 
     angle: the camera's field of view, radians.
     """
-    _world(sky)
-    render = bpy.context.scene.render
-    render.resolution_x = render.resolution_y = size
-    _camera(*sky.sun_angles()).angle = angle
-    return _seen(), _directions()
+    seen = []
+    for sky in skies:
+        _world(sky)
+        render = bpy.context.scene.render
+        render.resolution_x = render.resolution_y = size
+        _camera(*sky.sun_angles()).angle = angle
+        seen.append(_seen())
+    return seen, _directions()

@@ -145,7 +145,8 @@ def test_clip_distances(renderer, name):
     bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.02
     configure(data, CLIPPED[name] | {"clip_start": 1.6, "clip_end": 2.3})
     reference = render_cycles(samples=128)
-    result = render_rppm(renderer, **PHOTONS | {"iterations": 64})  # all edges move together with the pixel filter
+    # All edges move together with the pixel filter.
+    result = render_rppm(renderer, **PHOTONS | {"iterations": 64, "photons": 1024})
     compare(f"clipped_{name}", result.pictures, reference, CONVERGED)
 
 

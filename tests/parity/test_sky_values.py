@@ -11,7 +11,7 @@ import pytest
 from rppm_addon.materials.sky.picture import sky_radiance, sun_disc
 from rppm_addon.scene.sky import Sky
 
-from .skies import close_up, panorama
+from .skies import close_ups, panorama
 
 if "MULTIPLE_SCATTERING" not in bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items:
     pytest.skip("the skies of Blender before 5.0 have other names and values", allow_module_level=True)
@@ -116,8 +116,8 @@ def test_sun_disc(sky_type, elevation, size, altitude, densities):
     """Cycles with the disk less Cycles without it."""
     sky = _sky(sky_type, elevation, altitude, densities, rotation=25.0, sun_size=math.radians(size), sun_intensity=1.5)
     angle = 1.2 * sky.sun_size
-    with_disk, directions = close_up(sky, angle)
-    reference = with_disk - close_up(replace(sky, sun_disc=False), angle)[0]
+    (with_disk, without), directions = close_ups((sky, replace(sky, sun_disc=False)), angle)
+    reference = with_disk - without
     disk = sun_disc(sky)
     ours = disk.radiance(directions)
     level = reference.mean(axis=0)
@@ -137,5 +137,4 @@ def test_sun_disc(sky_type, elevation, size, altitude, densities):
 def test_no_disk_below_the_horizon(sky_type, elevation, altitude):
     sky = _sky(sky_type, elevation, altitude)
     assert sun_disc(sky) is None
-    shown = close_up(sky, 0.02)[0]
-    assert np.array_equal(shown, close_up(replace(sky, sun_disc=False), 0.02)[0])
+    assert np.array_equal(*close_ups((sky, replace(sky, sun_disc=False)), 0.02)[0])

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import Image
+from rppm_addon.scene.errors import RendererError
 from rppm_addon.session.process import arrays, client, remote_rendering
 from rppm_addon.session.process.client import MOST_RESTARTS, ProcessState
 from rppm_addon.session.process.protocol import ProtocolError
@@ -269,3 +270,8 @@ def test_pictures_that_do_not_fit_are_refused(sent, names, text):
     scene.camera.width = scene.camera.height = 4
     with pytest.raises(ProtocolError, match=text):
         remote_rendering._frame({"arrays": sent, "passes": names}, scene)
+
+
+def test_a_process_that_lacks_memory_says_so(start):
+    error = remote_rendering._error(start(), "MemoryError", "")
+    assert isinstance(error, RendererError) and str(error).startswith("there is not enough memory; lower")

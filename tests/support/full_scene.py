@@ -16,6 +16,7 @@ from rppm_addon.scene import (
     Instance,
     Light,
     LightKind,
+    LightLinking,
     Material,
     Mesh,
     MeshAttribute,
@@ -62,14 +63,28 @@ def full_scene() -> Scene:
         instances=[
             Instance(0, np.diag([1, 2, 3, 1.0]), [0, -1], "object", 3, visibility=RayVisibility(5)),
             Instance(
-                1, np.eye(4), particle=Particle(index=2.0, velocity=(1.0, 2.0, 3.0)), attributes={"a": (1.0, 2.0)}
+                1,
+                np.eye(4),
+                particle=Particle(index=2.0, velocity=(1.0, 2.0, 3.0)),
+                attributes={"a": (1.0, 2.0)},
+                linking=LightLinking(receiver_light_set=2, light_set_membership=-3),
             ),
         ],
         materials=[
             material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0])),
             Material("b", graph_of_everything()),
         ],
-        lights=[Light("sun", LightKind.SUN, np.eye(4), np.array([1, 2, 3.0]), sun_angle=0.1)],
+        lights=[
+            Light(
+                "sun",
+                LightKind.SUN,
+                np.eye(4),
+                np.array([1, 2, 3.0]),
+                sun_angle=0.1,
+                max_bounces=3,
+                linking=LightLinking(1, 63, -(1 << 63), (1 << 63) - 1),
+            )
+        ],
         world=image_world(0),
         images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],
         settings=RenderSettings(iterations=7, direct_light=DirectLight.PHOTONS),

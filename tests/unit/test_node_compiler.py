@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from support.every_node import programs
 
+from rppm_addon.materials import compiler
 from rppm_addon.materials.compiler import GraphError, Resource, compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
 from rppm_addon.scene.passes import aov_passes
@@ -209,6 +210,22 @@ def test_a_chain_of_five_thousand_nodes():
     graph.surface = graph.add("emission", "emission", color=value)
     text = compile_graph(graph).text
     assert text.count("node_math_add(") == 5000 and len(text) < 200 * 5000
+
+
+def test_more_nodes_than_drivers_compile_are_refused(monkeypatch):
+    """Those that are in use: others cost nothing."""
+    monkeypatch.setattr(compiler, "MOST_CALLS", 50)
+    graph = NodeGraph()
+    for count in (30, 60):
+        value = graph.add("tex_coord", "uv")
+        for _ in range(count):
+            value = graph.add("math", "value", value=value)
+        surface = graph.add("emission", "emission", color=value)
+        graph.surface = graph.surface or surface
+    compile_graph(graph)
+    graph.surface = surface
+    with pytest.raises(GraphError, match="more than 50 nodes, which drivers compile for many minutes; bake them"):
+        compile_graph(graph)
 
 
 def test_the_same_graph_gives_the_same_text_each_time():

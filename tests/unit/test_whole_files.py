@@ -7,6 +7,7 @@ import resource
 import signal
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ import pytest
 from support.floor import floor_scene
 
 from rppm_addon.cli import main
-from rppm_addon.pictures import PictureError, write_exr
+from rppm_addon.pictures import PictureError, make_folder, read_exr, write_exr
 from rppm_addon.scene import Image, load_scene, save_scene
 from rppm_addon.scene.whole_files import renamed_when_whole
 
@@ -53,6 +54,34 @@ def test_a_full_disk_leaves_the_picture_of_before(tmp_path):
     with full_disk(), pytest.raises(PictureError, match="choose another place"):
         write_exr(path, np.random.default_rng(0).random((64, 64, 4), np.float32))
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+
+
+def test_two_who_write_one_file_leave_one_of_them_whole(tmp_path):
+    """As two renders do that are given the same name; whoever reads meanwhile sees a whole one as well."""
+    path = tmp_path / "picture.exr"
+    write_exr(path, np.zeros((16, 16, 4), np.float32))
+
+    def write(value):
+        for _ in range(10):
+            write_exr(path, np.full((16, 16, 4), value, np.float32))
+
+    with ThreadPoolExecutor(2) as pool:
+        writers = [pool.submit(write, value) for value in (1.0, 2.0)]
+        while not all(writer.done() for writer in writers):
+            picture = read_exr(path).combined
+            assert np.ptp(picture) == 0.0
+    for writer in writers:
+        writer.result()
+    assert read_exr(path).combined[0, 0, 0] in (1.0, 2.0) and list(tmp_path.iterdir()) == [path]
+
+
+def test_where_nothing_can_be_written_is_told_before_a_render(tmp_path):
+    """Also to root, who is denied nothing."""
+    make_folder(tmp_path / "new" / "picture.exr")
+    assert not any((tmp_path / "new").iterdir())
+    for path in ("/proc/picture.exr", "/proc/new/picture.exr", "/dev/null/picture.exr"):
+        with pytest.raises(PictureError, match="cannot be written .*choose another place"):
+            make_folder(Path(path))
 
 
 def test_export_says_in_a_line_that_the_disk_is_full(tmp_path, monkeypatch, capsys):

@@ -17,6 +17,7 @@ from .context import ExportContext
 from .frames import FrameExporter
 from .layers import world_of
 from .libraries import warn_of_missing
+from .light_linking import LightLinks
 from .lights.world import export_world
 from .motion import MotionExporter, is_blurred, wants_neighbors
 from .objects.assets import export_asset_names
@@ -122,6 +123,8 @@ def _context_of(
     report.progress("Exporting the scene")
     context = ExportContext(report)
     context.read_from(depsgraph)
+    context.light_links = LightLinks(depsgraph.view_layer)
+    context.light_links.tell(report)
     return context
 
 

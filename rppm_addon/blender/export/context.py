@@ -7,6 +7,7 @@ import bpy
 
 from .images.images import ImageTable
 from .layers import LayerMasks, world_of
+from .light_linking import LightLinks
 from .report import Report
 
 
@@ -21,6 +22,7 @@ class ExportContext:
     material_override: bpy.types.Material | None = None
     """What all surfaces of the view layer have in place of their materials."""
     masks: LayerMasks = field(default_factory=LayerMasks)
+    light_links: LightLinks = field(default_factory=LightLinks)
     use_environment: bool = True
     """Whether the view layer has the world's light."""
     use_surfaces: bool = True
@@ -29,6 +31,9 @@ class ExportContext:
     """Whether objects are asked for theirs."""
     owner_reads: int = 0
     """How often an attribute was read from the owners."""
+
+    def __post_init__(self) -> None:
+        self.images.slices = self.report.slices
 
     @property
     def untracked_reads(self) -> int:

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import bpy
 
 from .report import Report, listed
+from .slices import Slices
 
-_CYCLES_BOUNCES = 1024
-"""Of lights and of the world, Cycles' default: no limit."""
+_AT_ONCE = 32
+"""Objects between which nobody looks at the clock."""
 
 
 @dataclass(frozen=True)
@@ -40,14 +41,6 @@ def _has_hair(source: bpy.types.Object) -> bool:
     )
 
 
-def _links(source: bpy.types.Object, name: str) -> bool:
-    return getattr(getattr(source, "light_linking", None), name, None) is not None
-
-
-def _is_light(source: bpy.types.Object) -> bool:
-    return source.type == "LIGHT"
-
-
 def _subdivides_adaptively(source: bpy.types.Object) -> bool:
     modifiers = (modifier for modifier in source.modifiers if modifier.type == "SUBSURF")
     return bool(_cycles(source, "use_adaptive_subdivision", False)) or any(
@@ -63,58 +56,13 @@ OF_OBJECTS = (
         _has_hair,
     ),
     Omission(
-        "Light Linking",
-        "the light shines on everything",
-        ("light_linking.receiver_collection",),
-        lambda source: _links(source, "receiver_collection"),
-    ),
-    Omission(
-        "Shadow Linking",
-        "everything casts shadows in the light",
-        ("light_linking.blocker_collection",),
-        lambda source: _links(source, "blocker_collection"),
-    ),
-    Omission(
-        "Lights without Cast Shadow",
-        "they cast shadows",
-        ("data.use_shadow", "data.cycles.cast_shadow"),
-        lambda source: (
-            _is_light(source)
-            and not (getattr(source.data, "use_shadow", True) and _cycles(source.data, "cast_shadow", True))
-        ),
-    ),
-    Omission(
-        "Max Bounces of lights",
-        "their light is scattered as often as the scene's Max Bounces say",
-        ("data.cycles.max_bounces",),
-        lambda source: _is_light(source) and _cycles(source.data, "max_bounces", _CYCLES_BOUNCES) < _CYCLES_BOUNCES,
-    ),
-    Omission(
         "Adaptive Subdivision",
         "the surface is subdivided as often as its modifier says for renders; raise that",
         ("cycles.use_adaptive_subdivision", "modifiers"),
         _subdivides_adaptively,
     ),
-    Omission(
-        "Shading Offset of the shadow terminator",
-        "shadows may show the faces of a smooth surface; subdivide it",
-        ("shadow_terminator_shading_offset", "cycles.shadow_terminator_offset"),
-        lambda source: (
-            max(
-                getattr(source, "shadow_terminator_shading_offset", 0.0),
-                _cycles(source, "shadow_terminator_offset", 0.0),
-            )
-            > 0.0
-        ),
-    ),
 )
 """By what an evaluated object uses."""
-
-
-def _world_is_hidden(scene: bpy.types.Scene) -> bool:
-    visibility = getattr(scene.world, "cycles_visibility", None)
-    names = ("camera", "diffuse", "glossy", "transmission")
-    return visibility is not None and not all(getattr(visibility, name, True) for name in names)
 
 
 def _culls(scene: bpy.types.Scene) -> bool:
@@ -130,20 +78,6 @@ def _is_spherical_stereo(scene: bpy.types.Scene) -> bool:
 
 
 OF_SCENES = (
-    Omission(
-        "Ray Visibility of the world",
-        "all rays see the world",
-        ("world.cycles_visibility",),
-        _world_is_hidden,
-    ),
-    Omission(
-        "Max Bounces of the world",
-        "its light is scattered as often as the scene's Max Bounces say",
-        ("world.cycles.max_bounces",),
-        lambda scene: (
-            scene.world is not None and _cycles(scene.world, "max_bounces", _CYCLES_BOUNCES) < _CYCLES_BOUNCES
-        ),
-    ),
     Omission(
         "Culling (Simplify)",
         "objects far away or outside the camera's view are rendered",
@@ -213,11 +147,22 @@ class OmissionList:
     def __init__(self) -> None:
         self._users: dict[Omission, dict[int, str]] = {}
         """By what they use, the names of objects by session_uid."""
+        self._known: set[int] = set()
+        """session_uid of those that were looked at."""
+
+    def look_at_all(self, depsgraph: bpy.types.Depsgraph, slices: Slices) -> None:
+        """Take note of the objects of a depsgraph that it does not know. Raises Unfinished when the slice is over."""
+        for source in objects_of(depsgraph):
+            if source.original.session_uid not in self._known:
+                self.look_at([source])
+                if len(self._known) % _AT_ONCE == 0:
+                    slices.rest()
 
     def look_at(self, sources: Iterable[bpy.types.Object]) -> None:
         """Take note of evaluated objects, anew of those that it knows."""
         for source in sources:
             uid = source.original.session_uid
+            self._known.add(uid)
             for omission in OF_OBJECTS:
                 if omission.is_used(source):
                     self._users.setdefault(omission, {})[uid] = source.name

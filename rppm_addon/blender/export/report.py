@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from ...scene.errors import RppmError
+from .slices import Slices
 
 logger = logging.getLogger(__name__)
 
@@ -35,6 +36,8 @@ class Report:
         self._logged: set[str] = set()
         self._should_stop = should_stop
         self._show = show
+        self.slices = Slices()
+        """Of an export that lets Blender go on amid it."""
 
     @property
     def warnings(self) -> list[str]:
@@ -42,10 +45,11 @@ class Report:
         return list({text: None for texts in self._warnings.values() for text in texts})
 
     @contextlib.contextmanager
-    def about(self, part: Hashable) -> Iterator[None]:
-        """Forget what was said of a part, which is exported anew in the with block."""
+    def about(self, part: Hashable, goes_on: bool = False) -> Iterator[None]:
+        """Forget what was said of a part, which is exported anew in the with block, unless that ``goes_on``."""
         outer, self._part = self._part, part
-        self._warnings.pop(part, None)
+        if not goes_on:
+            self._warnings.pop(part, None)
         try:
             yield
         finally:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A Scene that follows a depsgraph which lives on: only what has changed is exported again."""
 
-import time
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -15,18 +15,20 @@ from ...scene.sharing import share
 from .context import ExportContext
 from .layers import overrides_of, world_of
 from .libraries import warn_of_missing
+from .light_linking import LightLinks
 from .lights.world import export_world
 from .objects.assets import export_asset_names
-from .objects.object_pass import Placed
+from .objects.object_pass import ObjectPass, Placed
 from .objects.objects import ObjectExporter
-from .omissions import OmissionList, objects_of
+from .omissions import OmissionList
 from .report import Report
 from .settings import export_cubemap_center, export_exposure, export_settings
+from .slices import Unfinished
 
 _MOST_UNUSED = 64
 """Images of frames gone by are kept up to so many."""
-_FEW_NEW = 64
-"""Objects that an update exports without being prepared for."""
+_PATIENCE = 1.5
+"""Slices take longer by this factor each time that something changes before an export is done."""
 _SHAPELESS = {"CAMERA", "ARMATURE", "LATTICE", "EMPTY", "SPEAKER", "LIGHT_PROBE"}
 """Objects that are not seen."""
 
@@ -89,10 +91,26 @@ _TOLD_BY_THEIR_USERS = (
 
 @dataclass(frozen=True)
 class ExportProgress:
-    """How far an export in parts is."""
+    """How far an export in slices is."""
 
-    objects: int
-    of: int
+    objects: int = 0
+    of: int = 0
+    """0 as long as there is more to be done before objects."""
+
+
+@dataclass
+class _Pending:
+    """What has changed since the newest scene, by session_uid: nothing of Blender is held."""
+
+    objects: set[int] = field(default_factory=set)
+    shapes: set[int] = field(default_factory=set)
+    looks: set[int] = field(default_factory=set)
+    materials: set[int] = field(default_factory=set)
+    others: bool = False
+    attributes: bool = False
+    """Whether materials ask for other attributes than before."""
+    has_untracked: bool = False
+    """Whether materials that rest on what the depsgraph does not tell are among them."""
 
 
 class SceneSync:
@@ -115,16 +133,22 @@ class SceneSync:
         self._objects = ObjectExporter(self._context)
         self._omissions = OmissionList()
         self._placed: Placed | None = None
-        self._prepared = 0
-        """Instances whose meshes and materials are exported for the next update."""
+        """What the newest scene has."""
+        self._pass: ObjectPass | None = None
+        """What is under way to the next one."""
+        self._pending = _Pending()
+        self._is_unfinished = False
+        """Whether an export is under way."""
+        self._delays = 0
+        """How often something has changed meanwhile."""
         self._world: tuple[World, list[Light]] | None = None
         self._world_may_change = False
         self._most_images = 0
         self._frame: float | None = None
         self._overrides: tuple[object, ...] = ()
         """What the view layer made of the scene."""
+        self._light_links = LightLinks()
 
-    @collector_paused()
     def update(
         self, depsgraph: bpy.types.Depsgraph, camera: Camera, shown: Callable[[bpy.types.Object], bool] | None = None
     ) -> Scene:
@@ -132,18 +156,104 @@ class SceneSync:
 
         shown: which original objects the viewport shows. Raises the errors of scene/errors.py.
         """
-        edits, asked = self._take_edits(depsgraph)
+        self.advance(depsgraph, camera, shown)
+        return self.scene
+
+    @collector_paused()
+    def advance(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        camera: Camera,
+        shown: Callable[[bpy.types.Object], bool] | None = None,
+        seconds: float = math.inf,
+    ) -> ExportProgress | None:
+        """Do what update() does, or as much of it as goes into about so many seconds.
+
+        Returns None once ``scene`` is what update() gives. Before, it is what it was, and there is more to be done: to
+        be called again, with a depsgraph that is up to date. Between two calls anything may change: nothing of Blender
+        is held, and what changes is exported again.
+        """
+        overrides = overrides_of(depsgraph)
+        if overrides != self._overrides or 0 < self._most_images < len(self._images.images):
+            self._begin()
+        edits = self.note(depsgraph)
+        self._link_lights(depsgraph, edits)
+        self._overrides = overrides
+        slices = self._report.slices
+        slices.begin(seconds * _PATIENCE**self._delays)
+        try:
+            self._export(depsgraph, camera, edits, shown)
+        except Unfinished:
+            self._is_unfinished = True
+            return ExportProgress() if self._pass is None else ExportProgress(self._pass.place, self._pass.count)
+        except BaseException:
+            self._pass = None
+            raise
+        finally:
+            slices.begin(math.inf)
+        self._pass, self._pending, self._delays, self._is_unfinished = None, _Pending(), 0, False
+        return None
+
+    def note(self, depsgraph: bpy.types.Depsgraph) -> Edits:
+        """Remember what a depsgraph says has changed, for the next scene."""
+        edits = read_edits(depsgraph)
+        if edits.images:
+            self._begin()
+        if len(depsgraph.updates) and self._is_unfinished:
+            self.relist()
+            self._delays += 1
+        self._objects.meshes.forget(edits.shapes)
+        if edits.world:
+            self._world = None
+        pending = self._pending
+        pending.objects |= edits.objects.keys()
+        pending.shapes |= edits.shapes
+        pending.looks |= edits.looks
+        pending.materials |= {material.original.session_uid for material in edits.materials}
+        pending.others |= edits.others
+        pending.has_untracked &= not len(depsgraph.updates)
+        return edits
+
+    def _link_lights(self, depsgraph: bpy.types.Depsgraph, edits: Edits) -> None:
+        """See what lights are linked with, and begin anew where that has changed."""
+        pending = self._pending
+        if len(depsgraph.updates) or not self._is_unfinished:
+            noted_before = not pending.objects <= edits.objects.keys()
+            has_lights = any(source.type == "LIGHT" for source in edits.objects.values())
+            if pending.others or pending.looks or noted_before or has_lights:
+                links = LightLinks(depsgraph.view_layer)
+                if links.state != self._light_links.state:
+                    self._begin()
+                self._light_links = links
+        self._context.light_links = self._light_links
+        self._light_links.tell(self._report)
+
+    def relist(self) -> None:
+        """Begin anew with the objects, of which others may be shown."""
+        self._pass = None
+        self._pending.others = True
+
+    def _export(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        camera: Camera,
+        edits: Edits,
+        shown: Callable[[bpy.types.Object], bool] | None,
+    ) -> None:
+        """Bring ``scene`` up to date. Raises Unfinished when the slice is over."""
         source = depsgraph.scene_eval
+        self._context.read_from(depsgraph)
+        self._add_untracked(source.frame_current_final)
+        self._renew_materials(depsgraph, edits)
         if self._world is None:
             reads = self._context.untracked_reads
             with self._report.about("world"):
                 self._world = export_world(world_of(depsgraph), self._context)
             self._world_may_change = self._context.untracked_reads > reads
-        if self._placed is None or edits.others or asked or not self._patch(depsgraph, edits):
-            unchanged, moved = ({}, {}) if asked else self._known(edits)
-            self._placed = self._objects.export(depsgraph, shown, unchanged, moved)
-            self._omissions = OmissionList()
-            self._omissions.look_at(objects_of(depsgraph))
+        pending = self._pending
+        lists = self._placed is None or pending.others or pending.attributes or pending.objects != edits.objects.keys()
+        if lists or not self._patch(depsgraph, edits):
+            self._list(depsgraph, shown)
         else:
             self._omissions.look_at(edits.objects.values())
         self._omissions.tell(depsgraph, self._report)
@@ -167,76 +277,55 @@ class SceneSync:
         if self._most_images == 0:
             self._most_images = len(new.images) + _MOST_UNUSED
         self.scene = share(self.scene, new)
-        return self.scene
 
-    def prepare(
-        self,
-        depsgraph: bpy.types.Depsgraph,
-        seconds: float,
-        shown: Callable[[bpy.types.Object], bool] | None = None,
-    ) -> ExportProgress | None:
-        """Do a part of the work of an update that has many new objects to export, in about so many seconds.
-
-        Returns how far it is, or None when all that is left is update(), which is to follow at once. Between two calls
-        anything may change: nothing of Blender is held, and what changes is exported again.
-        """
-        end = time.monotonic() + seconds
-        if self._placed is not None:
-            count = len(depsgraph.object_instances)
-            if count <= len(self._placed.instances) + len(self._placed.lights) + _FEW_NEW:
-                return None
-            self._placed = None  # what comes now is named once only, before update()
-        with collector_paused():
-            edits, _ = self._take_edits(depsgraph)
-            changed = self._prepared == 0 or len(depsgraph.updates) > 0
-            place = self._objects.prepare(depsgraph, shown, self._prepared, lambda: time.monotonic() >= end, changed)
-        self._prepared = place or 0
-        if place is None and not edits.images:  # with which an update begins anew
-            return None
-        return ExportProgress(self._prepared, len(depsgraph.object_instances))
-
-    def _take_edits(self, depsgraph: bpy.types.Depsgraph) -> tuple[Edits, bool]:
-        """What has changed, of which shapes are forgotten and materials exported again; and whether those ask for
-        other attributes of meshes."""
-        edits = read_edits(depsgraph)
-        overrides = overrides_of(depsgraph)
-        if edits.images or overrides != self._overrides or 0 < self._most_images < len(self._images.images):
-            self._begin()
-            self._overrides = overrides
-        self._context.read_from(depsgraph)
-        self._advance(depsgraph.scene_eval, depsgraph, edits)
-        # Not any(): each is to be exported.
-        asked = [self._objects.materials.renew(material) for material in edits.materials]
-        self._objects.meshes.forget(edits.shapes)
-        if edits.world:
-            self._world = None
-        return edits, any(asked)
-
-    def _advance(self, source: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, edits: Edits) -> None:
+    def _add_untracked(self, frame: float) -> None:
         """Add what the depsgraph does not tell: of another frame image sequences show other images, and materials may
         read properties of the scene."""
-        frame = source.frame_current_final
-        edits.others |= self._frame not in {None, frame}
-        if edits.others:
-            known = {material.original.session_uid for material in edits.materials}
-            edits.materials += [
-                material.evaluated_get(depsgraph)
-                for material in bpy.data.materials
-                if material.session_uid not in known and self._objects.materials.may_have_changed(material)
-            ]
-            edits.world |= self._world_may_change
+        pending = self._pending
+        pending.others |= self._frame not in {None, frame}
         self._frame = frame
+        if pending.others and not pending.has_untracked:
+            pending.has_untracked = True
+            pending.materials |= self._objects.materials.untracked
+            if self._world_may_change:
+                self._world = None
 
-    def _known(self, edits: Edits) -> tuple[dict[int, Instance], dict[int, Instance]]:
+    def _renew_materials(self, depsgraph: bpy.types.Depsgraph, edits: Edits) -> None:
+        pending = self._pending
+        if not pending.materials:
+            return
+        known = {material.original.session_uid: material for material in edits.materials}
+        if not pending.materials <= known.keys():
+            known |= {
+                material.session_uid: material.evaluated_get(depsgraph)
+                for material in bpy.data.materials
+                if material.session_uid in pending.materials and material.session_uid not in known
+            }
+        for uid in sorted(pending.materials):
+            if uid in known:
+                pending.attributes |= self._objects.materials.renew(known[uid])
+            pending.materials.discard(uid)
+
+    def _list(self, depsgraph: bpy.types.Depsgraph, shown: Callable[[bpy.types.Object], bool] | None) -> None:
+        """Go through all instances."""
+        if self._pass is None:
+            unchanged, moved = ({}, {}) if self._pending.attributes else self._known()
+            self._pass = self._objects.begin(unchanged, moved)
+            self._omissions = OmissionList()
+        placed = self._objects.go_on(self._pass, depsgraph, shown)
+        self._omissions.look_at_all(depsgraph, self._report.slices)
+        self._placed = placed
+
+    def _known(self) -> tuple[dict[int, Instance], dict[int, Instance]]:
         """Instances of the objects that the depsgraph does not name, and of those that at most were moved."""
         if self._placed is None:
             return {}, {}
-        instances, alone = self._placed.instances, self._placed.alone
+        instances, pending = self._placed.instances, self._pending
         unchanged, moved = {}, {}
-        for uid, place in alone.items():
-            if uid not in edits.objects:
+        for uid, place in self._placed.alone.items():
+            if uid not in pending.objects:
                 unchanged[uid] = instances[place]
-            elif uid not in edits.looks:
+            elif uid not in pending.looks:
                 moved[uid] = instances[place]
         return unchanged, moved
 
@@ -247,7 +336,7 @@ class SceneSync:
             if source.is_instancer or len(source.particle_systems) > 0:
                 return False
             if uid in placed.alone:
-                if uid in edits.shapes and any(modifier.type == "NODES" for modifier in source.modifiers):
+                if uid in self._pending.shapes and any(modifier.type == "NODES" for modifier in source.modifiers):
                     return False  # they may bring instances
                 changed.append(uid)
             elif uid in placed.lights_alone:
@@ -258,7 +347,7 @@ class SceneSync:
                 placed.lights[placed.lights_alone[uid]] = light
             elif source.type not in _SHAPELESS:
                 return False
-        before = [None if uid in edits.looks else placed.instances[placed.alone[uid]] for uid in changed]
+        before = [None if uid in self._pending.looks else placed.instances[placed.alone[uid]] for uid in changed]
         instances = self._objects.instances(depsgraph, [edits.objects[uid] for uid in changed], before)
         if any(instance is None for instance in instances):
             return False

@@ -15,7 +15,6 @@ UNFIT = {
     "DATA_PT_falloff_curve": "light falls off with the square of the distance; nodes change that",
     "DATA_PT_volume_render": "volumes are not rendered",
     "MATERIAL_PT_freestyle_line": "as RENDER_PT_freestyle",
-    "OBJECT_PT_shading": "is empty without Cycles' panels in it",
     "RENDER_PT_freestyle": "the strokes, which Blender has the engine render, come out too wide",
     "RENDER_PT_simplify": "would stand before all other panels; RPPM_PT_simplify stands in its place",
     "RENDER_PT_simplify_greasepencil": "as RENDER_PT_simplify",

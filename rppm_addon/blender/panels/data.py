@@ -42,6 +42,14 @@ class RPPM_PT_light(RppmLightPanel, bpy.types.Panel):
                 column.prop(light, "size_y", text="Y")
             column.prop(light, "spread")
         column.separator()
+        cycles = getattr(light, "cycles", None)
+        # Once the shadow was a property of Cycles.
+        if hasattr(cycles, "cast_shadow"):
+            column.prop(cycles, "cast_shadow")
+        else:
+            column.prop(light, "use_shadow", text="Cast Shadow")
+        if cycles is not None:
+            column.prop(cycles, "max_bounces")
         column.prop(light.rppm, "photon_weight")
 
 

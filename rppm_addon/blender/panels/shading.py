@@ -89,6 +89,43 @@ class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
             mask.prop(thing, "is_shadow_catcher")
 
 
+class RPPM_PT_shadow_terminator(RppmPanel, bpy.types.Panel):
+    bl_label = "Shadow Terminator"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_shading"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        thing = context.object
+        is_there = thing is not None and thing.type in _VISIBLE_TYPES - {"LIGHT"}
+        return super().poll(context) and is_there and hasattr(thing, "shadow_terminator_shading_offset")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        column.prop(context.object, "shadow_terminator_geometry_offset", text="Geometry Offset")
+        column.prop(context.object, "shadow_terminator_shading_offset", text="Shading Offset")
+
+
+class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "world"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and hasattr(
+            context.world, "cycles_visibility"
+        )  # None has none, nor without Cycles
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        for name in ("camera", "diffuse", "glossy", "transmission"):
+            column.prop(context.world.cycles_visibility, name)
+        column.separator()
+        column.prop(context.world.cycles, "max_bounces")
+
+
 def _draw_light_group(column: bpy.types.UILayout, owner: bpy.types.ID, layer: bpy.types.ViewLayer) -> None:
     """The group of an object or a world, and a button that gives the view layer such a group."""
     row = column.row(align=True)
@@ -136,6 +173,8 @@ CLASSES = (
     RPPM_PT_world_preview,
     RPPM_PT_world_surface,
     RPPM_PT_ray_visibility,
+    RPPM_PT_shadow_terminator,
+    RPPM_PT_world_ray_visibility,
     RPPM_PT_object_light_group,
     RPPM_PT_world_light_group,
 )

@@ -157,14 +157,26 @@ path; bit 0 of ``flags`` tells that it came from behind, the upper half is the h
 the albedo that its interreflection takes (common/bsdf/diffuse.glsl)."""
 StorageBlock("Closures", "Closure closures[];")
 
+CLOSURE_CURVED = 32
+"""Of a closure's flags: shadow rays begin on the surface that the normals tell of."""
+TERMINATOR_SHIFT, TERMINATOR_STEPS = 10, 63
+"""Where in them, and in how many steps, the shading offset of the shadow terminator stands."""
+Constants(
+    "Terminators",
+    CLOSURE_CURVED=CLOSURE_CURVED,
+    TERMINATOR_SHIFT=TERMINATOR_SHIFT,
+    TERMINATOR_STEPS=TERMINATOR_STEPS,
+)
+
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl)."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
-WORLD_DIRECTION = Record("WorldDirection", radiance="float", pdf="float")
+PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
-from where no gathering ray stands for them, 1/sr. 0 for photons of other lights."""
-StorageBlock("WorldDirections", "WorldDirection world_directions[];")
+from where no gathering ray stands for them, 1/sr; both 0 for photons of other lights. And the light's ``max_bounces``:
+how often what it lights may have scattered on the way to the camera."""
+StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
 
 PHOTON_DIFFERENTIAL = Record(
     "PhotonDifferential",
@@ -298,7 +310,8 @@ StorageBlock("AovValues", "float aov_values[];")
 """Of the paths of a band, what AOV Output nodes have written."""
 StorageBlock("Contributions", "vec4 contributions[];")
 StorageBlock("LightTriangles", "uint light_triangles[];")
-"""What shadow rays add where nothing is in their way, and the emissive triangles that they go to."""
+"""What shadow rays add where nothing is in their way, with a signed code (shaders/common/light_sets.glsl) of whether a
+gathering ray found it and of the light's LightLink; and the emissive triangles that they go to."""
 
 LIGHT_SPLIT = Record("LightSplit", glossy="vec3", light="uint", transmission="vec3", unused="float")
 """Of what a shadow ray adds, by channel: the parts that such lobes scatter; the rest is diffuse. ``light`` is the
@@ -397,11 +410,14 @@ class EmitterTrait(enum.IntFlag):
     """Smooth surfaces look for it: it is seen by reflection as by shadow rays, and hides what is behind it."""
 
 
-Constants("EmitterTraits", EMITTER=EmitterTrait)
+EMITTER_LINK_SHIFT = 8
+Constants("EmitterTraits", EMITTER=EmitterTrait, EMITTER_LINK_SHIFT=EMITTER_LINK_SHIFT)
 
 LIGHT_SOFT = 32
 """Of a light's flags, behind the bits of RayVisibility: a disk that faces each point it lights."""
-Constants("Lights", LIGHT=LightShape, LIGHT_SOFT=LIGHT_SOFT)
+LIGHT_SHADOWLESS = 64
+"""Likewise: no shadows are cast in its light."""
+Constants("Lights", LIGHT=LightShape, LIGHT_SOFT=LIGHT_SOFT, LIGHT_SHADOWLESS=LIGHT_SHADOWLESS)
 
 LIGHT = Record(
     "Light",
@@ -429,13 +445,16 @@ LIGHT = Record(
     map_shape="uint",
     map_extent="float",
     map="vec4",
+    link="uint",
+    max_bounces="uint",
 )
 """A light as integrator/lights/light_entry.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
 unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
 ``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
 ``first_cell`` those of lights/guide.py; ``map`` where its map lies among the lights' maps, left, bottom, width
 and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
-``map_extent`` the tangent of half of what a cone's map shows."""
+``map_extent`` the tangent of half of what a cone's map shows, ``link`` its LightLink,
+``max_bounces`` PhotonOrigin's."""
 
 EMISSIVE_TRIANGLE = Record(
     "EmissiveTriangle",
@@ -447,7 +466,8 @@ EMISSIVE_TRIANGLE = Record(
     traits="uint",
 )
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
-choosing it, and that of choosing it or one before; its EmitterTraits."""
+choosing it, and that of choosing it or one before; its EmitterTraits, and from bit EMITTER_LINK_SHIFT on its
+LightLink."""
 StorageBlock("EmissiveTriangles", "EmissiveTriangle emissive_triangles[];")
 
 LIGHT_NODE = Record(
@@ -460,12 +480,17 @@ LIGHT_NODE = Record(
     cosine_emission="float",
     member="uint",
     two_sided="uint",
-    unused0="uint",
-    unused1="uint",
+    light_sets="uvec2",
 )
 """Lights below a node of the light tree: their box, meters; the sum of their intensities, W/sr, of a sun its
-irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; and of
-a leaf the number of its light or emissive triangle."""
+irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; of a
+leaf the number of its light or emissive triangle; and the bits of the light sets that any of them shines on."""
+
+LIGHT_LINK = Record("LightLink", light_sets="uvec2", shadow_sets="uvec2")
+"""Bits of the sets of objects that lights shine on and that cast shadows in their light (scene/light_linking.py)."""
+StorageBlock("LightLinks", "LightLink light_links[];")
+StorageBlock("PhotonLinks", "uint photon_links[];")
+"""Of the photons that left the lights, the numbers of their LightLinks."""
 
 PROJECTIONS = ("PERSPECTIVE", "ORTHOGRAPHIC", *(kind.name for kind in PanoramaKind))
 """Of cameras, by number."""

@@ -31,6 +31,8 @@ class StageSizes:
     """Whether the picture ends with its noise."""
     is_filtered: bool = False
     """Whether the film keeps what the noise filter of viewports takes."""
+    links_lights: bool = False
+    """Whether lights may shine on some objects only, or pass through some."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -50,6 +52,7 @@ class StageSizes:
             scene.camera.texels is not None,
             scene.settings.use_adaptive_sampling,
             demands.is_filtered,
+            _links_lights(scene),
         )
 
     @property
@@ -71,6 +74,12 @@ class StageSizes:
     def bands(self) -> list[Band]:
         """Of the film, from below; the first has the most rows."""
         return bands_of(self.width, self.height)
+
+
+def _links_lights(scene: Scene) -> bool:
+    return any(light.linking is not None or not light.casts_shadow for light in scene.lights) or any(
+        instance.linking is not None for instance in scene.instances
+    )
 
 
 def film_pixels(sizes: StageSizes) -> int:
@@ -101,6 +110,11 @@ def grouped_pixels(sizes: StageSizes) -> int:
 def grouped_photons(sizes: StageSizes) -> int:
     """Of an iteration, the most, where they are to tell the groups of their lights; else 0."""
     return sizes.photons if sizes.light_groups else 0
+
+
+def linked_photons(sizes: StageSizes) -> int:
+    """Of an iteration, the most, where they are to tell what their lights shine on; else 0."""
+    return sizes.photons if sizes.links_lights else 0
 
 
 def photon_paths(sizes: StageSizes) -> int:

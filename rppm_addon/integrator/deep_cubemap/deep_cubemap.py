@@ -276,9 +276,19 @@ class DeepCubemap(BufferSet):
         """
         self._trace("deep_cubemap/trace.comp", {"Rays": rays, "Hits": hits}, living)
 
-    def occluded(self, rays: moderngl.Buffer, visibility: moderngl.Buffer, living: LivingPaths) -> None:
-        """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0."""
-        self._trace("deep_cubemap/occluded.comp", {"Rays": rays, "Visibility": visibility}, living)
+    def occluded(
+        self,
+        rays: moderngl.Buffer,
+        visibility: moderngl.Buffer,
+        living: LivingPaths,
+        linking: Mapping[str, moderngl.Buffer] | None = None,
+    ) -> None:
+        """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0.
+
+        linking: the buffers Contributions and LightLinks, where these say what may be in a ray's way.
+        """
+        kernel = "deep_cubemap/occluded_linked.comp" if linking else "deep_cubemap/occluded.comp"
+        self._trace(kernel, {"Rays": rays, "Visibility": visibility, **(linking or {})}, living)
 
     @property
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:

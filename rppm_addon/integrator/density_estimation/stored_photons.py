@@ -23,6 +23,8 @@ ESTIMATE_PARAMETERS = {
     "photon_flux": "float",
     "direct_world_flux": "float",
     "most_scattered": "uint",
+    "limits_bounces": "uint",
+    "camera_segment": "uint",
 }
 """Parameters of programs that estimate densities (shaders/common/importon.glsl)."""
 
@@ -60,19 +62,19 @@ class PhotonList(BufferSet):
     def collect(
         self,
         photons: moderngl.Buffer,
-        world_directions: moderngl.Buffer,
+        photon_origins: moderngl.Buffer,
         emitted_count: int,
         slots: int,
         takes_direct: DirectPhotons,
     ) -> None:
         """List those of so many slots (PHOTON) that are stored, straight from lights only as ``takes_direct`` says.
 
-        world_directions: WORLD_DIRECTION of the ``emitted_count`` photons that left the lights.
+        photon_origins: PHOTON_ORIGIN of the ``emitted_count`` photons that left the lights.
         """
         self._numbers.write(np.zeros(3, np.uint32))
         self._program.run(
             slots,
-            {"Photons": photons, "StoredPhotons": self._numbers.buffer, "WorldDirections": world_directions},
+            {"Photons": photons, "StoredPhotons": self._numbers.buffer, "PhotonOrigins": photon_origins},
             {"count": slots, "photon_count": emitted_count, "takes_direct": takes_direct.value},
         )
         self.count, self.diffused_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
@@ -92,7 +94,7 @@ class StoredPhotons:
     """No more than so many of them has a diffuse surface scattered."""
     indirect_count: int
     """So many of all of them importons leave to gathering rays."""
-    world_directions: moderngl.Buffer
+    photon_origins: moderngl.Buffer
     groups: moderngl.Buffer
     """PhotonGroups, where there are any."""
     emitted_count: int
@@ -103,6 +105,8 @@ class StoredPhotons:
     radii: SplatRadii
     largest_coordinate: float
     """Of any position, meters, by its absolute value."""
+    limits_bounces: bool = False
+    """Whether lights may scatter less often than paths (PhotonOrigin)."""
 
     def first(self, count: int) -> "StoredPhotons":
         """No more than so many of them."""
@@ -121,7 +125,7 @@ class StoredPhotons:
     @property
     def blocks(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of programs that estimate densities."""
-        return {"Photons": self.photons, "WorldDirections": self.world_directions, "PhotonGroups": self.groups}
+        return {"Photons": self.photons, "PhotonOrigins": self.photon_origins, "PhotonGroups": self.groups}
 
 
 @dataclass(frozen=True)
@@ -150,6 +154,7 @@ class TakingImportons:
     """Where first hits lie on the camera's raster."""
     center: np.ndarray
     """Of the splat cubemap for all others, (3,) meters, which changes no sum."""
+    segment: int = 0
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
         """That the narrow radii of these importons do not exceed, meters."""
@@ -167,4 +172,6 @@ class TakingImportons:
             "photon_flux": photons.photon_flux,
             "direct_world_flux": photons.direct_world_flux,
             "most_scattered": self.most_scattered,
+            "limits_bounces": photons.limits_bounces,
+            "camera_segment": self.segment,
         }

@@ -17,9 +17,19 @@ from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
-from ..common.records import CLOSURE, EMISSIVE_TRIANGLE, HIT, LIGHT_NODE, NO_TRIANGLE, RAY, EmitterTrait
+from ..common.records import (
+    CLOSURE,
+    EMISSIVE_TRIANGLE,
+    EMITTER_LINK_SHIFT,
+    HIT,
+    LIGHT_NODE,
+    NO_TRIANGLE,
+    RAY,
+    EmitterTrait,
+)
 from ..surfaces.geometry import Geometry, Placement
 from ..surfaces.resolve import Resolve
+from .light_links import NO_LINK, LightLinkTable
 from .light_tree import triangle_leaves
 
 Record("EmittersParameters", photons="uint")
@@ -40,7 +50,7 @@ class Emitters(BufferSet):
     """The emissive triangles of a scene, and the emission of those whose material has it vary over the surface.
 
     ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves``
-    are theirs of the light tree.
+    are theirs of the light tree, but for the light sets, and ``links`` (count,) the numbers of their LightLinks.
     """
 
     triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, texel_bytes=16)
@@ -58,26 +68,30 @@ class Emitters(BufferSet):
         self.count = 0
         self.power = np.zeros(3)
         self.leaves = LIGHT_NODE.zeros(0)
+        self.links = np.zeros(0, np.int64)
         self._varying = False
         self._world_triangles: moderngl.Buffer | None = None
 
-    def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
+    def build(
+        self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve, links: LightLinkTable
+    ) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
         dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
         by_path = {m for m, material in enumerate(scene.materials) if m not in dark and asks_for_path(material.graph)}
         found = [
-            _may_emit(scene, placement, materials, by_path)
+            _may_emit(scene, placement, materials, by_path, links)
             for placement in geometry.placements
             if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
         ]
-        kinds_of_parts: tuple[DTypeLike, ...] = EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool
-        records, corners, kinds, varying, reflected = (
+        kinds_of_parts: tuple[DTypeLike, ...] = EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool, np.int64
+        records, corners, kinds, varying, reflected, numbers = (
             np.concatenate([parts[k] for parts in found]) if found else np.zeros((0,), kind)
             for k, kind in enumerate(kinds_of_parts)
         )
         self._ask(records, corners, kinds, varying, resolve)
         bright = records["radiance"].max(axis=1, initial=0.0) > 0
         records, varying, reflected = records[bright], varying[bright], reflected[bright]
+        self.links = numbers[bright]
         self.leaves = triangle_leaves(records, corners[bright].reshape(-1, 3, 3))
         self._varying = bool(varying.any())
         self._world_triangles = geometry.triangles.buffer
@@ -88,7 +102,8 @@ class Emitters(BufferSet):
             steps = chances(weights)
             records["share"] = steps / _STEPS
             records["cumulated"] = np.cumsum(steps) / _STEPS
-            records["traits"] = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
+            traits = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
+            records["traits"] = traits + (self.links << EMITTER_LINK_SHIFT)
         self.triangles.upload(records if self.count else EMISSIVE_TRIANGLE.zeros(1))
         for part in geometry.triangles.ranges(geometry.triangle_count):
             self._mark.run(
@@ -215,10 +230,11 @@ def chances(weights: np.ndarray) -> np.ndarray:
 
 
 def _may_emit(
-    scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int]
+    scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int], links: LightLinkTable
 ) -> tuple[np.ndarray, ...]:
-    """Of one instance: records without radiance, corners (n, 3, 3) in meters, material, whether it varies, and whether
-    smooth surfaces may look for it: what its emission depends on must be known without the path that comes there."""
+    """Of one instance: records without radiance, corners (n, 3, 3) in meters, material, whether it varies, whether
+    smooth surfaces may look for it, and its link: what its emission depends on must be known without the path that
+    comes there."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
     slots = np.array([m if 0 <= m < len(scene.materials) else -1 for m in instance.materials] or [-1])
@@ -237,4 +253,5 @@ def _may_emit(
     varying = np.array([materials.emits[m] is Emits.VARYING for m in kinds], bool)
     seen = instance.visibility & _SEEN_REFLECTED == _SEEN_REFLECTED
     reflected = seen & np.isin(kinds, list(by_path), invert=True)
-    return records, corners, kinds, varying, reflected
+    link = links.of_emitter(instance.linking) if len(records) else NO_LINK
+    return records, corners, kinds, varying, reflected, np.full(len(records), link)

@@ -61,6 +61,11 @@ class Environment(BufferSet):
         self.width = self.height = 0
         self.radiance = self.mean_radiance = np.zeros(3)
 
+    @property
+    def is_even(self) -> bool:
+        """Whether it looks alike in all directions."""
+        return self.width == 0
+
     def build(self, world: World, images: list[Image], materials: MaterialTables) -> None:
         """Evaluate the world's nodes: once where they give one color, else for a map of all directions, and for
         another of what the camera sees where Light Path nodes tell it apart."""

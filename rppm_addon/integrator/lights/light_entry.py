@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ...scene.lights import Light, LightKind
-from ..common.records import LIGHT, LIGHT_SOFT, LightShape
+from ..common.records import LIGHT, LIGHT_SHADOWLESS, LIGHT_SOFT, LightShape
 
 
 def spot_share(cosine_cone: float, blend: float) -> float:
@@ -49,7 +49,10 @@ def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarr
     entry["strength"] = strength = np.maximum(light.strength, 0.0)
     entry["radius"] = max(light.radius, 0.0)
     soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
-    entry["flags"] = int(light.visibility) | (LIGHT_SOFT if soft else 0)
+    entry["flags"] = (
+        int(light.visibility) | (LIGHT_SOFT if soft else 0) | (0 if light.casts_shadow else LIGHT_SHADOWLESS)
+    )
+    entry["max_bounces"] = light.max_bounces
     if light.kind is LightKind.POINT:
         entry["kind"] = LightShape.POINT
         return entry, 4 * math.pi * strength

@@ -33,9 +33,12 @@ class LightTree(BufferSet):
         super().__init__(context, library, sizes)
         self.parameters: dict[str, int] = {}
 
-    def build(self, lights: np.ndarray, triangles: np.ndarray) -> None:
-        """Take the lights (LIGHT records) and the leaves of the emissive triangles (triangle_leaves)."""
+    def build(self, lights: np.ndarray, triangles: np.ndarray, light_sets: np.ndarray) -> None:
+        """Take the lights (LIGHT records), the leaves of the emissive triangles (triangle_leaves, with their light
+        sets), and by the numbers of links the bits of the light sets, (n, 2)."""
         near, suns = light_leaves(lights), sun_leaves(lights)
+        for leaves in (near, suns):
+            leaves["light_sets"] = light_sets[lights["link"][leaves["member"]]]
         parts = [tree_of(near), tree_of(triangles), suns]
         firsts = np.cumsum([0] + [len(part) for part in parts])
         self.parameters = {
@@ -149,6 +152,7 @@ def _merged(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     merged["high"] = np.maximum(a["high"], b["high"])
     merged["cosine_emission"] = np.minimum(a["cosine_emission"], b["cosine_emission"])
     merged["two_sided"] = a["two_sided"] | b["two_sided"]
+    merged["light_sets"] = a["light_sets"] | b["light_sets"]
     merged["axis"], merged["cosine_normals"] = _cone_union(a, b)
     parents[both] = merged
     return parents

@@ -12,11 +12,12 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.errors import SceneError
+from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..common.records import LIGHT, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
+from ..common.records import LIGHT, LIGHT_LINK, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
@@ -24,6 +25,7 @@ from .emitters import Emitters
 from .environment import Environment
 from .guide import Guide
 from .light_entry import light_entry
+from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .sources import ENVIRONMENT, SURFACES, source_name
@@ -47,6 +49,9 @@ LIGHT_PARAMETERS = {
     "mesh_light": "uint",
     "world_light": "uint",
     **LIGHT_TREE_PARAMETERS,
+    "links_lights": "uint",
+    "world_visibility": "uint",
+    "world_bounces": "uint",
     "seed": "uint",
     "iteration": "uint",
     "direct_world_flux": "float",
@@ -54,7 +59,8 @@ LIGHT_PARAMETERS = {
 """Parameters of every program that includes shaders/lights/lights.glsl. ``mesh_selection`` and
 ``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
 weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
-give, W/m^2, ``direct_world_flux`` Iteration's."""
+give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights`` Lights', ``world_visibility`` the rays that see
+the world, ``world_bounces`` its max_bounces."""
 
 
 def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
@@ -85,6 +91,8 @@ class Lights(BufferSet):
     light_maps = Part(LightMaps)
     guide = Part(Guide)
     _light_tree = Part(LightTree)
+    links = StorageBuffer("light links", LIGHT_LINK)
+    """By number, where ``links_lights``."""
     group_table = StorageBuffer("table of light groups", "uint")
     """LightGroupTable, where there are any."""
 
@@ -99,10 +107,16 @@ class Lights(BufferSet):
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
+        self.links_lights = False
+        """Whether any light does not shine on everything, or is not stopped by everything."""
+        self.limits_bounces = False
+        """Whether the light of any is scattered less often than the paths allow."""
         self._power, self._photons, self._most_photons = 0.0, 1, 1
         self.scene_radius = 0.0
         """Meters, a little more than the geometry's."""
         self.times_built = 0
+        self.world_visibility = RayVisibility.ALL
+        """The rays that see the world."""
         self.world_group = NO_LIGHT_GROUP
         """The world's light group by number."""
 
@@ -120,6 +134,10 @@ class Lights(BufferSet):
     def tree_buffers(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of lights/light_tree.glsl."""
         return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
+
+    def linking_blocks(self, contributions: moderngl.Buffer) -> dict[str, moderngl.Buffer] | None:
+        """Storage blocks of shadow rays that ask what may be in their way; None where everything is."""
+        return {"Contributions": contributions, "LightLinks": self.links.buffer} if self.links_lights else None
 
     @property
     def source_watts(self) -> dict[str, float]:
@@ -176,6 +194,7 @@ class Lights(BufferSet):
         powers: list[float] = []
         weights: list[float] = []
         groups: list[str] = []
+        links = LightLinkTable()
 
         def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0, group: str = "") -> None:
             if np.isfinite(power).all() and np.max(power) > 0:
@@ -189,6 +208,7 @@ class Lights(BufferSet):
             self.light_maps.build(scene.lights, scene.images, materials)
         for index, light in enumerate(scene.lights):
             entry, power = light_entry(light, radius)
+            entry["link"] = links.of_light(light)
             nodes = self.light_maps.nodes.get(index)
             if nodes is not None:
                 entry["strength"] *= nodes.scale
@@ -197,14 +217,18 @@ class Lights(BufferSet):
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
             add(source_name(light.name), entry, power, light.photon_weight, light.light_group)
-        self.emitters.build(scene, geometry, materials, resolve)
+        self.emitters.build(scene, geometry, materials, resolve, links)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
+        entry["max_bounces"] = UNLIMITED_BOUNCES
         add(SURFACES, entry, self.emitters.power)
         if not keep_world:
             self.environment.build(scene.world, scene.images, materials)
         entry = LIGHT.zeros(1)[0]
-        entry["kind"], entry["flags"] = LightShape.WORLD, int(RayVisibility.ALL)
+        self.world_visibility = scene.world.visibility
+        entry["kind"], entry["flags"] = LightShape.WORLD, int(self.world_visibility)
+        world_bounces = UNLIMITED_BOUNCES if self.environment.is_even else scene.world.max_bounces
+        entry["max_bounces"] = world_bounces
         power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
         add(ENVIRONMENT, entry, power, group=scene.world.light_group)
         if not entries:
@@ -238,7 +262,11 @@ class Lights(BufferSet):
         self.targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
         self._list_groups(scene, [*groups, *(placed.instance.light_group for placed in geometry.placements)])
-        self._light_tree.build(table, self.emitters.leaves)
+        self.links_lights = links.any
+        self.links.upload(links.records)
+        sets = links.records["light_sets"]
+        self.emitters.leaves["light_sets"] = sets[self.emitters.links]
+        self._light_tree.build(table, self.emitters.leaves, sets)
         self._parameters = {
             "scene_center": geometry.center,
             "scene_radius": radius,
@@ -253,7 +281,11 @@ class Lights(BufferSet):
             "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
+            "links_lights": self.links_lights,
+            "world_visibility": int(self.world_visibility),
+            "world_bounces": world_bounces,
         }
+        self.limits_bounces = bool((table["max_bounces"] < UNLIMITED_BOUNCES).any())
 
     def _list_groups(self, scene: Scene, names: list[str]) -> None:
         """names: of the light groups of the lights and the instances."""

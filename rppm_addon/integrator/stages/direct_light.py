@@ -54,6 +54,7 @@ class DirectLight(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._sample = library.compute("direct_light/sample.comp")
+        self._soften = library.compute("direct_light/terminator.comp")
         self._add = library.compute("direct_light/add.comp")
         self._splits_light = _told_pixels(sizes) > 0
 
@@ -83,6 +84,8 @@ class DirectLight(BufferSet):
                 living.take(importons.living, self._rays.buffer)
                 if living.known_empty:
                     continue
+                if context.resolve.has_terminators:
+                    self._soften_terminator(context, importons)
                 context.lights.emitters.tint_contributions(
                     context.resolve,
                     self._rays.buffer,
@@ -91,7 +94,8 @@ class DirectLight(BufferSet):
                     living,
                     iteration.number,
                 )
-                context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living)
+                linking = context.lights.linking_blocks(self.contributions.buffer)
+                context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living, linking)
                 living.run(
                     self._add,
                     {
@@ -101,6 +105,20 @@ class DirectLight(BufferSet):
                         "Radiances": importons.radiances.buffer,
                     },
                 )
+
+    def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
+        """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""
+        self.living_rays.run(
+            self._soften,
+            {
+                "Closures": importons.closures.buffer,
+                "ShadowRays": self._rays.buffer,
+                "Contributions": self.contributions.buffer,
+                "Triangles": context.geometry.triangles.buffer,
+                "Attributes": context.geometry.attributes.buffer,
+                "ShadingInstances": context.resolve.shading_instances,
+            },
+        )
 
     def _sample_lights(
         self,

@@ -149,6 +149,7 @@ class Importons(BufferSet):
             most_scattered=max(context.settings.camera_path_length - segment - 2, 0),
             raster=raster,
             center=context.center,
+            segment=segment,
         )
 
     def footprints(self, count: int) -> np.ndarray:

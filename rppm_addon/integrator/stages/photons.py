@@ -20,9 +20,9 @@ from ..common.records import (
     HIT,
     PHOTON,
     PHOTON_DIFFERENTIAL,
+    PHOTON_ORIGIN,
     PHOTON_PATH,
     RAY,
-    WORLD_DIRECTION,
 )
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
 from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage
@@ -31,6 +31,7 @@ from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
 from .photon_emission import PhotonEmission
 from .photon_groups import PhotonGroups
+from .photon_links import PhotonLinks
 
 Record(
     "ScatterPhotonsParameters",
@@ -53,12 +54,12 @@ def _flux_groups(sizes: StageSizes) -> int:
 
 
 class Photons(BufferSet):
-    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``world_directions``
-    tells of each path what the world is like where it began."""
+    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``photon_origins``
+    tells of each path where it began."""
 
     remedy = "lower the photons per iteration or the photon path length"
     photons = StorageBuffer("photons", PHOTON, photon_slots, texel_bytes=4)
-    world_directions = StorageBuffer("world directions", WORLD_DIRECTION, photon_paths)
+    photon_origins = StorageBuffer("photon origins", PHOTON_ORIGIN, photon_paths)
     _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths)
     _rays = StorageBuffer("photon rays", RAY, photon_paths)
     _hits = StorageBuffer("photon hits", HIT, photon_paths)
@@ -70,6 +71,7 @@ class Photons(BufferSet):
     _living = PathList("living photon paths", photon_paths, to_keep=True)
     first_hits = Part(FirstHits)
     _groups = Part(PhotonGroups)
+    _links = Part(PhotonLinks)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -102,9 +104,10 @@ class Photons(BufferSet):
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with context.timers.stage("emission"):
             self._living.fill(self.photon_count)
-            directions, differentials = self.world_directions.buffer, self._differentials.buffer
+            directions, differentials = self.photon_origins.buffer, self._differentials.buffer
             self._emission.emit(context.lights, rays, paths, directions, differentials, self.photon_count, iteration)
             self._groups.find(context, rays, self.photon_count)
+            self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
                 context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
             )
@@ -138,6 +141,7 @@ class Photons(BufferSet):
                 photon_paths=self._paths.buffer,
                 has_adjoint_queries=has_adjoint_queries,
             )
+            self._links.link(context, self._closures.buffer, self._paths.buffer, self._living)
 
     def scatter(self, context: StageContext, iteration: Iteration, segment: int) -> None:
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
@@ -178,7 +182,7 @@ class Photons(BufferSet):
         if context.settings.direct_light is DirectLight.PHOTONS:
             takes_direct = DirectPhotons.ALL
         with context.timers.stage("photon list"):
-            directions = self.world_directions.buffer
+            directions = self.photon_origins.buffer
             listed.collect(self.photons.buffer, directions, self.photon_count, self.slots, takes_direct)
         return listed
 
@@ -192,13 +196,14 @@ class Photons(BufferSet):
             listed.count - listed.diffused_count,
             listed.diffused_count,
             listed.indirect_count,
-            self.world_directions.buffer,
+            self.photon_origins.buffer,
             self._groups.groups.buffer,
             self.photon_count,
             context.lights.photon_flux,
             iteration.direct_world_flux,
             radii.splats,
             float(np.max(np.abs(bounds))),
+            context.lights.limits_bounces,
         )
 
     def flux_balance(self) -> dict[str, float]:

@@ -27,6 +27,8 @@ class ShadowCatcher(BufferSet):
 
     remedy = "lower the resolution"
     _rays = StorageBuffer("rays from shadow catchers", RAY, _catching_pixels)
+    _links = StorageBuffer("links of shadow catchers", "vec4", _catching_pixels)
+    """Contributions without light."""
     lit = StorageBuffer("lit shadow catchers", "uint", _catching_pixels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
@@ -46,7 +48,10 @@ class ShadowCatcher(BufferSet):
                     "Closures": importons.closures.buffer,
                     "Rays": importons.rays.buffer,
                     "ShadowRays": self._rays.buffer,
+                    "Contributions": self._links.buffer,
+                    "LightLinks": context.lights.links.buffer,
                 },
                 {**context.lights.parameters(iteration), "segment": segment, "first_pixel": band.first_pixel},
             )
-            context.deep_cubemap.occluded(self._rays.buffer, self.lit.buffer, importons.living)
+            linking = context.lights.linking_blocks(self._links.buffer)
+            context.deep_cubemap.occluded(self._rays.buffer, self.lit.buffer, importons.living, linking)

@@ -13,6 +13,7 @@ from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, RayVisibility
 from ...scene.scene import Scene
 from ..common.records import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
@@ -35,7 +36,7 @@ INSTANCE_ENTRY = Record(
     mesh_uv="uint",
     first_slot="uint",
     slot_count="uint",
-    shadowless="uint",
+    set_code="float",
 )
 Record("GatherParameters", fallback_point="vec3", first_triangle="uint", triangle_count="uint", instance_count="uint")
 
@@ -241,9 +242,11 @@ class Geometry(BufferSet):
 
 
 def _fill(entries: np.ndarray, instances: list[Instance], materials: int, default_material: int) -> list[int]:
-    """Shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
+    """Sets, shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
     visibility = np.array([int(instance.visibility) for instance in instances])
-    entries["shadowless"] = visibility & int(RayVisibility.SHADOW) == 0
+    shadowless = visibility & int(RayVisibility.SHADOW) == 0
+    sets = np.array([_packed_sets(instance.linking) for instance in instances])
+    entries["set_code"] = np.where(shadowless, 1 + sets, -sets)  # shaders/common/light_sets.glsl
     slots: list[int] = []
     ranges: dict[tuple[int, ...], tuple[int, int]] = {}
     for key in map(tuple, [instance.materials for instance in instances]):
@@ -253,6 +256,10 @@ def _fill(entries: np.ndarray, instances: list[Instance], materials: int, defaul
     chosen = [ranges[tuple(instance.materials)] for instance in instances]
     entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
     return slots
+
+
+def _packed_sets(linking: LightLinking | None) -> int:
+    return 0 if linking is None else linking.receiver_light_set | linking.blocker_shadow_set << 6
 
 
 def _starts(lengths: list[int]) -> np.ndarray:

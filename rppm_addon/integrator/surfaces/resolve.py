@@ -98,6 +98,11 @@ class Resolve(BufferSet):
         """SHADING_INSTANCE of each instance."""
         return self._surface_attributes.buffers["ShadingInstances"]
 
+    @property
+    def has_terminators(self) -> bool:
+        """Whether any instance has an offset of its shadow terminator."""
+        return self._surface_attributes.has_terminators
+
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
         """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
         What the camera tells nodes follows by look_from.

@@ -11,9 +11,11 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
+from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
+from ..common.records import CLOSURE_CURVED, TERMINATOR_SHIFT, TERMINATOR_STEPS
 from .geometry import Geometry
 
 SHADING_INSTANCE = Record(
@@ -37,13 +39,16 @@ SHADING_INSTANCE = Record(
     texture_scale="vec3",
     shadow_catcher="uint",
     particle_location="vec3",
-    unused1="float",
+    terminator_offset="float",
     particle_velocity="vec3",
-    unused2="float",
+    light_sets0="uint",
     particle_angular_velocity="vec3",
-    unused3="float",
+    light_sets1="uint",
+    terminator_flags="uint",
 )
-"""An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell."""
+"""An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell;
+the words of the bits of the light sets that it shines on; and of its shadow terminator the geometry offset and what the
+flags of its closures tell."""
 
 StorageBlock("ShadingInstances", "ShadingInstance shading_instances[];")
 
@@ -60,6 +65,8 @@ class SurfaceAttributes(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
         self.count = 0
+        self.has_terminators = False
+        """Whether any instance has an offset of its shadow terminator."""
         self._sources: dict[int, tuple] = {}
         """Of what lies at a place of the values, that from which it was made."""
 
@@ -76,8 +83,10 @@ class SurfaceAttributes(BufferSet):
         self.count = len(names)
         instances = [placement.instance for placement in geometry.placements]
         records = SHADING_INSTANCE.zeros(max(1, len(instances)))
+        self.has_terminators = False
         if instances:
             _fill(records, instances, geometry.matrices, scene.meshes)
+            self.has_terminators = bool(records["terminator_flags"].any())
             records["first_triangle"] = [placement.first_triangle for placement in geometry.placements]
         self._instances.upload(records)
         self._upload_values(scene.meshes, instances, names)
@@ -129,10 +138,20 @@ def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, 
     for name in ("color", "random", "object_index", "holdout", "shadow_catcher"):
         records[name] = _column(instances, name)
     records["visibility"] = [int(instance.visibility) for instance in instances]
+    memberships = np.array([_light_sets(instance) for instance in instances], np.int64).view(np.uint64)
+    records["light_sets0"], records["light_sets1"] = memberships & 0xFFFFFFFF, memberships >> np.uint64(32)
+    geometry, shading = (_column(instances, f"terminator_{name}_offset") for name in ("geometry", "shading"))
+    records["terminator_offset"] = geometry
+    steps = np.round(TERMINATOR_STEPS * np.clip(shading, 0.0, 1.0)).astype(np.uint32)
+    records["terminator_flags"] = steps << np.uint32(TERMINATOR_SHIFT) | np.where(geometry > 0.0, CLOSURE_CURVED, 0)
     multiplied = np.flatnonzero([instance.particle is not None for instance in instances])
     particles = [instances[index].particle for index in multiplied]
     for name in _PARTICLE if particles else ():
         records[f"particle_{name}"][multiplied] = _column(particles, name)
+
+
+def _light_sets(instance: Instance) -> int:
+    return ALL_SETS if instance.linking is None else instance.linking.light_set_membership
 
 
 def _column(members: list, name: str) -> np.ndarray:

@@ -137,6 +137,8 @@ def _error(process: RendererProcess, name: str, text: str) -> errors.RppmError:
     kind = getattr(errors, name, None)
     if kind is not None:
         return kind(text)
+    if name == MemoryError.__name__:
+        return errors.RendererError(errors.NO_MEMORY)
     return errors.RendererError(
         f"RPPM failed unexpectedly ({name}: {text}); please report what is in its log, {process.log_path}"
     )

@@ -16,7 +16,7 @@ from ...integrator.first_look import FirstLook
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
 from ...integrator.viewport.pictures import ViewportPictures, demands_of
-from ...scene.errors import DenoiserError, DeviceLostError, RppmError
+from ...scene.errors import DenoiserError, DeviceLostError, RppmError, unforeseen
 from ...scene.scene import Scene
 from ..frame_passes import frame_passes
 from ..noise_threshold import NoiseThreshold
@@ -379,7 +379,7 @@ class Viewing:
         text = str(error)
         if not isinstance(error, RppmError):
             log.exception("a viewport failed")
-            text = f"RPPM failed unexpectedly ({type(error).__name__}: {error}); please report what its log says"
+            text = unforeseen(error, "please report what its log says")
         self._release_mapper()
         self._tell(replace(self._status, error=text, settled=True))
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Closure>
 #include <ClosureLobes>
+#include <Terminators>
 #include "common/bsdf/microfacet.glsl"
 
 const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
@@ -61,6 +62,21 @@ vec3 diffuse_scattered(Closure closure, vec3 wo, vec3 wi, bool front) {
     if ((cosine > 0.0) != front) return vec3(0.0);
     return (front ? closure.diffuse : closure.translucent) * diffuse_factor(closure, normal, wo, wi)
            * (abs(cosine) / PI);
+}
+
+// By what side light counts for a closure, toward the viewer.
+vec3 lit_normal(Closure closure) {
+    return unpack_unit_vector((closure.flags & CLOSURE_CURVED) != 0u ? closure.shading_normal
+                              : closure.geometric_normal);
+}
+
+// What a shading offset of the shadow terminator leaves of light: its angle to the normal is stretched.
+float terminator_factor(uint closure_flags, vec3 normal, vec3 wi) {
+    uint steps = (closure_flags >> TERMINATOR_SHIFT) & TERMINATOR_STEPS;
+    float cosine = dot(normal, wi);
+    if (steps == 0u || cosine < 0.0) return 1.0;
+    float offset = float(steps) / float(TERMINATOR_STEPS);
+    return max(cos(acos(min(cosine, 1.0)) / (1.0 - 0.5 * offset)), 0.0) / max(cosine, 1e-6);
 }
 
 float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }

@@ -2,8 +2,7 @@
 """Inside Blender: does the steps that the test outside asks for, one at a time, from a timer of the window.
 
 Started as ``blender FILE --python agent.py -- FOLDER``. FOLDER/request.json holds [name, arguments] of a function of
-window_steps.py, viewport_steps.py, panel_steps.py or bake_steps.py; its result, or the error, goes to
-FOLDER/answer.json. Both files appear whole, by renaming.
+one of MODULES; its result, or the error, goes to FOLDER/answer.json. Both files appear whole, by renaming.
 """
 
 import importlib
@@ -16,9 +15,10 @@ from pathlib import Path
 import bpy
 
 POLL_SECONDS = 0.01
+MODULES = ("window_steps", "viewport_steps", "panel_steps", "bake_steps", "soak_steps")
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-steps = [importlib.import_module(name) for name in ("window_steps", "viewport_steps", "panel_steps", "bake_steps")]
+steps = [importlib.import_module(name) for name in MODULES]
 folder = Path(sys.argv[sys.argv.index("--") + 1])
 
 

@@ -13,6 +13,9 @@ import sys
 import time
 from pathlib import Path
 
+SAMPLE_SECONDS = 0.03
+"""From one look at a process to the next."""
+
 started: dict[str, subprocess.Popen] = {}
 
 
@@ -70,9 +73,44 @@ def shared_memory() -> dict:
     return {"names": sorted(os.listdir("/dev/shm")) + [path.name for path in Path("/tmp").glob("rppm*")]}
 
 
+def resources(folders: list[str]) -> dict:
+    """What each living process holds, in bytes and numbers, and the files in ``folders``."""
+    found = {}
+    for pid, command in processes()["processes"].items():
+        place = Path("/proc", pid)
+        with contextlib.suppress(OSError):  # it has just ended
+            status = dict(line.split(":", 1) for line in (place / "status").read_text().splitlines())
+            handles = [handle for handle in (place / "fd").iterdir() if handle.is_symlink()]
+            found[pid] = {
+                "command": command,
+                "resident": 1024 * int(status["VmRSS"].split()[0]),
+                "anonymous": 1024 * int(status["RssAnon"].split()[0]),
+                "threads": int(status["Threads"]),
+                "handles": len(handles),
+                "shared": {str(block.st_ino): block.st_size for block in map(_memory, handles) if block},
+            }
+    files = [path for folder in folders for path in Path(folder).rglob("*") if path.is_file()]
+    return {"processes": found, "files": {str(path): _size(path) for path in files}}
+
+
+def _memory(handle: Path) -> os.stat_result | None:
+    """Of a handle of shared memory."""
+    try:
+        return handle.stat() if os.readlink(handle).startswith("/memfd:") else None
+    except OSError:
+        return None
+
+
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0
+
+
 def busy_share(pid: int, seconds: float) -> dict:
     """Share of moments at which a thread of a process runs or waits for a processor."""
-    samples = 50
+    samples = max(1, round(seconds / SAMPLE_SECONDS))
     busy = 0
     for _ in range(samples):
         states = []
@@ -89,7 +127,7 @@ def _text(data: bytes | None) -> str:
 
 
 def main() -> None:
-    requests = {f.__name__: f for f in (start, run, wait, kill, processes, shared_memory, busy_share)}
+    requests = {f.__name__: f for f in (start, run, wait, kill, processes, shared_memory, resources, busy_share)}
     for line in sys.stdin:
         name, arguments = json.loads(line)
         try:

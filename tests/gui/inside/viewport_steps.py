@@ -3,6 +3,7 @@
 
 import importlib
 import time
+import types
 import zlib
 
 import bpy
@@ -111,6 +112,13 @@ def turn(degrees: float) -> None:
     view.view_rotation = Quaternion((0.0, 0.0, 1.0), np.radians(degrees)) @ view.view_rotation
 
 
+def edit_mesh(name: str) -> None:
+    """Raise the first vertex of a mesh object, and forget no other."""
+    mesh = bpy.data.objects[name].data
+    mesh.vertices[0].co.z += 0.1
+    mesh.update()
+
+
 def move_object(name: str, offset: list[float]) -> None:
     found = bpy.data.objects[name]
     found.location = [a + b for a, b in zip(found.location, offset, strict=True)]
@@ -150,24 +158,33 @@ def playing() -> bool:
 # Pixels on the screen.
 
 _drawn: list[tuple[float, int, float, float]] = []
-_watching = False
+_watching: object = None
+"""The callback's handle."""
 
 
 def watch() -> None:
     """From now on note what the window shows in the viewport's middle, each time it is drawn."""
     global _watching
     _drawn.clear()
-    if not _watching:
-        _watching = True
+    if _watching is None:
         # The only callback that runs when the window's own buffer is complete; the mouse must be over the viewport.
-        bpy.types.WindowManager.draw_cursor_add(_note, (), "VIEW_3D", "WINDOW")
+        _watching = bpy.types.WindowManager.draw_cursor_add(_note, (), "VIEW_3D", "WINDOW")
+
+
+def watch_no_more() -> None:
+    """Note nothing any more."""
+    global _watching
+    if _watching is not None:
+        bpy.types.WindowManager.draw_cursor_remove(_watching)
+        _watching = None
+    _drawn.clear()
 
 
 @bpy.app.handlers.persistent
 def _on_load(*_: object) -> None:
     """Loading a file takes cursors' callbacks away."""
     global _watching
-    _watching = False
+    _watching = None
 
 
 bpy.app.handlers.load_post.append(_on_load)
@@ -203,7 +220,7 @@ def changed() -> float | None:
 
 # Gaps between timers.
 
-_ticks: list[float] = []
+_ticks: list[tuple[float, float]] = []
 _ticking = False
 
 
@@ -217,37 +234,42 @@ def tick() -> None:
 
 
 def _tick() -> float:
-    _ticks.append(time.perf_counter())
+    _ticks.append((time.perf_counter(), time.thread_time()))
     return GAP_SECONDS
 
 
 def gaps() -> list[float]:
     """Milliseconds between the calls since tick()."""
-    return [1000.0 * (after - before) for before, after in zip(_ticks, _ticks[1:])]
+    return [1000.0 * (after - before) for (before, _), (after, _) in zip(_ticks, _ticks[1:])]
+
+
+def busy_gaps() -> list[float]:
+    """Milliseconds of the processor that Blender's own thread took between them, however busy the machine is."""
+    return [1000.0 * (after - before) for (_, before), (_, after) in zip(_ticks, _ticks[1:])]
 
 
 # Time in the engine.
 
-_calls: dict[str, list[float]] = {"view_update": [], "view_draw": []}
+_calls: dict[str, list[tuple[float, float]]] = {"view_update": [], "view_draw": []}
 
 
-def time_engine() -> None:
-    """From now on note how long the engine's functions for viewports take."""
-    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
-    for name, calls in _calls.items():
+def time_engine(name: str = "RPPM") -> None:
+    """From now on note how long an engine's functions for viewports take."""
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == name)
+    for function, calls in _calls.items():
         calls.clear()
-        original = getattr(engine, name)
+        original = getattr(engine, function)
         if not hasattr(original, "timed"):
-            setattr(engine, name, _timed(original, calls))
+            setattr(engine, function, _timed(original, calls))
 
 
-def _timed(function, calls: list[float]):
+def _timed(function, calls: list[tuple[float, float]]):
     def timed(self, context, depsgraph):
-        started = time.perf_counter()
+        started, busy = time.perf_counter(), time.thread_time()
         try:
             return function(self, context, depsgraph)
         finally:
-            calls.append(1000.0 * (time.perf_counter() - started))
+            calls.append((1000.0 * (time.perf_counter() - started), 1000.0 * (time.thread_time() - busy)))
 
     timed.timed = True
     return timed
@@ -255,7 +277,12 @@ def _timed(function, calls: list[float]):
 
 def engine_times() -> dict[str, list[float]]:
     """Milliseconds of each call since time_engine()."""
-    return {name: list(calls) for name, calls in _calls.items()}
+    return {name: [wall for wall, _ in calls] for name, calls in _calls.items()}
+
+
+def engine_busy() -> dict[str, list[float]]:
+    """Milliseconds of the processor that the calls since time_engine() took in Blender's own thread."""
+    return {name: [busy for _, busy in calls] for name, calls in _calls.items()}
 
 
 # Exports in slices.
@@ -263,19 +290,47 @@ def engine_times() -> dict[str, list[float]]:
 _slices: list[list[int] | None] = []
 
 
+def _module(name: str) -> types.ModuleType:
+    """A module of the extension's export."""
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
+    return importlib.import_module(f"{engine.__module__.rpartition('.')[0]}.export.{name}")
+
+
 def count_slices() -> None:
     """From now on note each slice of a viewport's export."""
-    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
-    module = importlib.import_module(engine.__module__.rpartition(".")[0] + ".export.sync")
-    prepare = module.SceneSync.prepare
+    module = _module("sync")
+    advance = module.SceneSync.advance
     _slices.clear()
 
     def counted(self, *arguments):
-        progress = prepare(self, *arguments)
+        progress = advance(self, *arguments)
         _slices.append(None if progress is None else [progress.objects, progress.of])
         return progress
 
-    module.SceneSync.prepare = counted
+    module.SceneSync.advance = counted
+
+
+_exported: list[str] = []
+
+
+def count_meshes() -> None:
+    """From now on note whose mesh is exported."""
+    module = _module("meshes.mesh_table")
+    export_mesh = module.export_mesh
+
+    def counted(mesh, name, *arguments):
+        exported = export_mesh(mesh, name, *arguments)
+        _exported.append(name)
+        return exported
+
+    module.export_mesh = counted
+
+
+def exported_meshes() -> list[str]:
+    """Names of objects, in their order, since this was asked last."""
+    names = _exported.copy()
+    _exported.clear()
+    return names
 
 
 def slices() -> list[list[int] | None]:

@@ -1,7 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """All rows: importing the families puts them on the list."""
 
-from . import cameras, coordinates, image_textures, lights, profiles, shaders, values, worlds  # noqa: F401
+from . import (  # noqa: F401
+    cameras,
+    coordinates,
+    image_textures,
+    light_limits,
+    light_linking,
+    lights,
+    profiles,
+    shaders,
+    shadow_terminator,
+    values,
+    worlds,
+)
 from .rows import ROWS
 
 __all__ = ["ROWS"]

@@ -5,6 +5,7 @@ import bpy
 
 from . import stage
 from .image_textures import picture
+from .light_limits import brighten
 from .net import Net, material
 from .rows import Kind, Row, add
 
@@ -168,3 +169,67 @@ def _sky(kind, properties):
 
 for _name, _properties in SKIES.items():
     world("Sky Texture", _name, _sky(_name.partition(",")[0], _properties))
+
+
+def _spot(bounces):
+    """A world of one bright spot, of which Cycles' rays that happen to meet it, and ask for no bounces, know little."""
+
+    def feed(net):
+        bpy.context.scene.world.cycles.max_bounces = bounces
+        brighten()
+        along = net.out("VectorMath", "Value", {0: net.out("TexCoord", "Generated"), 1: (0.5, -0.5, 0.707)},
+                        operation="DOT_PRODUCT")  # fmt: skip
+        spot = net.out("Math", 0, {0: along, 1: 0.97}, operation="GREATER_THAN")
+        return (1.0, 0.9, 0.8), net.out("Math", 0, {0: spot, 1: 30.0}, operation="MULTIPLY")
+
+    return feed
+
+
+SAMPLED = {"reason": "Cycles leaves in what its rays find of the world by chance", "mean": 0.03, "block": 0.05}
+
+
+def _even(bounces):
+    def feed(net):
+        bpy.context.scene.world.cycles.max_bounces = bounces
+        brighten()
+        return (0.5, 0.55, 0.6), 1.0
+
+    return feed
+
+
+world("Max Bounces", "world with a bright spot, 0", _spot(0), **SAMPLED)
+world("Max Bounces", "even world, 0", _even(0))
+
+
+def _hidden(*kinds, even=True, shiny=False):
+    """A world that rays of some kinds do not see, perhaps about a ball that reflects."""
+
+    def feed(net):
+        for kind in kinds:
+            setattr(bpy.context.scene.world.cycles_visibility, kind, False)
+        if shiny:
+            glossy, nodes = material("Shiny")
+            nodes.output(nodes.out("BsdfAnisotropic", inputs={"Color": 0.8, "Roughness": 0.35}, distribution="GGX"))
+            bpy.data.objects["Ball"].data.materials[0] = glossy
+        color = (0.5, 0.55, 0.6) if even else net.scaled(net.out("TexCoord", "Generated"), 0.5, 0.5)
+        return color, 1.0
+
+    return feed
+
+
+def _limpid(net):
+    return net.out("BsdfGlass", inputs={"Color": 0.9, "Roughness": 0.0, "IOR": 1.3})
+
+
+def _principled(net):
+    return net.out("BsdfPrincipled", inputs={"Base Color": (0.6, 0.4, 0.3, 1.0), "Roughness": 0.3})
+
+
+VISIBILITY = "Ray Visibility of the world"
+world(VISIBILITY, "hidden from the camera", _hidden("camera"), _principled, effort=2)
+for _kind, _name in (("diffuse", "diffuse surfaces"), ("glossy", "reflections")):
+    world(VISIBILITY, f"hidden from {_name}", _hidden(_kind, shiny=True), effort=2)
+    world(VISIBILITY, f"with colors, hidden from {_name}", _hidden(_kind, even=False, shiny=True), effort=2)
+world(VISIBILITY, "hidden from transmission", _hidden("transmission"), _limpid, effort=2)
+MIXED = "Cycles takes a ray for that of the part which chose it, and lets all parts of a material count"
+world(VISIBILITY, "hidden from diffuse parts", _hidden("diffuse"), _principled, effort=2, reason=MIXED, mean=0.03)

@@ -2,7 +2,8 @@
 """Blender images to pixels, each exported once."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
@@ -10,6 +11,7 @@ import numpy as np
 
 from ....scene import Image
 from ....scene.whole_files import is_no_file
+from ..slices import Slices
 from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 from .kept_images import keep, kept
 
@@ -18,6 +20,8 @@ Warn = Callable[[str], None]
 
 _PART = 1 << 16
 """Numbers that are looked at while they lie in a cache."""
+_LARGE = 1 << 20
+"""Pixels from which on an image is read in steps."""
 _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"}
 
 
@@ -30,7 +34,11 @@ class ImageTable:
         """Of the scene, whose sequences and movies are shown."""
         self.reads_by_frame = 0
         """How often an image was asked for that depends on the frame."""
+        self.slices = Slices()
+        """Of the export that reads images."""
         self._indices: dict[tuple, int] = {}
+        self._unfinished: dict[Hashable, dict] = {}
+        """What has been done of images that take more than a slice."""
 
     def of_node(self, node: bpy.types.Node, warn: Warn) -> int:
         """Index of a texture node's image, exported now if it is new; -1, with a warning, when it has no pixels."""
@@ -45,8 +53,10 @@ class ImageTable:
         load = _of_movie if image.source == "MOVIE" else _of_sequence
         return self._index((image.as_pointer(), number), lambda: load(image, number), image, warn)
 
-    def add(self, image: Image) -> int:
+    def computed(self, key: Hashable, compute: Callable[[], Image]) -> int:
         """Index of an image that belongs to no datablock."""
+        image = self.slices.computed(self._unfinished.setdefault(key, {}), "image", compute)
+        del self._unfinished[key]
         self.images.append(image)
         return len(self.images) - 1
 
@@ -76,7 +86,9 @@ class ImageTable:
         warn: Warn,
     ) -> int:
         if key not in self._indices:
-            exported = None if _is_no_file(image.filepath, image) else kept(image) or _export(image, load)
+            record = self._unfinished.setdefault(key, {})
+            exported = None if _is_no_file(image.filepath, image) else _export(image, load, self.slices, record)
+            del self._unfinished[key]
             if exported is None:
                 self._indices[key] = MISSING
             else:
@@ -88,18 +100,38 @@ class ImageTable:
         return self._indices[key]
 
 
-def _export(image: bpy.types.Image, load: Callable[[], bpy.types.Image | None]) -> Image | None:
-    """What ``load`` gives of an image; None when it has no pixels."""
+def _export(
+    image: bpy.types.Image, load: Callable[[], bpy.types.Image | None], slices: Slices, record: dict
+) -> Image | None:
+    """What ``load`` gives of an image; None when it has no pixels. record: what slices before have done of it."""
+    known = slices.step_alone(record, "known", lambda: kept(image))  # asks for its size: Blender decodes the file
+    if known is not None:
+        return known
     loaded = load()
-    pixels = None if loaded is None else read_pixels(loaded)
-    if loaded is not None and loaded != image:
-        bpy.data.images.remove(loaded)
-    if pixels is None:
-        return None
-    exported = _encoded(image, pixels)
-    if loaded == image:
+    if loaded != image:
+        pixels = None if loaded is None else read_pixels(loaded)
+        if loaded is not None:
+            bpy.data.images.remove(loaded)
+        return None if pixels is None else _encoded(_Look.of(image), pixels)
+    exported = _read_in_steps(image, slices, record)
+    if exported is not None:
         keep(image, exported)
     return exported
+
+
+def _read_in_steps(image: bpy.types.Image, slices: Slices, record: dict) -> Image | None:
+    """Blender's part is to write its numbers to memory that a thread has made ready: writing to it for the first time
+    may take several times as long. A thread encodes them."""
+    shape, look = _shape(image), _Look.of(image)
+    if shape is None:
+        return None
+    if shape[0] * shape[1] < _LARGE or look.needs_blender:
+        return slices.step(record, "encoded", lambda: _read_at_once(image, look))
+    make = np.ones if slices.are_limited else np.empty
+    stored = slices.computed(record, "memory", lambda: make(shape, np.float32))
+    if not slices.step_alone(record, "is read", lambda: _read(image, stored)):
+        return None
+    return slices.computed(record, "encoded", lambda: _encoded(look, _four_channels(stored, look.is_float)))
 
 
 def _is_no_file(path: str, image: bpy.types.Image) -> bool:
@@ -164,30 +196,58 @@ def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
     return image
 
 
-def _encoded(image: bpy.types.Image, pixels: np.ndarray) -> Image:
+def _read_at_once(image: bpy.types.Image, look: "_Look") -> Image | None:
+    pixels = read_pixels(image)
+    return None if pixels is None else _encoded(look, pixels)
+
+
+@dataclass(frozen=True)
+class _Look:
+    """What Blender knows of an image beside its pixels."""
+
+    name: str
+    space: str
+    alpha_mode: str
+    is_float: bool
+    is_associated: bool
+    is_in_file: bool
+
+    @classmethod
+    def of(cls, image: bpy.types.Image) -> "_Look":
+        """Those of an image."""
+        space, in_file = image.colorspace_settings.name, image.source != "GENERATED" and image.packed_file is None
+        return cls(image.name, space, image.alpha_mode, image.is_float, is_associated(image), in_file)
+
+    @property
+    def needs_blender(self) -> bool:
+        """Whether Blender is asked to convert its colors."""
+        return not self.is_float and self.space != "sRGB" and self.space not in _LINEAR_SPACES
+
+
+def _encoded(look: _Look, pixels: np.ndarray) -> Image:
     """Pixels as they are to be filtered: encoded where Cycles does it, and colors times alpha."""
-    space = image.colorspace_settings.name
-    if image.alpha_mode == "NONE":
+    space = look.space
+    if look.alpha_mode == "NONE":
         pixels[..., 3] = 1.0
-    if image.is_float:
+    if look.is_float:
         # Blender has made them linear.
         pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
         if space == "sRGB":
             pixels[..., :3] = to_srgb(pixels[..., :3])
-        return Image(image.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
-    if space != "sRGB" and space not in _LINEAR_SPACES:
+        return Image(look.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
+    if look.needs_blender:
         linear = scene_linear(pixels[..., :3], space) * WHITE_IN_CYCLES.get(space, 1.0)
-        pixels[..., :3] = linear * pixels[..., 3:] if is_associated(image) else linear
-        return Image(image.name, pixels, "LINEAR")
+        pixels[..., :3] = linear * pixels[..., 3:] if look.is_associated else linear
+        return Image(look.name, pixels, "LINEAR")
     encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
     pixels = _bytes(pixels)
-    if is_associated(image) and pixels[..., 3].min() < 255:
+    if look.is_associated and pixels[..., 3].min() < 255:
         # Cycles takes colors in files of bytes for straight, whatever the user says.
         products = pixels[..., :3].astype(np.uint16) * pixels[..., 3:]
-        if image.alpha_mode == "PREMUL" and image.source != "GENERATED" and image.packed_file is None:
+        if look.alpha_mode == "PREMUL" and look.is_in_file:
             products = (products + 127) // 255 * pixels[..., 3:]
         pixels[..., :3] = products // 255
-    return Image(image.name, pixels, encoding)
+    return Image(look.name, pixels, encoding)
 
 
 def _bytes(pixels: np.ndarray) -> np.ndarray:
@@ -215,21 +275,33 @@ def read_pixels(image: bpy.types.Image) -> np.ndarray | None:
 
     None when the image has none, as when its file is missing.
     """
+    shape = _shape(image)
+    if shape is None:
+        return None
+    stored = np.empty(shape, np.float32)
+    return _four_channels(stored, image.is_float) if _read(image, stored) else None
+
+
+def _shape(image: bpy.types.Image) -> tuple[int, int, int] | None:
+    """Height, width and channels; None when it has no pixels."""
     width, height = image.size
-    if width < 1 or height < 1:
-        return None
-    channels = image.channels
-    flat = np.empty(width * height * channels, np.float32)
+    return None if width < 1 or height < 1 else (height, width, image.channels)
+
+
+def _read(image: bpy.types.Image, stored: np.ndarray) -> bool:
+    """Write Blender's numbers to an array of the image's shape; whether there were any."""
     try:
-        image.pixels.foreach_get(flat)
+        image.pixels.foreach_get(stored.reshape(-1))
     except (RuntimeError, TypeError):
-        return None
-    if not image.has_data:
-        return None
+        return False
+    return image.has_data
+
+
+def _four_channels(stored: np.ndarray, is_float: bool) -> np.ndarray:
+    height, width, channels = stored.shape
     # Bytes are finite.
-    if image.is_float and not (np.isfinite(flat.min()) and np.isfinite(flat.max())):
-        flat = np.nan_to_num(flat, copy=False, nan=0.0, posinf=65504.0, neginf=0.0)
-    stored = flat.reshape(height, width, channels)
+    if is_float and not (np.isfinite(stored.min()) and np.isfinite(stored.max())):
+        stored = np.nan_to_num(stored, copy=False, nan=0.0, posinf=65504.0, neginf=0.0)
     if channels == 4:
         return stored
     pixels = np.ones((height, width, 4), np.float32)

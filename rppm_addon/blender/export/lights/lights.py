@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ....materials.emitted import Emits, emits, light_variation
-from ....scene import Light, LightKind, NodeGraph
+from ....scene import UNLIMITED_BOUNCES, Light, LightKind, NodeGraph
 from ..context import ExportContext
 from ..layers import light_group_of
 from ..nodes.graphs import GraphExporter
@@ -37,6 +37,8 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
         graph=graph,
         photon_weight=data.rppm.photon_weight if hasattr(data, "rppm") else 1.0,
         light_group=light_group_of(light_object),
+        casts_shadow=_casts_shadow(data),
+        max_bounces=max_bounces_of(data),
     )
     normalize = getattr(data, "normalize", True)
     if light.kind in {LightKind.POINT, LightKind.SPOT}:
@@ -52,6 +54,16 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
             report.warn(f'Light "{name}": its area is 0, so it gives no light; give it a size and a scale')
             return None
     return light
+
+
+def max_bounces_of(data: bpy.types.Light | bpy.types.World) -> int:
+    """Cycles' limit of how often light is scattered; none where Cycles is switched off."""
+    return min(getattr(getattr(data, "cycles", None), "max_bounces", UNLIMITED_BOUNCES), UNLIMITED_BOUNCES)
+
+
+def _casts_shadow(data: bpy.types.Light) -> bool:
+    # Once it was a property of Cycles, and the other one EEVEE's.
+    return bool(getattr(getattr(data, "cycles", None), "cast_shadow", data.use_shadow))
 
 
 def _fill_sphere(light: Light, data: bpy.types.Light, normalize: bool) -> None:

@@ -2,18 +2,20 @@
 """Blender's world to a node graph."""
 
 import copy
+import functools
 
 import bpy
 import numpy as np
 from mathutils import Vector
 
 from ....materials.sky.sun import sun_disc
-from ....scene import Light, LightKind, Link, Mist, NodeGraph, ShaderNode, World
+from ....scene import Light, LightKind, Link, Mist, NodeGraph, RayVisibility, ShaderNode, World
 from ....scene.sky import Sky
 from ..context import ExportContext
 from ..layers import light_group_of
 from ..nodes.graphs import GraphExporter
 from ..nodes.links import node_tree
+from .lights import max_bounces_of
 
 _EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}
 """Of mist, by its falloff."""
@@ -28,7 +30,16 @@ def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple
     environment.mist = Mist(mist.start, mist.depth, _EXPONENTS[mist.falloff])
     for light in (environment, *suns):
         light.light_group = light_group_of(world)
+        light.visibility, light.max_bounces = _visibility_of(world), max_bounces_of(world)
     return environment, suns
+
+
+def _visibility_of(world: bpy.types.World) -> RayVisibility:
+    """The rays that see the world; all where Cycles, whose property it is, is switched off."""
+    said = getattr(world, "cycles_visibility", None)
+    kinds = ("camera", "diffuse", "glossy", "transmission")
+    hidden = (RayVisibility[kind.upper()] for kind in kinds if not getattr(said, kind, True))
+    return functools.reduce(lambda visibility, kind: visibility & ~kind, hidden, RayVisibility.ALL)
 
 
 def _environment(world: bpy.types.World, context: ExportContext) -> tuple[World, list[Light]]:

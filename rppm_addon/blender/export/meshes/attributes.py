@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mesh attributes that shading nodes read: UV maps, colors, generated coordinates and others."""
 
+from collections.abc import Hashable
+from typing import Any
+
 import bpy
 import numpy as np
 
 from ....scene import AttributeDomain, Mesh, MeshAttribute
-from ....scene.sharing import equal
+from ..slices import Slices
 from .meshes import read_uv
 from .tangents import corner_tangents, sphere_uv
 
@@ -56,26 +59,35 @@ def attribute_of(owner: bpy.types.bpy_struct | None, name: str) -> tuple[float, 
     return numbers[:4] or None
 
 
-def add_attributes(exported: Mesh, mesh: bpy.types.Mesh, names: set[str], before: Mesh | None = None) -> None:
-    """Read the named attributes of the mesh that was exported, as far as it has them and they are not read yet.
+def export_attribute(
+    exported: Mesh, mesh: bpy.types.Mesh, name: str, slices: Slices, record: dict[Hashable, Any]
+) -> MeshAttribute | None:
+    """An attribute of an evaluated mesh that was exported; None when the mesh has no such thing.
 
-    before: those that are the same as this mesh's are its very attributes.
+    record: what was done of it in slices before. Raises Unfinished.
     """
-    for name in sorted(names - exported.attributes.keys()):
-        attribute = export_attribute(exported, mesh, name)
-        if attribute is not None:
-            known = None if before is None else before.attributes.get(name)
-            exported.attributes[name] = known if known is not None and equal(known, attribute) else attribute
+    if name == ISLAND or name.startswith(TANGENT):
+        return _computed(exported, mesh, name, slices, record)
+    return slices.step(record, name, lambda: _read(exported, mesh, name))
 
 
-def export_attribute(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
-    """An attribute of an evaluated mesh; None when the mesh has no such thing."""
+def _computed(
+    exported: Mesh, mesh: bpy.types.Mesh, name: str, slices: Slices, record: dict[Hashable, Any]
+) -> MeshAttribute | None:
+    """Those that take long once they are read."""
+    if name == ISLAND:
+        count, edges = len(mesh.vertices), slices.step(record, (name, "read"), lambda: _edges(mesh))
+        numbers = slices.computed(record, name, lambda: _random_per_island(count, edges))
+        return MeshAttribute(AttributeDomain.POINT, numbers)
+    uv = slices.step(record, (name, "read"), lambda: _uv_of_tangents(exported, mesh, name.removeprefix(TANGENT)))
+    if uv is None:
+        return None
+    return MeshAttribute(AttributeDomain.CORNER, slices.computed(record, name, lambda: corner_tangents(exported, uv)))
+
+
+def _read(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
     if name == GENERATED:
         return MeshAttribute(AttributeDomain.POINT, _generated(mesh))
-    if name == ISLAND:
-        return MeshAttribute(AttributeDomain.POINT, _random_per_island(mesh))
-    if name.startswith(TANGENT):
-        return _tangents(exported, mesh, name.removeprefix(TANGENT))
     attribute = _rendered_color(mesh) if name == ACTIVE_COLOR else mesh.attributes.get(name)
     if attribute is None or attribute.data_type not in _FIELDS:
         return None
@@ -135,19 +147,15 @@ def _mean_of_edges(mesh: bpy.types.Mesh, values: np.ndarray) -> np.ndarray:
     return sums / np.maximum(counts, 1).astype(np.float32)[:, None]
 
 
-def _tangents(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
-    """Tangents of a UV map, by default of that in use; of a mesh without one, of longitude and latitude."""
+def _uv_of_tangents(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> np.ndarray | None:
+    """A UV map, by default that in use; of a mesh without one, longitude and latitude."""
     if name:
-        if name not in mesh.uv_layers:
-            return None
-        uv = read_uv(mesh, name)
-    elif exported.corner_uv is not None:
-        uv = exported.corner_uv
-    else:
-        places = np.empty(3 * len(mesh.vertices), np.float32)
-        mesh.vertices.foreach_get("undeformed_co", places)
-        uv = sphere_uv(places.reshape(-1, 3))[exported.corner_vertices]
-    return MeshAttribute(AttributeDomain.CORNER, corner_tangents(exported, uv))
+        return read_uv(mesh, name) if name in mesh.uv_layers else None
+    if exported.corner_uv is not None:
+        return exported.corner_uv
+    places = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("undeformed_co", places)
+    return sphere_uv(places.reshape(-1, 3))[exported.corner_vertices]
 
 
 def _edges(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -157,10 +165,9 @@ def _edges(mesh: bpy.types.Mesh) -> np.ndarray:
     return edges.reshape(-1, 2)
 
 
-def _random_per_island(mesh: bpy.types.Mesh) -> np.ndarray:
+def _random_per_island(count: int, edges: np.ndarray) -> np.ndarray:
     """(vertices, 1) a number from 0 to 1 for each connected part. The parts are Cycles', the numbers are not."""
-    edges = _edges(mesh)
-    label = np.arange(len(mesh.vertices))
+    label = np.arange(count)
     while len(edges):
         lowest = np.minimum(label[edges[:, 0]], label[edges[:, 1]])
         before = label.copy()

@@ -4,13 +4,16 @@
 import contextlib
 import dataclasses
 import heapq
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
+from typing import Any
 
 import bpy
 
 from ....scene import Mesh
+from ....scene.sharing import equal
 from ..report import Report
-from .attributes import add_attributes
+from ..slices import Slices
+from .attributes import export_attribute
 from .meshes import NO_MESH, export_mesh
 
 
@@ -35,6 +38,8 @@ class MeshTable:
         self._keys: dict[int, int] = {}
         self._before: dict[int, Mesh] = {}
         """By owner, what was forgotten and may come again with other positions."""
+        self._unfinished: dict[int, tuple[int, dict[Hashable, Any]]] = {}
+        """Owner, and what slices before have read of a mesh."""
 
     def begin_pass(self) -> None:
         """All uses of meshes follow."""
@@ -45,6 +50,7 @@ class MeshTable:
         for key in self._places.keys() - self._seen:
             self._drop(key)
         self._before = {}
+        self._unfinished = {}
 
     def keep(self, place: int) -> None:
         """A mesh is used as before."""
@@ -66,9 +72,12 @@ class MeshTable:
             if place is not None:
                 self._before.update(dict.fromkeys(self._owners[key], self.meshes[place]))
             self._drop(key)
+        for key in [key for key, (owner, _) in self._unfinished.items() if owner in owners]:
+            del self._unfinished[key]
 
     def _drop(self, key: int) -> None:
         place = self._places.pop(key)
+        self._unfinished.pop(key, None)
         self._owners.pop(key)
         self._seen.discard(key)
         if place is not None:
@@ -89,39 +98,57 @@ class MeshTable:
         bringers = owner, source.original.session_uid
         if key in self._places and key not in self._seen and self._owners[key].isdisjoint(bringers):
             self._drop(key)
-        if key not in self._places:
-            self._report.progress(f"Exporting {source.name}")
-            with self._report.about(("mesh", owner, source.name)):
-                self._places[key] = self._add(source, mesh, attributes, self._before.pop(owner, None))
-            self._owners[key] = set()
+        place = self._places.get(key)
+        if key not in self._places or (place is not None and not attributes <= self._tried[place]):
+            # What is made for the moment is read at once.
+            slices = Slices() if mesh is None else self._report.slices
+            with _mesh_of(source, mesh) as evaluated:
+                if key not in self._places:
+                    self._add(source, evaluated, key, owner, slices)
+                place = self._places[key]
+                if place is not None:
+                    self._complete(place, evaluated, attributes, owner, slices)
+            self._before.pop(owner, None)
+            self._unfinished.pop(key, None)
+            self._owners[key].add(owner)
+            slices.rest()
         self._seen.add(key)
         self._owners[key].add(owner)
-        place = self._places[key]
-        if place is not None:
-            self._keys[place] = key
-        if place is not None and not attributes <= self._tried[place]:
-            with _mesh_of(source, mesh) as evaluated:
-                self._complete(place, evaluated, attributes)
         return place
 
-    def _add(
-        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str], before: Mesh | None
-    ) -> int | None:
-        with _mesh_of(source, mesh) as evaluated:
-            exported = None if evaluated is None else export_mesh(evaluated, source.name, self._report, before)
-            if exported is None:
-                return None
-            place = heapq.heappop(self._free) if self._free else len(self.meshes)
-            self.meshes[place : place + 1] = [exported]
-            self._tried[place] = set()
-            self._complete(place, evaluated, attributes, before)
-        return place
+    def _record(self, key: int, owner: int) -> dict[Hashable, Any]:
+        """What was read of a mesh that an object brings."""
+        if key not in self._unfinished or self._unfinished[key][0] != owner:
+            self._unfinished[key] = owner, {}
+        return self._unfinished[key][1]
 
-    def _complete(self, place: int, mesh: bpy.types.Mesh, attributes: set[str], before: Mesh | None = None) -> None:
+    def _add(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, key: int, owner: int, slices: Slices) -> None:
+        self._report.progress(f"Exporting {source.name}")
+        exported = None
+        if mesh is not None:
+            before, record = self._before.get(owner), self._record(key, owner)
+            with self._report.about(("mesh", owner, source.name)):
+                exported = export_mesh(mesh, source.name, self._report, before, slices, record)
+        self._owners[key] = {owner}
+        self._seen.add(key)
+        if exported is None:
+            self._places[key] = None
+            return
+        place = self._places[key] = heapq.heappop(self._free) if self._free else len(self.meshes)
+        self.meshes[place : place + 1] = [exported]
+        self._tried[place] = set()
+        self._keys[place] = key
+
+    def _complete(self, place: int, mesh: bpy.types.Mesh, attributes: set[str], owner: int, slices: Slices) -> None:
         """Read attributes that were not asked for before; meshes that were handed out stay as they are."""
-        known = self.meshes[place]
-        self.meshes[place] = dataclasses.replace(known, attributes=dict(known.attributes))
-        add_attributes(self.meshes[place], mesh, attributes, before)
+        known, before = self.meshes[place], self._before.get(owner)
+        found, record = dict(known.attributes), self._record(self._keys[place], owner)
+        for name in sorted(attributes - known.attributes.keys()):
+            attribute = export_attribute(known, mesh, name, slices, record)
+            if attribute is not None:
+                old = None if before is None else before.attributes.get(name)
+                found[name] = old if old is not None and equal(old, attribute) else attribute
+        self.meshes[place] = dataclasses.replace(known, attributes=found)
         self._tried[place] |= attributes
 
 

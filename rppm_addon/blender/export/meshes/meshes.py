@@ -1,18 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Evaluated Blender meshes to indexed arrays."""
 
+import functools
+from collections.abc import Callable, Hashable
+from typing import Any
+
 import bpy
 import numpy as np
 
 from ....scene import Mesh
 from ....scene.sharing import keep_equal, same_bits
 from ..report import Report
+from ..slices import Slices
 from .element_arrays import elements
 
 FARTHEST = 1e18
 """Coordinates beyond overflow in single precision as soon as they are squared."""
 _BLOCK = 256
 """Corners whose squares are added up in single precision."""
+_FEW = 1 << 14
+"""Corners up to which a mesh is read at once."""
+_MANY = 1 << 19
+"""Corners whose normals Blender computes in a slice of its own."""
+_COPIED_BYTES = 1 << 23
+"""Of an array, that are copied between two looks at the clock."""
+_Copy = Callable[[np.ndarray], np.ndarray]
 _PART = 1 << 16
 """Elements that are looked at while they lie in a cache."""
 
@@ -23,25 +35,30 @@ NO_MESH = Mesh(
 """In place of a mesh that is not there."""
 
 
-def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report, before: Mesh | None = None) -> Mesh | None:
+def export_mesh(
+    mesh: bpy.types.Mesh,
+    name: str,
+    report: Report,
+    before: Mesh | None = None,
+    slices: Slices | None = None,
+    record: dict[Hashable, Any] | None = None,
+) -> Mesh | None:
     """The arrays of an evaluated mesh, in its object space; None when it has no triangle.
 
     before: what it may resemble, as it was a frame ago; arrays that are the same are its very arrays.
+    record: what was read of it in slices before. Raises Unfinished.
     Triangles with a vertex that is not finite, or beyond FARTHEST, are left out, with a warning that names ``name``.
     """
     if len(mesh.polygons) == 0:
         return None
     mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    if count == 0:
+    if len(mesh.loop_triangles) == 0:
         return None
-    before = NO_MESH if before is None else before
-    arrays = {
-        "triangle_corners": _kept(before.triangle_corners, elements(mesh.loop_triangles, "loops", count, 3, np.int32)),
-        "triangle_slots": _triangle_slots(mesh, before.triangle_slots),
-        **dict(zip(("positions", "corner_vertices", "corner_normals"), read_shape(mesh, before), strict=True)),
-        "corner_uv": _render_uv(mesh, before.corner_uv),
-    }
+    before = before or NO_MESH
+    if slices is None or record is None or len(mesh.loops) <= _FEW:
+        arrays = {field: read(mesh, getattr(before, field), np.copy) for field, read in _READERS.items()}
+    else:
+        arrays = _read_in_steps(mesh, before, slices, record)
     if not _all_near(arrays["positions"]):
         _skip_distant_vertices(arrays, name, report)
         if len(arrays["triangle_corners"]) == 0:
@@ -54,16 +71,28 @@ def export_mesh(mesh: bpy.types.Mesh, name: str, report: Report, before: Mesh | 
     )
 
 
+def _read_in_steps(
+    mesh: bpy.types.Mesh, before: Mesh, slices: Slices, record: dict[Hashable, Any]
+) -> dict[str, np.ndarray | None]:
+    step = slices.step_alone if len(mesh.loops) > _MANY else slices.step
+    step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
+    arrays = {}
+    for field, read in _READERS.items():
+        copy = functools.partial(_copied, slices, record, field)
+        arrays[field] = slices.step(record, field, functools.partial(read, mesh, getattr(before, field), copy))
+    return arrays
+
+
 def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Positions (vertices, 3), the vertex of each corner (corners,) and unit normals of corners (corners, 3).
 
     before: as for export_mesh.
     """
-    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
-    positions = _kept(before.positions, positions)
-    corner_vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)
-    corner_vertices = _kept(before.corner_vertices, corner_vertices)
-    return positions, corner_vertices, _corner_normals(mesh, before.corner_normals)
+    return (
+        _positions(mesh, before.positions, np.copy),
+        _corner_vertices(mesh, before.corner_vertices, np.copy),
+        _corner_normals(mesh, before.corner_normals, np.copy),
+    )
 
 
 def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
@@ -76,12 +105,37 @@ def read_velocities(mesh: bpy.types.Mesh) -> np.ndarray | None:
     return np.where(np.abs(velocities) < FARTHEST, velocities, np.float32(0.0))
 
 
-def _kept(before: np.ndarray, view: np.ndarray) -> np.ndarray:
+def _copied(slices: Slices, record: dict[Hashable, Any], field: str, view: np.ndarray) -> np.ndarray:
+    """A copy of Blender's array, made in parts."""
+    rows = max(_COPIED_BYTES // max(view[:1].nbytes, 1), 1)
+    if len(view) <= rows:
+        return view.copy()
+    result = record.setdefault((field, "copy"), np.empty_like(view))
+    for start in range(record.get((field, "place"), 0), len(view), rows):
+        result[start : start + rows] = view[start : start + rows]
+        record[field, "place"] = start + rows
+        slices.rest()
+    return result
+
+
+def _kept(before: np.ndarray, view: np.ndarray, copy: _Copy) -> np.ndarray:
     """The array before if it says the same as Blender's, or else a copy of that."""
-    return before if same_bits(before, view) else view.copy()
+    return before if same_bits(before, view) else copy(view)
 
 
-def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+def _triangle_corners(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
+    return _kept(before, elements(mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32), copy)
+
+
+def _positions(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
+    return _kept(before, _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32), copy)
+
+
+def _corner_vertices(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
+    return _kept(before, _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32), copy)
+
+
+def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray, _: _Copy) -> np.ndarray:
     count = len(mesh.loop_triangles)
     slots = _attribute(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
     if slots is None:
@@ -96,18 +150,14 @@ def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
     return slots.take(polygons)
 
 
-def _corner_normals(mesh: bpy.types.Mesh, before: np.ndarray) -> np.ndarray:
+def _corner_normals(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
     """(corners, 3) float32, those of faces without area repaired: Blender may give 0 or NaN."""
     view = elements(mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32)
     if same_bits(before, view):
         return before
-    normals = np.empty_like(view)
-    any_length, good = _has_free_normals(mesh), True
-    for start in range(0, len(view), _PART):  # so many lie in a cache until they are looked at
-        part = slice(start, start + _PART)
-        normals[part] = view[part]
-        good = good and not any_length and _no_zeros_among(normals[part])
-    if not good:
+    normals = copy(view)
+    parts = (normals[start : start + _PART] for start in range(0, len(normals), _PART))
+    if _has_free_normals(mesh) or not all(map(_no_zeros_among, parts)):
         _make_unit(normals)
     return normals
 
@@ -135,21 +185,33 @@ def render_uv_name(mesh: bpy.types.Mesh) -> str | None:
     return next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
 
 
-def _render_uv(mesh: bpy.types.Mesh, before: np.ndarray | None) -> np.ndarray | None:
+def _render_uv(mesh: bpy.types.Mesh, before: np.ndarray | None, copy: _Copy) -> np.ndarray | None:
     name = render_uv_name(mesh)
     if name is None:
         return None
-    return read_uv(mesh, name, before)
+    return read_uv(mesh, name, before, copy)
 
 
-def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None) -> np.ndarray:
+_READERS: dict[str, Callable[[bpy.types.Mesh, Any, _Copy], np.ndarray | None]] = {
+    "triangle_corners": _triangle_corners,
+    "triangle_slots": _triangle_slots,
+    "positions": _positions,
+    "corner_vertices": _corner_vertices,
+    "corner_normals": _corner_normals,
+    "corner_uv": _render_uv,
+}
+"""Of the arrays of a mesh, by their names; each takes what the array may resemble, and what copies Blender's."""
+
+
+def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None, copy: _Copy = np.copy) -> np.ndarray:
     """(corners, 2) float32 of a UV map, 0 where it is not finite; ``before`` itself if that says the same."""
     uv = elements(mesh.uv_layers[name].uv, "vector", len(mesh.loops), 2, np.float32)
     if before is not None and same_bits(before, uv):
         return before
+    uv = copy(uv)
     if np.isfinite(uv.min(initial=0.0)) and np.isfinite(uv.max(initial=0.0)):
-        return uv.copy()
-    return keep_equal(before, np.nan_to_num(uv, nan=0.0, posinf=0.0, neginf=0.0))
+        return uv
+    return keep_equal(before, np.nan_to_num(uv, copy=False, nan=0.0, posinf=0.0, neginf=0.0))
 
 
 def _attribute(mesh: bpy.types.Mesh, name: str, field: str, count: int, width: int, kind: type) -> np.ndarray | None:

@@ -23,17 +23,18 @@ class MaterialTable:
         """Of each material, the attributes that its nodes read, with the name of such a node."""
         self._context = context
         self._places: dict[int, int] = {}
-        self._untracked: set[int] = set()
+        self.untracked: set[int] = set()
+        """session_uid of those that rest on what changes without the depsgraph telling."""
 
     def index(self, material: bpy.types.Material | None) -> int:
         """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
         # Blender gives evaluated copies no session_uid.
         key = 0 if material is None else material.original.session_uid
         if key not in self._places:
+            exported = self._export(key, material)
             self._places[key] = len(self.materials)
-            self.materials.append(Material(""))
-            self.attributes.append({})
-            self._export(key, material)
+            self.materials.append(exported)
+            self.attributes.append(_attributes_of(exported))
         return self._places[key]
 
     def renew(self, material: bpy.types.Material) -> bool:
@@ -41,27 +42,25 @@ class MaterialTable:
         key = material.original.session_uid
         if key not in self._places:
             return False
-        before = self.attributes[self._places[key]]
-        self._export(key, material)
-        return self.attributes[self._places[key]] != before
+        exported, place = self._export(key, material), self._places[key]
+        before = self.attributes[place]
+        self.materials[place], self.attributes[place] = exported, _attributes_of(exported)
+        return self.attributes[place] != before
 
-    def may_have_changed(self, material: bpy.types.Material) -> bool:
-        """Whether a material rests on what changes without the depsgraph telling."""
-        return material.original.session_uid in self._untracked
-
-    def _export(self, key: int, material: bpy.types.Material | None) -> None:
+    def _export(self, key: int, material: bpy.types.Material | None) -> Material:
         reads = self._context.untracked_reads
         with self._context.report.about(("material", key)):
             if material is None:
                 exported = Material(DEFAULT_MATERIAL, default_surface())
             else:
                 exported = export_material(material, self._context)
-        (self._untracked.add if self._context.untracked_reads > reads else self._untracked.discard)(key)
-        place = self._places[key]
-        self.materials[place] = exported
-        self.attributes[place] = {
-            node.attribute: node.name for node in exported.graph.nodes if node.attribute not in {"", NO_ATTRIBUTE}
-        }
+        (self.untracked.add if self._context.untracked_reads > reads else self.untracked.discard)(key)
+        return exported
+
+
+def _attributes_of(material: Material) -> dict[str, str]:
+    nodes = material.graph.nodes
+    return {node.attribute: node.name for node in nodes if node.attribute not in {"", NO_ATTRIBUTE}}
 
 
 def default_surface() -> NodeGraph:

@@ -177,7 +177,7 @@ def _other_geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.t
 @handles("TEX_SKY")
 def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
     sky = sky_of(node)
-    image = exporter.images.add(_sky_image(node.name, sky))
+    image = exporter.images.computed((node.name, sky), lambda: _sky_image(node.name, sky))
     vector = exporter.coordinates_of(node, path)
     link = exporter.graph.add("tex_environment", "color", name=node.name, image=image, vector=vector)
     exporter.skies[link.node] = sky

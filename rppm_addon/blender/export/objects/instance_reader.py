@@ -6,7 +6,7 @@ import functools
 import bpy
 import numpy as np
 
-from ....scene import Instance, Light, RayVisibility
+from ....scene import Instance, Light, LightLinking, RayVisibility
 from ..context import ExportContext
 from ..layers import light_group_of
 from ..lights.lights import export_light
@@ -68,14 +68,21 @@ class InstanceReader:
             source.is_shadow_catcher,
             self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
             self._light_group(source),
+            self.linking(source),
+            *_terminator_offsets(source),
         )
 
-    def light(self, source: bpy.types.Object, matrix: np.ndarray) -> Light | None:
-        """A light object placed by a matrix (4, 4); None when it gives no light."""
+    def light(
+        self, source: bpy.types.Object, matrix: np.ndarray, instancer: bpy.types.Object | None = None
+    ) -> Light | None:
+        """A light object placed by a matrix (4, 4); None when it gives no light. instancer: what multiplies it."""
         if not np.isfinite(matrix).all():
             self.report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
             return None
-        return export_light(source, matrix, self._context)
+        light = export_light(source, matrix, self._context)
+        if light is not None:
+            light.linking = self.linking(instancer or source)
+        return light
 
     def shading(
         self,
@@ -88,6 +95,7 @@ class InstanceReader:
         instancer: what multiplies the object.
         """
         materials = self._material_slots(source)
+        geometry_offset, shading_offset = _terminator_offsets(source)
         visibility, holdout = self.masked(instancer or source, visibility, source.is_holdout)
         return {
             "materials": materials,
@@ -98,10 +106,17 @@ class InstanceReader:
             "shadow_catcher": source.is_shadow_catcher,
             "attributes": self.attribute_values(source, materials, instancer),
             "light_group": self._light_group(source),
+            "linking": self.linking(instancer or source),
+            "terminator_geometry_offset": geometry_offset,
+            "terminator_shading_offset": shading_offset,
         }
 
     def _light_group(self, source: bpy.types.Object) -> str:
         return light_group_of(source) if self._context.has_light_groups else ""
+
+    def linking(self, owner: bpy.types.Object) -> LightLinking | None:
+        """The light linking of what an object brings, itself or what it multiplies."""
+        return self._context.light_links.of(owner)
 
     @property
     def use_surfaces(self) -> bool:
@@ -164,6 +179,18 @@ class InstanceReader:
 def shaded_instance(mesh: int, source: bpy.types.Object, matrix: np.ndarray, shading: dict[str, object]) -> Instance:
     """An instance of a mesh with what InstanceReader.shading gives."""
     return Instance(mesh, matrix, object_name=source.name, object_index=source.pass_index, **shading)
+
+
+def _terminator_offsets(source: bpy.types.Object) -> tuple[float, float]:
+    """Geometry Offset and Shading Offset of the shadow terminator; before Blender 5 properties of Cycles."""
+    if hasattr(source, "shadow_terminator_shading_offset"):
+        geometry, shading = source.shadow_terminator_geometry_offset, source.shadow_terminator_shading_offset
+        return min(geometry, 1.0), min(shading, 1.0)
+    cycles = getattr(source, "cycles", None)
+    return (
+        getattr(cycles, "shadow_terminator_geometry_offset", 0.0),
+        getattr(cycles, "shadow_terminator_offset", 0.0),
+    )
 
 
 @functools.lru_cache(1 << 16)

@@ -9,12 +9,15 @@ import numpy as np
 
 from ....scene import Instance, Light
 from ..meshes.attributes import GENERATED, ISLAND, TANGENT, title_of
+from ..omissions import objects_of
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
 from .matrices import usable_matrices
 from .object_matrices import instance_matrices
 from .particles import ParticleTable
 
+_AT_ONCE = 32
+"""Instances between which nobody looks at the clock."""
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
 UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
@@ -69,20 +72,17 @@ class _Kind:
 class _Owner:
     """What multiplies others."""
 
-    original: bpy.types.Object
     uid: int
     shown: bool
     has_particles: bool
 
 
 class ObjectPass:
-    """One pass over the instances of a depsgraph."""
+    """One pass over the instances of a depsgraph. Between two slices of it nothing of Blender is held."""
 
     def __init__(
         self,
         reader: InstanceReader,
-        depsgraph: bpy.types.Depsgraph,
-        shown: Callable[[bpy.types.Object], bool] | None,
         unchanged: dict[int, Instance],
         moved: dict[int, Instance],
         identify: bool,
@@ -90,14 +90,21 @@ class ObjectPass:
         self._identify = identify
         self._identity: Identity = ()
         """Of what is being placed."""
+        self.place = 0
+        """How many instances have been dealt with."""
+        self.count = 0
+        """How many there are, once the pass goes on."""
         self._reader = reader
         self._report = reader.report
-        self._depsgraph = depsgraph
-        self._shown = shown
+        self._shown: Callable[[bpy.types.Object], bool] | None = None
+        self._particles = ParticleTable()
+        self._matrices: np.ndarray | None = None
         self._unchanged = unchanged
         self._moved = moved
         self._placed: list[tuple[Instance, np.ndarray, int]] = []
-        self._unconverted: list[tuple[bpy.types.Object, np.ndarray, dict[str, object], Identity]] = []
+        self._unconverted: list[tuple[tuple[int, int], np.ndarray, dict[str, object], Identity]] = []
+        """By session_uid and address of an original object."""
+        self._lost: dict[str, int] = {}
         self._converted: set[tuple[int, bytes]] = set()
         self._missing: dict[tuple[str, str, str], dict[str, None]] = {}
         """By names of material, node and attribute, the objects that do not have it."""
@@ -107,62 +114,55 @@ class ObjectPass:
         """By the addresses of the object and its mesh."""
         self._owners: dict[int, _Owner] = {}
         """By their addresses."""
-        self._particles = ParticleTable(depsgraph.scene_eval.frame_current_final)
         self._multiple: set[int] = set()
         """Objects that are multiplied or multiply others."""
         self._result = Placed()
 
-    def run(self) -> Placed:
-        """All instances and lights. Raises ExportStopped when the user wants no more."""
-        matrices = instance_matrices(self._depsgraph)
-        for number, instance in enumerate(self._depsgraph.object_instances):
-            if number % 256 == 0:
+    def go_on(self, depsgraph: bpy.types.Depsgraph, shown: Callable[[bpy.types.Object], bool] | None) -> Placed:
+        """All instances and lights, of a depsgraph that is as it was when the pass began.
+
+        shown: which of the original objects are to be seen, all if None. Raises Unfinished when the slice is over, to
+        be called again, and ExportStopped when the user wants no more.
+        """
+        self._shown = shown
+        try:
+            self._export_all(depsgraph)
+            self._convert(depsgraph)
+        finally:
+            self._shown = None  # it may hold something of Blender's
+            self._particles.forget()
+            self._keep_usable()
+        self._tell_lost()
+        self._tell_missing()
+        self._result.alone = _without(self._result.alone, self._multiple | {0})
+        self._result.lights_alone = _without(self._result.lights_alone, self._multiple)
+        return self._result
+
+    def _export_all(self, depsgraph: bpy.types.Depsgraph) -> None:
+        if self._matrices is None:
+            self._matrices = instance_matrices(depsgraph)
+            self.count = len(self._matrices)
+        if self.place == self.count:
+            return
+        start, slices, matrices = self.place, self._report.slices, self._matrices
+        self._particles.frame = depsgraph.scene_eval.frame_current_final
+        for number, instance in enumerate(depsgraph.object_instances):
+            if number < start:  # Blender's iterator is nothing to be held from one slice to the next
+                continue
+            if number == start:
+                slices.restart()
+            if number % _AT_ONCE == 0 and number > start:
+                slices.rest()
                 self._report.progress(f"Exporting objects ({number})")
             # Only valid inside the loop: Blender reuses the memory for the next instance.
             source = instance.object
-            if not (self._reader.use_surfaces or source.type == "LIGHT"):
-                continue
-            if instance.is_instance:
-                self._export_multiplied(instance, source, matrices[number])
-            elif instance.show_self:
-                self._export_alone(instance, source, matrices[number])
-        self._convert()
-        self._keep_usable()
-        self._tell_missing()
-        return self._result
-
-    def prepare(self, start: int, is_over: Callable[[], bool]) -> int | None:
-        """Have the reader learn the meshes and materials of instances from a number on, at least one's.
-
-        Returns the number to go on with once ``is_over`` says so, None when all are known.
-        """
-        learned: set[tuple[int, int]] = set()
-        first = True
-        for number, instance in enumerate(self._depsgraph.object_instances):
-            if number < start:
-                continue
-            source = instance.object
-            if source.type != "MESH" or not instance.show_self:
-                continue
-            data = source.data
-            key = source.as_pointer(), 0 if data is None else data.as_pointer()
-            if key in learned:
-                continue
-            learned.add(key)
-            if not first and is_over():
-                return number
-            first = False
-            owner = instance.parent if instance.is_instance else source
-            self._learn_of(source, owner)
-        return None
-
-    def _learn_of(self, source: bpy.types.Object, owner: bpy.types.Object) -> None:
-        """owner: what multiplies the object, or itself."""
-        visibility, original = visibility_of(source), owner.original
-        if not visibility or not (self._shown is None or self._shown(original)) or len(source.data.polygons) == 0:
-            return
-        shading = self._reader.shading(source, visibility)
-        self._reader.mesh_index(source, source.data, shading, original.session_uid)
+            if self._reader.use_surfaces or source.type == "LIGHT":
+                if instance.is_instance:
+                    self._export_multiplied(instance, source, matrices[number])
+                elif instance.show_self:
+                    self._export_alone(instance, source, matrices[number])
+            self.place = number + 1
+        self.place = self.count
 
     def _export_alone(
         self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
@@ -193,7 +193,7 @@ class ObjectPass:
         if owner is None:
             original = parent.original
             shown = self._shown is None or self._shown(original)
-            owner = _Owner(original, original.session_uid, shown, len(parent.particle_systems) > 0)
+            owner = _Owner(original.session_uid, shown, len(parent.particle_systems) > 0)
             self._owners[parent.as_pointer()] = owner
             self._multiple.add(owner.uid)
         data = source.data
@@ -205,7 +205,7 @@ class ObjectPass:
         if not owner.shown or not instance.show_self:
             return
         if self._identify:
-            self._identity = identity_of(instance, source.original, owner.original)
+            self._identity = identity_of(instance, source.original, parent.original)
         if source.type != "MESH":
             self._export_instance(source, matrix, owner.uid, instance, parent)
             return
@@ -234,6 +234,9 @@ class ObjectPass:
             shading["shadow_catcher"],
             shading["attributes"],
             shading["light_group"],
+            self._reader.linking(parent),
+            shading["terminator_geometry_offset"],
+            shading["terminator_shading_offset"],
         )
         if kind.asks_instancer:
             placed.attributes = self._reader.attribute_values(source, placed.materials, parent)
@@ -243,9 +246,9 @@ class ObjectPass:
         self._add(placed, matrix, kind.uid)
 
     def _learn(self, kind: _Kind, source: bpy.types.Object, owner: _Owner, parent: bpy.types.Object) -> None:
-        kind.learned = True
         visibility = visibility_of(source)
         if not visibility or len(source.data.polygons) == 0:
+            kind.learned = True
             return
         kind.shading = self._reader.shading(source, visibility, instancer=parent)
         wanted, _ = self._reader.wanted_attributes(kind.shading["materials"])
@@ -254,6 +257,7 @@ class ObjectPass:
         kind.converted = original.as_pointer() if original.type in CONVERTED_TYPES else 0
         kind.name, kind.object_index = source.name, source.pass_index
         kind.mesh = self._reader.mesh_index(source, source.data, kind.shading, owner.uid)
+        kind.learned = True
 
     def _add(self, instance: Instance, matrix: np.ndarray, uid: int) -> None:
         """uid: of an object that stands for itself, or is multiplied; 0 where it does not tell the instance."""
@@ -272,7 +276,7 @@ class ObjectPass:
         """owner: the session_uid of what brings it. instance, instancer: of what is multiplied."""
         kind = source.type
         if kind == "LIGHT":
-            light = self._reader.light(source, matrix)
+            light = self._reader.light(source, matrix, instancer)
             if light is not None:
                 self._result.lights_alone[source.original.session_uid] = len(self._result.lights)
                 self._result.lights.append(light)
@@ -294,7 +298,8 @@ class ObjectPass:
         if instancer is not None:
             shading |= {"random": _random_of(instance), "particle": self._particles.of(instance)}
         if kind != "MESH":
-            self._unconverted.append((source.original, matrix, shading, self._identity))
+            original = source.original
+            self._unconverted.append(((original.session_uid, original.as_pointer()), matrix, shading, self._identity))
             return
         original = source.original
         if original.type in CONVERTED_TYPES:
@@ -342,27 +347,29 @@ class ObjectPass:
                 f'Material "{material}": node "{node}" reads {title_of(attribute)}, which {lack}; it counts as 0'
             )
 
-    def _convert(self) -> None:
+    def _convert(self, depsgraph: bpy.types.Depsgraph) -> None:
         """Place the curves, texts, surfaces and metaballs whose mesh did not come as an instance.
 
         Blender shows the mesh of such an object as an instance beside it, but not where particles
         or faces multiply the object.
         """
-        for original, matrix, shading, identity in self._unconverted:
-            self._identity = identity
-            if (original.as_pointer(), matrix.tobytes()) in self._converted:
-                continue
-            source = original.evaluated_get(self._depsgraph)
-            self._place(source, None, matrix, shading, original.session_uid)
+        if not self._unconverted:
+            return
+        sources = {source.original.as_pointer(): source for source in objects_of(depsgraph)}
+        while self._unconverted:
+            (uid, address), matrix, shading, self._identity = self._unconverted[0]
+            if (address, matrix.tobytes()) not in self._converted:
+                self._place(sources[address], None, matrix, shading, uid)
+            del self._unconverted[0]
+            self._report.slices.rest()
 
     def _keep_usable(self) -> None:
-        self._result.lights_alone = _without(self._result.lights_alone, self._multiple)
+        """Of those that were placed since it was called last."""
         if not self._placed:
             return
         given = np.array([matrix for _, matrix, _ in self._placed])
         matrices, usable = usable_matrices(given)
         mended = (matrices != given).any(axis=(1, 2)).tolist()
-        lost: dict[str, int] = {}
         for number, ((instance, _, uid), good) in enumerate(zip(self._placed, usable.tolist(), strict=True)):
             if good:
                 if mended[number]:
@@ -370,9 +377,11 @@ class ObjectPass:
                 self._result.alone[uid] = len(self._result.instances)
                 self._result.instances.append(instance)
             else:
-                lost[instance.object_name] = lost.get(instance.object_name, 0) + 1
-        self._result.alone = _without(self._result.alone, self._multiple | {0})
-        for name, count in lost.items():
+                self._lost[instance.object_name] = self._lost.get(instance.object_name, 0) + 1
+        self._placed = []
+
+    def _tell_lost(self) -> None:
+        for name, count in self._lost.items():
             self._report.warn(
                 f'Object "{name}": {count} placements have no extent (scale 0) or are not finite and were left out; '
                 "give them a scale"

@@ -37,31 +37,33 @@ class ObjectExporter:
         objects that stand for themselves and are as they were; moved: of those that at most were moved. identify: tell
         by what they are known at other times. Raises ExportStopped when the user wants no more.
         """
+        return self.go_on(self.begin(unchanged, moved, identify), depsgraph, shown)
+
+    def begin(
+        self,
+        unchanged: dict[int, Instance] | None = None,
+        moved: dict[int, Instance] | None = None,
+        identify: bool = False,
+    ) -> ObjectPass:
+        """An export that takes more than one slice, for go_on(); of passes that were begun the last goes on."""
         self.meshes.begin_pass()
         self._reader.begin_pass()
-        with self._report.about("objects"):
-            placed = ObjectPass(self._reader, depsgraph, shown, unchanged or {}, moved or {}, identify).run()
+        return ObjectPass(self._reader, unchanged or {}, moved or {}, identify)
+
+    def go_on(
+        self,
+        objects: ObjectPass,
+        depsgraph: bpy.types.Depsgraph,
+        shown: Callable[[bpy.types.Object], bool] | None = None,
+    ) -> Placed:
+        """What export() gives, for a depsgraph in which nothing has changed since the pass was begun.
+
+        Raises Unfinished when the slice is over, and ExportStopped.
+        """
+        with self._report.about("objects", goes_on=objects.place > 0):
+            placed = objects.go_on(depsgraph, shown)
         self.meshes.end_pass()
         return placed
-
-    def prepare(
-        self,
-        depsgraph: bpy.types.Depsgraph,
-        shown: Callable[[bpy.types.Object], bool] | None,
-        start: int,
-        is_over: Callable[[], bool],
-        changed: bool,
-    ) -> int | None:
-        """Export meshes and materials of instances from a number on, for an export to find them; nothing of Blender is
-        held. Returns the number to go on with once ``is_over`` says so, None when all are known.
-
-        changed: whether the depsgraph may be another than at the last call.
-        """
-        if changed:
-            self.meshes.begin_pass()
-            self._reader.begin_pass()
-        with self._report.about("objects"):
-            return ObjectPass(self._reader, depsgraph, shown, {}, {}, identify=False).prepare(start, is_over)
 
     def instances(
         self, depsgraph: bpy.types.Depsgraph, sources: list[bpy.types.Object], before: list[Instance | None]

@@ -11,11 +11,16 @@ _COLUMNS = {"birth_time": 1, "lifetime": 1, "size": 1, "location": 3, "velocity"
 
 
 class ParticleTable:
-    """The particles of one pass over a depsgraph, those of a system read together."""
+    """The particles of one slice of a pass over a depsgraph, those of a system read together."""
 
-    def __init__(self, frame: float) -> None:
-        self._frame = frame
+    def __init__(self) -> None:
+        self.frame = 0.0
+        """Of the scene."""
         self._systems: dict[int, list[tuple]] = {}
+
+    def forget(self) -> None:
+        """They may change from here on."""
+        self._systems = {}
 
     def of(self, instance: bpy.types.DepsgraphObjectInstance) -> Particle | None:
         """What the Particle Info node gives for a multiplied instance; None when it stands for no particle."""
@@ -29,7 +34,7 @@ class ParticleTable:
         if not 0 <= index < len(self._systems[key]):
             return None
         birth, *rest = self._systems[key][index]
-        return Particle(float(index), hashed(index), self._frame - birth, *rest)
+        return Particle(float(index), hashed(index), self.frame - birth, *rest)
 
 
 def _rows(system: bpy.types.ParticleSystem) -> list[tuple]:

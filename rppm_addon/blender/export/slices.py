@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exports in slices, between which Blender goes on: how long one takes, and what threads compute meanwhile."""
+
+import math
+import threading
+import time
+from collections.abc import Callable, Hashable
+from typing import Any
+
+_MOST_STRETCH = 2.5
+"""By how much a slice may last longer."""
+_FRESH_SECONDS = 0.005
+"""That a slice may be old in which something else begins that takes long."""
+
+
+class Unfinished(Exception):
+    """The time of a slice is over. What was done is kept: who does the same again goes on from there."""
+
+
+class Slices:
+    """The time of the slice that is under way. Without a beginning there is one, which never ends."""
+
+    def __init__(self) -> None:
+        self.begin(math.inf)
+
+    def begin(self, seconds: float) -> None:
+        """A slice of about so many seconds begins."""
+        self._seconds = seconds
+        self.restart()
+
+    def restart(self) -> None:
+        """Count from now on: what has gone before only found the place to go on from."""
+        self._began, self._began_busy = time.monotonic(), time.thread_time()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is over: on a machine busy with other things that of the processor counts, within bounds."""
+        passed = time.monotonic() - self._began
+        if passed < self._seconds:
+            return False
+        return passed >= _MOST_STRETCH * self._seconds or time.thread_time() - self._began_busy >= 0.5 * self._seconds
+
+    @property
+    def are_limited(self) -> bool:
+        """Whether they end."""
+        return not math.isinf(self._seconds)
+
+    def rest(self) -> None:
+        """To be called when something is done and kept. Raises Unfinished when the time is over."""
+        if self.is_over:
+            raise Unfinished
+
+    def step(self, record: dict[Hashable, Any], name: Hashable, make: Callable[[], Any]) -> Any:
+        """What ``make`` gives, made once and kept in a record by its name. Raises Unfinished after it was made."""
+        if name not in record:
+            record[name] = make()
+            self.rest()
+        return record[name]
+
+    def step_alone(self, record: dict[Hashable, Any], name: Hashable, make: Callable[[], Any]) -> Any:
+        """As step(), for what Blender does in a single long call: it has a slice of its own."""
+        waits = name, "waits"
+        if self.are_limited and not {name, waits} & record.keys():
+            record[waits] = True
+            if time.monotonic() > self._began + _FRESH_SECONDS:
+                raise Unfinished
+        return self.step(record, name, make)
+
+    def computed(self, record: dict[Hashable, Any], name: Hashable, compute: Callable[[], Any]) -> Any:
+        """As step(), for what takes long and asks nothing of Blender: a thread computes it where time is limited.
+
+        Raises Unfinished until it is done, or what ``compute`` raises.
+        """
+        if name not in record:
+            record[name] = _Job(compute) if self.are_limited else compute()
+        if isinstance(job := record[name], _Job):
+            # Waiting here, not in a loop of slices, leaves the processor to the thread.
+            if not job.wait(max(self._began + self._seconds - time.monotonic(), 0.0)):
+                raise Unfinished
+            del record[name]
+            record[name] = job.result()
+        return record[name]
+
+
+class _Job:
+    """Something computed in a thread of its own, which nobody waits for at the end of Blender."""
+
+    def __init__(self, compute: Callable[[], Any]) -> None:
+        self._compute: Callable[[], Any] | None = compute
+        self._result: Any = None
+        self._error: BaseException | None = None
+        self._thread = threading.Thread(target=self._run, name="RPPM export", daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        try:
+            self._result = self._compute()
+        except BaseException as error:
+            self._error = error
+        self._compute = None
+
+    def wait(self, seconds: float) -> bool:
+        """Whether it is done, at the latest after so many seconds."""
+        self._thread.join(None if math.isinf(seconds) else seconds)
+        return not self._thread.is_alive()
+
+    def result(self) -> Any:
+        """What was computed; raises what computing it raised."""
+        if self._error is not None:
+            raise self._error
+        return self._result

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light and shadow linking of photons that come straight from their lights."""
+
+import moderngl
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ..common.living_paths import LivingPaths
+from ..common.stage_sizes import StageSizes, linked_photons
+from ..device_scene.stage_context import StageContext
+
+Record("PhotonLinkParameters", count="uint", light_count="uint")
+
+
+class PhotonLinks(BufferSet):
+    """What the light of each photon shines on and what stops it, by number; where no light is linked neither programs
+    nor a buffer."""
+
+    remedy = "lower the photons per iteration"
+    _links = StorageBuffer("light links of photons", "uint", linked_photons)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._find = library.compute("photon_links/find.comp") if sizes.links_lights else None
+        self._link = library.compute("photon_links/link.comp") if sizes.links_lights else None
+
+    def find(self, context: StageContext, rays: moderngl.Buffer, photons: int) -> None:
+        """Take the links of so many photons, whose rays (RAY) have just left the lights."""
+        if self._find is None:
+            return
+        lights = context.lights
+        self._find.run(
+            photons,
+            {
+                "Lights": lights.buffers["Lights"],
+                "Rays": rays,
+                "PhotonLinks": self._links.buffer,
+                "Triangles": context.geometry.triangles.buffer,
+            },
+            {"count": photons, "light_count": len(lights.table)},
+        )
+
+    def link(
+        self, context: StageContext, closures: moderngl.Buffer, paths: moderngl.Buffer, living: LivingPaths
+    ) -> None:
+        """Change the closures (CLOSURE) that living photon paths (PHOTON_PATH) have come to."""
+        if self._link is None:
+            return
+        living.run(
+            self._link,
+            {
+                "Closures": closures,
+                "PhotonPaths": paths,
+                "PhotonLinks": self._links.buffer,
+                "LightLinks": context.lights.links.buffer,
+                "Triangles": context.geometry.triangles.buffer,
+            },
+        )
