@@ -16,6 +16,7 @@ from pathlib import Path
 
 from rppm_addon.processors import usable_cores
 
+from .. import ROOT
 from .lab import DRIVERS, Driver, LabError, Outcome, Row, compile_all, lab_folder, prepare, version_of
 from .limits import Limits
 from .page import PAGE, write_page
@@ -80,6 +81,13 @@ def _keep(limits: Limits, drivers: list[Driver], programs: list[Program], outcom
         limits.keep(driver.name, outcome.version, light, driver.waves)
     limits.store()
     write_page(drivers, programs, outcomes)
+    try:
+        from .plot import FIGURE, draw
+    except ImportError:
+        print("drivers: the figure stays as it was: make bench-tools installs matplotlib", file=sys.stderr)
+        return
+    draw(drivers, programs, outcomes)
+    print(FIGURE.relative_to(ROOT))
 
 
 def _parse() -> argparse.Namespace:
@@ -87,7 +95,7 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help=f"only {', '.join(QUICK)}, and none where none can be had")
     parser.add_argument("--only", nargs="*", metavar="DRIVER", help=", ".join(driver.name for driver in DRIVERS))
     parser.add_argument("--anew", action="store_true", help="compile what has not changed as well")
-    parser.add_argument("--keep", action="store_true", help=f"write limits.json and {PAGE.name}")
+    parser.add_argument("--keep", action="store_true", help=f"write limits.json, {PAGE.name} and its figure")
     return parser.parse_args()
 
 

@@ -19,9 +19,11 @@ _MEMBER = re.compile(r"(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*;")
 _VERSION = re.compile(r"^\s*#\s*version\b.*$", re.MULTILINE)
 _MAIN = re.compile(r"\bvoid\s+main\s*\(\s*(?:void)?\s*\)")
 _ATOMIC = re.compile(r"\b(atomic(?:Add|Min|Max|And|Or|Xor|Exchange|CompSwap))\s*\(")
-_BEHIND = re.compile(r"\s*((?:\.\s*\w+)*)\s*(=(?!=)|[-+*/|&^]=)?")
+_BEHIND = re.compile(r"\s*((?:\.\s*\w+(?:\[[^\]]*\])?)*)\s*(=(?!=)|[-+*/|&^]=)?")
 _COUNTED_BEFORE = re.compile(r"COUNTED_ATOMIC_\d+\(\w+,\s*$")
 _STRUCT = re.compile(r"\bstruct\s+(\w+)\s*\{([^}]*)\}")
+_INDEX = re.compile(r"\[[^\]]*\]")
+_ARRAY = re.compile(r"(\w+)\[(\w+)\]")
 _COMMENT = re.compile(r"//[^\n]*")
 
 
@@ -111,7 +113,7 @@ def _with_counted_items(text: str, arrays: dict[str, tuple[str, str]], number: C
         member, assignment = behind.groups() if behind else ("", None)
         if _COUNTED_BEFORE.search(text, max(0, start - 60), start):
             continue
-        size = _size(kind, re.findall(r"\w+", member), structs)
+        size = _size(kind, re.findall(r"\w+|\[", _INDEX.sub("[", member)), structs)
         counters = [number(Site("write", block, size))] if assignment else []
         if assignment != "=":
             counters.append(number(Site("read", block, size)))
@@ -139,11 +141,16 @@ def _items(text: str, arrays: Iterable[str]) -> Iterator[tuple[str, int, int, in
 
 
 def _kinds_and_names(members: str) -> list[tuple[str, str]]:
-    return [(name, kind) for kind, name, _ in _MEMBER.findall(members)]
+    return [(name, kind + brackets) for kind, name, brackets in _MEMBER.findall(members)]
 
 
 def _size(kind: str, named: Sequence[str], structs: Mapping[str, Mapping[str, str]]) -> int:
-    """Bytes of an item, or of the member or the components of it that are named."""
+    """Bytes of an item, or of the member or the components of it that are named; "[" is one of an array."""
+    array = _ARRAY.fullmatch(kind)
+    if array and named[:1] == ["["]:
+        return _size(array[1], named[1:], structs)
+    if array:
+        return int(array[2]) * _size(array[1], (), structs)
     if kind not in KINDS and named:
         return _size(structs[kind][named[0]], named[1:], structs)
     if kind not in KINDS:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Records shared by CPU and GPU: declared once, used as NumPy dtype and as GLSL struct.
 
-Layout rules: std430 (OpenGL 4.3 core, section 7.6.2.2). Records hold no arrays and no nested
-records, so the members also lie at their std430 offsets in a std140 uniform block.
+Layout rules: std430 (OpenGL 4.3 core, section 7.6.2.2). Records without arrays of others have the members at their
+std430 offsets in a std140 uniform block as well.
 """
 
 from dataclasses import dataclass
@@ -32,12 +32,24 @@ KINDS = {
 class _Member:
     name: str
     kind: str
+    """Of KINDS, or another record's name."""
     offset: int
+    count: int = 0
+    """Of an array of records; else 0."""
+
+
+def _format(member: _Member) -> np.dtype:
+    if member.count:
+        part: np.dtype = Record.registry[member.kind].dtype
+        return np.dtype((part, (member.count,)))
+    element, shape, _, _ = KINDS[member.kind]
+    return np.dtype((element, shape))
 
 
 class Record:
     """A struct of named members, e.g. ``Record("Ray", origin="vec3", source_triangle="uint")``.
 
+    ``lobes=(CLOSURE_LOBE, 3)`` is an array of another record, which shaders index by what they compute.
     ``dtype`` is the NumPy structured dtype and ``size`` the array stride in bytes. A mat4 member
     takes matrices as NumPy stores them (row-major): GLSL's column-major read is undone by
     ``pack`` and must be undone by whoever fills the dtype by hand. Declaring two different
@@ -46,23 +58,24 @@ class Record:
 
     registry: ClassVar[dict[str, "Record"]] = {}
 
-    def __init__(self, name: str, **members: str) -> None:
+    def __init__(self, name: str, **members: "str | tuple[Record, int]") -> None:
         self.name = name
         self.members: list[_Member] = []
         offset = 0
-        alignment = 4
+        self.alignment = 4
         for member, kind in members.items():
-            _, _, align, size = KINDS[kind]
+            align, size = (kind[0].alignment, kind[0].size * kind[1]) if isinstance(kind, tuple) else KINDS[kind][2:]
             offset = -(-offset // align) * align
-            self.members.append(_Member(member, kind, offset))
+            count = kind[1] if isinstance(kind, tuple) else 0
+            self.members.append(_Member(member, kind[0].name if isinstance(kind, tuple) else kind, offset, count))
             offset += size
-            alignment = max(alignment, align)
-        self.size = -(-offset // alignment) * alignment
+            self.alignment = max(self.alignment, align)
+        self.size: int = -(-offset // self.alignment) * self.alignment
         self._names = frozenset(members)
-        self.dtype = np.dtype(
+        self.dtype: np.dtype = np.dtype(
             {
                 "names": [m.name for m in self.members],
-                "formats": [np.dtype((KINDS[m.kind][0], KINDS[m.kind][1])) for m in self.members],
+                "formats": [_format(m) for m in self.members],
                 "offsets": [m.offset for m in self.members],
                 "itemsize": self.size,
             }
@@ -73,8 +86,13 @@ class Record:
 
     def glsl(self) -> str:
         """The struct declaration in GLSL, on one line so that line numbers stay those of the file."""
-        members = " ".join(f"{m.kind} {m.name};" for m in self.members)
+        members = " ".join(f"{m.kind} {m.name}{f'[{m.count}]' if m.count else ''};" for m in self.members)
         return f"struct {self.name} {{ {members} }};"
+
+    @property
+    def parts(self) -> list["Record"]:
+        """Records that it has arrays of, which are to be declared before it."""
+        return [self.registry[m.kind] for m in self.members if m.count]
 
     def offset(self, name: str) -> int:
         """Bytes before a member."""

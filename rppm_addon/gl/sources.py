@@ -91,9 +91,10 @@ def expand(
     record, or the constants, of that name once; ``layout(std430, binding = 0) buffer Rays;`` gets the members of the
     StorageBlock of that name, and before it the structs of its records. Defines go after #version; ``inserts`` are
     texts of files that are made at run time, by name. reads_texels: blocks that are only read become texel buffers;
-    large: those of these names in any case (read_as_texels).
+    large: those of these names in any case (read_as_texels). Sources with either have READS_TEXELS defined.
     Raises ShaderError.
     """
+    defines = {**(defines or {}), **({"READS_TEXELS": 1} if reads_texels or large else {})}
     files: list[str] = []
     declared: dict[str, Record | Constants] = {**Record.registry, **Constants.registry}
     seen: set[str] = set()
@@ -103,7 +104,9 @@ def expand(
         if name in seen:
             return ""
         seen.add(name)
-        return declared[name].glsl()
+        found = declared[name]
+        parts = [declare(part.name) for part in found.parts] if isinstance(found, Record) else []
+        return " ".join([*filter(None, parts), found.glsl()])
 
     def read(name: str, includer: str) -> None:
         if name in files:
@@ -121,7 +124,7 @@ def expand(
                 lines.append(line)
             elif match.re is _VERSION:
                 lines.append(line)
-                lines.extend(f"#define {key} {value}" for key, value in (defines or {}).items())
+                lines.extend(f"#define {key} {value}" for key, value in defines.items())
                 lines.append(f"#line {line_number + 1} {number}")
             elif match.re is _SHARED_BLOCK:
                 if match.group(2) not in StorageBlock.registry:
@@ -139,7 +142,7 @@ def expand(
                 lines.append(declare(wanted))
 
     read(path, path)
-    return _source("\n".join(lines) + "\n", files, DEFINE in (defines or {}), reads_texels, large)
+    return _source("\n".join(lines) + "\n", files, DEFINE in defines, reads_texels, large)
 
 
 @functools.lru_cache(maxsize=512)

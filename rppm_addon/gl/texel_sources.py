@@ -2,7 +2,7 @@
 """Shaders that read, and write, texel buffers in place of storage blocks: their texts are rewritten."""
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from .records import KINDS, Record, stride
 from .texel_buffers import FORMATS, IMAGES_FOR_LARGE, WRITE_ONLY, TexelBuffer
@@ -31,6 +31,7 @@ _CHANGE_BEFORE = re.compile(r"(?:\batomic\w+\s*\(|\+\+|--)\s*$")
 _BRACKET = re.compile(r"//.*|[\[\]]")
 """And comments, whose brackets are none."""
 _WORD_BEFORE = re.compile(r"\b\w+$")
+_MEMBER_BEHIND = re.compile(r"\.(\w+)\[")
 _LONGEST_NAME = 64
 _MARK = "\0"
 """In place of what is put together later."""
@@ -59,7 +60,7 @@ def read_as_texels(
     large_units = dict(zip(sorted(large), units, strict=False))
     for_words = dict(zip(sorted(large), reversed(units[len(large_units) : IMAGES_FOR_LARGE]), strict=False))
     units = units[len(large_units) :]
-    arrays: set[str] = set()
+    arrays: dict[str, frozenset[str]] = {}
 
     def declare(match: re.Match) -> str:
         block, item, array = match["block"], match["item"], match["array"]
@@ -71,9 +72,9 @@ def read_as_texels(
         unit, words = (large_units[block], _WORDS) if block in large_units else (units.pop(0), _words_of_a_texel(item))
         kind = _FORMAT_BY_WORDS[words]
         found[block] = TexelBuffer(unit, FORMATS[kind])
-        arrays.add(array)
+        arrays[array] = _parts(item)
         declaration = f"layout({kind}, binding = {unit}) restrict readonly uniform uimageBuffer {block};"
-        return f"{declaration} {_fetch_function(block, item, array, words)}"
+        return " ".join([declaration, *_fetch_functions(block, item, array, words)])
 
     for match in _WRITTEN_ARRAY.finditer(text) if large_units else ():
         block, array = match["block"], match["array"]
@@ -83,7 +84,7 @@ def read_as_texels(
         if written is not None:
             text, found[block] = written
             if found[block].words_unit is not None:
-                arrays.add(array)
+                arrays[array] = _parts(match["item"])
                 units.remove(for_words[block])
     text = _READ_ARRAY.sub(declare, text)
     return _with_calls(text, arrays), found
@@ -99,25 +100,62 @@ def _words_of_a_texel(item: str) -> int:
     return next(words for words in (4, 2, 1) if size % (4 * words) == 0)
 
 
-def _fetch_function(block: str, item: str, array: str, words: int) -> str:
-    """GLSL that gives an item by its number, on one line so that line numbers stay those of the file."""
+def _parts(item: str) -> frozenset[str]:
+    """Names of a record's members that are arrays of others."""
     record = Record.registry.get(item)
-    members = [(member.kind, member.offset // 4) for member in record.members] if record else [(item, 0)]
-    size = stride(record or item) // 4
-    if size % words == 0:
+    return frozenset(member.name for member in record.members if member.count) if record else frozenset()
+
+
+def _fetch_functions(block: str, item: str, array: str, words: int) -> list[str]:
+    """GLSL that gives an item by its number, and of members that are arrays one part, on one line so that line numbers
+    stay those of the file."""
+    record, size = Record.registry.get(item), _size(item)
+    functions = [_fetch_function(block, item, f"fetched_{array}(uint item)", {"item": size}, words)]
+    for member in record.members if record else ():
+        if member.count:
+            head = f"fetched_{array}_{member.name}(uint item, uint part)"
+            first = {"item": size, "1": member.offset // 4, "part": _size(member.kind)}
+            functions.append(_fetch_function(block, member.kind, head, first, words))
+    return functions
+
+
+def _size(item: str) -> int:
+    """Words of an item of an array."""
+    return stride(Record.registry.get(item, item)) // 4
+
+
+def _fetch_function(block: str, item: str, head: str, first: Mapping[str, int], words: int) -> str:
+    """first: the word from which on the item lies, as a sum of variables times so many words."""
+    size = _size(item)
+    if not any(factor % words for factor in (size, *first.values())):
+        texel = " + ".join(f"int({name}) * {factor // words}" for name, factor in first.items())
         names = [f"t{word // words}.{'xyzw'[word % words]}" for word in range(size)]
-        fetches = f"int first = int(item) * {size // words}; " + " ".join(
+        fetches = f"int first = {texel}; " + " ".join(
             f"uvec4 t{k} = imageLoad({block}, first + {k});" for k in range(size // words)
         )
     else:  # items begin anywhere in texels
         names = [f"t{word}" for word in range(size)]
-        fetches = f"uint first = item * {size}u; " + " ".join(
+        word = " + ".join(f"uint({name}) * {factor}u" for name, factor in first.items())
+        fetches = f"uint first = {word}; " + " ".join(
             f"uint t{k} = imageLoad({block}, int((first + {k}u) / {words}u))[(first + {k}u) % {words}u];"
             for k in range(size)
         )
-    values = ", ".join(_value(kind, names[first:]) for kind, first in members)
-    made = f"{item}({values})" if record else values
-    return f"{item} fetched_{array}(uint item) {{ {fetches} return {made}; }}"
+    return f"{item} {head} {{ {fetches} return {_made(item, names)}; }}"
+
+
+def _made(item: str, names: Sequence[str]) -> str:
+    """GLSL for a record or a kind, by the names of its words and of those behind."""
+    if item not in Record.registry:
+        return _value(item, names)
+    values = []
+    for member in Record.registry[item].members:
+        at = names[member.offset // 4 :]
+        if member.count:
+            parts = (_made(member.kind, at[k * _size(member.kind) :]) for k in range(member.count))
+            values.append(f"{member.kind}[{member.count}]({', '.join(parts)})")
+        else:
+            values.append(_made(member.kind, at))
+    return f"{item}({', '.join(values)})"
 
 
 def _value(kind: str, names: Sequence[str]) -> str:
@@ -148,7 +186,7 @@ def _written(text: str, declaration: re.Match, unit: int, words_unit: int | None
     parts = [f"layout({kind}, binding = {written_unit}) writeonly uniform uimageBuffer {name};"]
     if is_read:
         parts += [f"layout(rgba32ui, binding = {unit}) readonly uniform uimageBuffer {block};"]
-        parts += [_fetch_function(block, item, array, _WORDS)]
+        parts += _fetch_functions(block, item, array, _WORDS)
     parts += [_store_function(name, item, array, words, member) for member in sorted(members, key=str)]
     found = TexelBuffer(unit, FORMATS["rgba32ui"], words_unit=words_unit) if is_read else None
     return text.replace(_MARK, " ".join(parts)), found or TexelBuffer(unit, FORMATS[kind], WRITE_ONLY)
@@ -156,12 +194,13 @@ def _written(text: str, declaration: re.Match, unit: int, words_unit: int | None
 
 def _store_function(name: str, item: str, array: str, words: int, member: str | None) -> str:
     """GLSL that writes an item, or one of its members, by the item's number, on one line."""
-    record, size = Record.registry.get(item), stride(Record.registry.get(item, item)) // 4
-    parts = [(f"value.{m.name}", m.kind, m.offset // 4) for m in record.members] if record else [("value", item, 0)]
+    record, size = Record.registry.get(item), _size(item)
+    parts = list(_values_of("value", item))
     value_kind = item
     if member is not None and record is not None:
-        ((value_kind, first),) = [(m.kind, m.offset // 4) for m in record.members if m.name == member]
-        parts = [("value", value_kind, first)]
+        (stored,) = [m for m in record.members if m.name == member]
+        value_kind = f"{stored.kind}[{stored.count}]" if stored.count else stored.kind
+        parts = list(_values_of("value", stored.kind, stored.offset // 4, stored.count))
     written: dict[int, str] = {} if words == 1 else dict.fromkeys(range(size), "0u")
     for value, kind, first in parts:
         written |= {first + k: word for k, word in enumerate(_words_of(value, kind))}
@@ -173,6 +212,18 @@ def _store_function(name: str, item: str, array: str, words: int, member: str | 
     ]
     body = " ".join([f"int first = int(item * {size // words}u);", *stores])
     return f"void {_stored(array, member)}(uint item, {value_kind} value) {{ {body} }}"
+
+
+def _values_of(value: str, item: str, first: int = 0, count: int = 0) -> Iterator[tuple[str, str, int]]:
+    """Of a record, of an array of count of them, or of a kind: GLSL of its values, their kinds and first words."""
+    if count:
+        for k in range(count):
+            yield from _values_of(f"{value}[{k}]", item, first + k * _size(item))
+    elif item in Record.registry:
+        for m in Record.registry[item].members:
+            yield from _values_of(f"{value}.{m.name}", m.kind, first + m.offset // 4, m.count)
+    else:
+        yield value, item, first
 
 
 def _stored(array: str, member: str | None) -> str:
@@ -214,20 +265,33 @@ def _with_stores(text: str, array: str, is_read: bool) -> tuple[str, set[str | N
     return "".join([*pieces, text[begin:]]), members
 
 
-def _with_calls(text: str, arrays: set[str]) -> str:
-    """The text with a call wherever an item of an array is read, in indices of others as well."""
+def _with_calls(text: str, arrays: Mapping[str, frozenset[str]]) -> str:
+    """The text with a call wherever an item of an array is read, in indices of others as well; arrays have the names of
+    the members of their items that are arrays themselves."""
     pieces: list[str] = []
-    begin, closing = 0, []
+    begin = 0
+    open_brackets: list[tuple[str, int]] = []  # the array, if it is one of these, and where its call is in the pieces
     for match in _BRACKET.finditer(text):
-        replaced, at = "", match.start()
-        if match[0] == "[":
+        at = match.start()
+        if match[0] == "[" and at >= begin:
             word = _WORD_BEFORE.search(text, max(begin, at - _LONGEST_NAME), at)
-            if word and word[0] in arrays:
-                at, replaced = word.start(), f"fetched_{word[0]}(uint("
-            closing.append("))" if replaced else "")
+            name = word[0] if word and word[0] in arrays else ""
+            open_brackets.append((name, len(pieces) + 1))
+            if word and name:
+                pieces += [text[begin : word.start()], f"fetched_{name}(uint("]
+                begin = match.end()
         elif match[0] == "]":
-            replaced = closing.pop()
-        if replaced:
-            pieces += [text[begin:at], replaced]
+            name, call = open_brackets.pop()
+            if not name:
+                continue
+            member = _MEMBER_BEHIND.match(text, match.end())
+            pieces.append(text[begin:at])
             begin = match.end()
+            if member and member[1] in arrays.get(name, ()):
+                pieces[call] = f"fetched_{name}_{member[1]}(uint("
+                pieces.append("), uint(")
+                open_brackets.append((f"{name}.{member[1]}", len(pieces)))
+                begin = member.end()
+            else:
+                pieces.append("))")
     return "".join([*pieces, text[begin:]])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer declares before ESTIMATE_PARAMETERS among its parameters.
+// The includer declares before ESTIMATE_PARAMETERS among its parameters, and the blocks Importons and Photons.
 #include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/sampling.glsl"
@@ -9,6 +9,18 @@
 #include "common/path_history.glsl"
 layout(std430, binding = 6) readonly buffer PhotonOrigins;
 
+// An importon, by its number: its members are read where they are asked for, since processors have no registers for
+// all of them. Where reading them each time costs more (gl/texel_buffers.py), a copy.
+#ifdef READS_TEXELS
+#define IMPORTON Importon importon
+#define ITS importon
+#define IMPORTON_OF(copy, number) copy
+#else
+#define IMPORTON uint importon
+#define ITS importons[importon]
+#define IMPORTON_OF(copy, number) number
+#endif
+
 // Flux arrived by the geometric cosine; a part of the BSDF asks for that of its own normal.
 float shading_correction(float cosine, float geometric_cosine) {
     return min(abs(cosine) / max(geometric_cosine, 1e-5), 4.0);
@@ -16,27 +28,28 @@ float shading_correction(float cosine, float geometric_cosine) {
 
 // BSDF times path throughput of an importon for a photon from wi, in front or behind; geometric_cosine: by which
 // the photon arrived; diffuse: what of it is diffuse.
-vec3 evaluate_importon(Importon importon, vec3 wi, bool front, float geometric_cosine, out vec3 diffuse) {
-    vec3 normal = unpack_unit_vector(importon.diffuse_normal);
+vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, out vec3 diffuse) {
+    vec3 normal = unpack_unit_vector(ITS.diffuse_normal);
     float cosine = dot(normal, wi);
     vec3 value = vec3(0.0);
     if ((cosine > 0.0) == front) {
-        value = (front ? importon.diffuse : importon.translucent)
-              * rough_diffuse_factor(importon.diffuse_roughness, normal, importon.direction, wi);
-        value *= bump_shadowing(unpack_unit_vector(importon.shading_normal), normal, wi)
+        value = (front ? ITS.diffuse : ITS.translucent)
+              * rough_diffuse_factor(ITS.diffuse_roughness, normal, ITS.direction, wi);
+        value *= bump_shadowing(unpack_unit_vector(ITS.shading_normal), normal, wi)
                  * shading_correction(cosine, geometric_cosine);
     }
     diffuse = value;
-    uint kind = unpack_kind(importon.lobe_kind);
+    uint kind = unpack_kind(ITS.lobe_kind);
     if (kind != LOBE_NONE) {
-        normal = unpack_unit_vector(importon.lobe_normal);
+        normal = unpack_unit_vector(ITS.lobe_normal);
         cosine = dot(normal, wi);
-        MicrofacetLobe lobe = MicrofacetLobe(importon.lobe_weight, kind, importon.lobe_f0, importon.lobe_alpha,
-                                             unpack_tint(importon.lobe_kind),
-                                             importon.lobe_ior, importon.lobe_normal, importon.lobe_anisotropy);
+        MicrofacetLobe lobe = MicrofacetLobe(ITS.lobe_weight, kind, ITS.lobe_f0, ITS.lobe_alpha,
+                                             unpack_tint(ITS.lobe_kind),
+                                             ITS.lobe_ior, ITS.lobe_normal, ITS.lobe_anisotropy);
         if ((cosine > 0.0) == front)
-            value += evaluate_lobe(lobe, normal, importon.direction, wi)
-                   * (lobe_shadowing(lobe, importon.shading_normal, wi) * shading_correction(cosine, geometric_cosine));
+            value += evaluate_lobe(lobe, normal, ITS.direction, wi)
+                   * (lobe_shadowing(lobe, ITS.shading_normal, wi)
+                      * shading_correction(cosine, geometric_cosine));
     }
     return value;
 }
@@ -70,8 +83,8 @@ bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
 
 // Whether light has scattered more often than its own is to, from what it lights first to the camera. Transparency on
 // either way does not count where nothing else has scattered there.
-bool exceeds_bounces(Importon importon, uint photon_flags, uint photon_number) {
-    bool straight = first_scatter(arrived_history(importon.history)) == SCATTER_NONE;
+bool exceeds_bounces(uint importon_history, uint photon_flags, uint photon_number) {
+    bool straight = first_scatter(arrived_history(importon_history)) == SCATTER_NONE;
     uint bounces = (straight ? 0u : parameters.camera_segment)
                  + ((photon_flags & PHOTON_DIRECT) != 0u ? 0u : photon_number / parameters.photon_count);
     return bounces > photon_origins[photon_number % parameters.photon_count].max_bounces;
@@ -83,37 +96,34 @@ struct Estimate { vec3 radiance; vec3 diffuse; bool front; };
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
 // integral over the unit disk is 1. False when it adds nothing. stands_for: how many photons the importon's disk holds
 // for each that counts within so much less of it.
-bool density_estimate(Importon importon, Photon photon, uint photon_number, float wide_radius, out Estimate estimate,
-                      out uint stands_for) {
-    estimate = Estimate(vec3(0.0), vec3(0.0), true);
-    stands_for = 0u;
-    vec3 offset = photon.position - importon.position;
-    float radius = photon_radius(photon.flags, importon.least_radius, importon.radius, wide_radius);
+bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estimate estimate, out uint stands_for) {
+    uint flags = photons[photon_number].flags;
+    vec3 offset = photons[photon_number].position - ITS.position;
+    float radius = photon_radius(flags, ITS.least_radius, ITS.radius, wide_radius);
     float radius2 = radius * radius;
-    if (!(importon.radius > 0.0) || !within_reach(importon.gathers, offset, radius, photon.flags)) return false;
-    if (parameters.limits_bounces != 0u && exceeds_bounces(importon, photon.flags, photon_number)) return false;
-    float disks = importon.radius * importon.radius / radius2;
+    if (!(ITS.radius > 0.0) || !within_reach(ITS.gathers, offset, radius, flags)) return false;
+    if (parameters.limits_bounces != 0u && exceeds_bounces(ITS.history, flags, photon_number)) return false;
+    float disks = ITS.radius * ITS.radius / radius2;
     stands_for = whole_word(floor(max(disks, 1.0) + 0.5));
-    vec3 geometric = unpack_unit_vector(importon.geometric_normal);
+    vec3 geometric = unpack_unit_vector(ITS.geometric_normal);
     if (abs(dot(offset, geometric)) > PHOTON_PLANE_TOLERANCE * radius) return false;
-    vec3 photon_normal = unpack_unit_vector(photon.geometric_normal);
+    vec3 photon_normal = unpack_unit_vector(photons[photon_number].geometric_normal);
     float alignment = dot(geometric, photon_normal);
     if (abs(alignment) < PHOTON_NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
-    if (alignment < 0.0 && !lobe_transmits(unpack_kind(importon.lobe_kind)) && largest(importon.translucent) <= 0.0)
-        return false;
+    if (alignment < 0.0 && !lobe_transmits(unpack_kind(ITS.lobe_kind)) && largest(ITS.translucent) <= 0.0) return false;
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
-    float geometric_cosine = abs(dot(photon_normal, photon.direction));
+    vec3 direction = photons[photon_number].direction;
     estimate.front = alignment > 0.0;
-    vec3 diffuse;
-    vec3 radiance = evaluate_importon(importon, photon.direction, estimate.front, geometric_cosine, diffuse)
-                    * photon.flux * kernel;
-    estimate.diffuse = diffuse * photon.flux * kernel;
-    float share = 1.0, disk = disk_radius(importon.least_radius, importon.radius);
-    if ((photon.flags & PHOTON_DIRECT) != 0u) share = direct_share(photon_number, disk);
-    else if ((importon.gathers & GATHERS_BY_RAY) != 0u) share = caustic_share(photon_number, disk);
-    radiance *= share;
+    vec3 radiance = evaluate_importon(importon, direction, estimate.front, abs(dot(photon_normal, direction)),
+                                      estimate.diffuse);
+    vec3 flux = photons[photon_number].flux;
+    radiance = radiance * flux * kernel;
+    estimate.diffuse = estimate.diffuse * flux * kernel;
+    float share = 1.0, disk = disk_radius(ITS.least_radius, ITS.radius);
+    if ((flags & PHOTON_DIRECT) != 0u) share = direct_share(photon_number, disk);
+    else if ((ITS.gathers & GATHERS_BY_RAY) != 0u) share = caustic_share(photon_number, disk);
+    estimate.radiance = radiance * share;
     estimate.diffuse *= share;
-    estimate.radiance = radiance;
-    return largest(radiance) > 0.0;
+    return largest(estimate.radiance) > 0.0;
 }

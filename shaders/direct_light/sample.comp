@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
+#include "common/bsdf/stored_lobes.glsl"
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 2) readonly buffer CameraPaths;
 layout(std430, binding = 3) writeonly buffer ShadowRays;
@@ -33,10 +34,10 @@ float smoothest_lit(bool gathered) {
 }
 
 // Whether any part of a closure is.
-bool can_be_lit(Closure closure, bool gathered) {
+bool can_be_lit(uint index, Closure closure, bool gathered) {
     bool lit = largest(closure.diffuse) > 0.0 || largest(closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        lit = lit || lobe_stores(closure_lobe(closure, k), smoothest_lit(gathered));
+        lit = lit || lobe_stores(stored_lobe(index, k), smoothest_lit(gathered));
     return lit;
 }
 
@@ -45,8 +46,8 @@ bool can_be_lit(Closure closure, bool gathered) {
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
 // choice of the light included. by_rays: what photons leave to rays, of the parts that store them.
-vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers, vec3 wo,
-                      vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays,
+vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers,
+                      vec3 wo, vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays,
                       out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front)
@@ -59,7 +60,7 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool 
     }
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         vec3 normal = lobe_normal(lobe);
         float cosine = dot(normal, wi);
         if (!lobe_stores(lobe, smoothest_lit(gathered)) || (cosine > 0.0) != front) continue;
@@ -78,18 +79,17 @@ vec3 evaluate_closure(Closure closure, vec3 throughput, PathShares shares, bool 
     return value;
 }
 
-bool lit_from_behind(Closure closure) {
+bool lit_from_behind(uint index, Closure closure) {
     bool transmits = largest(closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        transmits = transmits || lobe_transmits(closure_lobe(closure, k).kind);
+        transmits = transmits || lobe_transmits(stored_lobe(index, k).kind);
     return transmits;
 }
 
-// Light that arrives along a direction if nothing is in the way; parts: shares of it.
-struct Arriving { vec3 radiance; vec3 direction; float distance; uint light; uint triangle; Parts parts; };
+// Light that arrives along a direction if nothing is in the way.
+struct Arriving { vec3 radiance; vec3 direction; float distance; uint light; uint triangle; };
 
-const Parts ALL_GLOSSY = Parts(vec3(1.0), vec3(0.0));
-const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE, Parts(vec3(0.0), vec3(0.0)));
+const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE);
 
 vec3 share_of(vec3 part, vec3 whole) {
     return mix(part / max(whole, vec3(1e-35)), vec3(0.0), lessThanEqual(whole, vec3(0.0)));
@@ -108,11 +108,12 @@ void add_candidate(inout Candidates candidates, float weight, Arriving arriving)
 
 // Of light objects and emissive triangles, where smooth lobes that reflect little reflect them. A path would go there
 // as seldom.
-Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares, vec3 wo, uint flags, uvec4 choices) {
+Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathShares shares, vec3 wo, uint flags,
+                            uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        looks = looks || lobe_is_specular(closure_lobe(closure, k), alpha);
+        looks = looks || lobe_is_specular(stored_lobe(index, k), alpha);
     if (!looks) return NOTHING_ARRIVES;
     uint light_set = light_set_at(closure.triangle);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
@@ -120,7 +121,7 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
     Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
                                        scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).x);
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, disk, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
@@ -132,43 +133,48 @@ Arriving arriving_reflected(Closure closure, vec3 throughput, PathShares shares,
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
         vec3 radiance = reflected * passed.chosen * passed.weights;
         add_candidate(candidates, largest(radiance),
-                      Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE, ALL_GLOSSY));
+                      Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE));
         uint emissive;
         Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         reflected *= exp(-path_absorption(flags) * hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
-                      Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle, ALL_GLOSSY));
+                      Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle));
     }
     candidates.chosen.radiance *= candidates.weights;
     return candidates.chosen;
 }
 
-// What photons leave to rays of the environment's direct light along a direction.
-float left_to_rays(uint index, CameraPath path, Closure closure, vec3 wo, vec3 direction, bool gathered) {
-    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+// Of photons that bring the environment's direct light.
+float direct_radius(uint index, CameraPath path, Closure closure, vec3 wo, bool gathered) {
     float least = vertex_radius(path, -wo, closure);
     float most = caustic_radius_of(index, least, gathered);
-    return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction),
-                                     disk_radius(gathered ? most : least, most));
+    return disk_radius(gathered ? most : least, most);
+}
+
+// What they leave to rays along a direction.
+float left_to_rays(vec3 direction, float radius) {
+    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+    return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction), radius);
 }
 
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 throughput, PathShares shares, vec3 wo,
-                             bool gathered, bool gathers, uvec4 choices) {
-    if (!can_be_lit(closure, gathered)) return NOTHING_ARRIVES;
+Arriving arriving_from_light(uint index, uint flags, float radius, Closure closure, vec3 throughput, PathShares shares,
+                             vec3 wo, bool gathered, bool gathers, uvec4 choices, out Parts parts) {
+    parts = Parts(vec3(0.0), vec3(0.0));
+    if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
                   scrambled_sobol(parameters.light_sample, pcg4d(choices)));
     vec3 facing = lit_normal(closure);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-    LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(closure),
+    LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(index, closure),
                                                   light_set_at(closure.triangle)),
                                          environment_irradiance, u.x, u.y);
     if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
     Light light = lights[choice.light];
-    if (((path.flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces) return NOTHING_ARRIVES;
+    if (((flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces) return NOTHING_ARRIVES;
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return NOTHING_ARRIVES;
     float side = dot(facing, sampled.direction);
@@ -177,13 +183,12 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
     float light_pdf = sampled.pdf * light.selection_probability;
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
     bool environment = light.kind == LIGHT_WORLD;
-    float by_rays = environment ? left_to_rays(index, path, closure, wo, sampled.direction, gathered) : 1.0;
-    Parts parts;
-    vec3 scattered = evaluate_closure(closure, throughput, shares, gathered, gathers, wo, sampled.direction,
+    float by_rays = environment ? left_to_rays(sampled.direction, radius) : 1.0;
+    vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
+    parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
     return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
-                    choice.light, sampled.triangle,
-                    Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered)));
+                    choice.light, sampled.triangle);
 }
 
 // The LightLink by which a shadow ray meets what is in its way. Reflections of lights without shadows are hidden like
@@ -213,11 +218,12 @@ void main() {
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
     vec3 viewer = -ray.direction;
-    PathShares shares = path_shares(closure, throughput, viewer, parameters.specular_alpha, gathers);
-    Arriving arriving = arriving_from_light(index, path, closure, throughput, shares, viewer, gathered, gathers,
-                                            choices);
+    PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
+    Parts parts;  // shares of it
+    Arriving arriving = arriving_from_light(index, flags, direct_radius(index, path, closure, viewer, gathered),
+                                            closure, throughput, shares, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
-    if (!gathered) reflected = arriving_reflected(closure, throughput, shares, viewer, flags, choices);
+    if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);
     // One ray for both: by what they would add.
     bool takes_reflected = false;
     float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);
@@ -226,14 +232,17 @@ void main() {
         float total = weight + reflected_weight;
         float u = scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).y;
         takes_reflected = takes_candidate(reflected_weight, total, u);
-        if (takes_reflected) arriving = reflected;
+        if (takes_reflected) {
+            arriving = reflected;
+            parts = Parts(vec3(1.0), vec3(0.0));
+        }
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
     }
     uint link = arriving_link(arriving, takes_reflected);
     contributions[index] = vec4(parameters.sample_weight * arriving.radiance, signed_code(gathered, link));
     light_triangles[index] = arriving.triangle;
     if (parameters.splits_light != 0u)
-        light_splits[index] = LightSplit(arriving.parts.glossy, arriving.light, arriving.parts.transmission, 0.0);
+        light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec3 origin = offset_from_surface(closure.position,
                                       dot(lit_normal(closure), arriving.direction) > 0.0 ? geometric : -geometric);

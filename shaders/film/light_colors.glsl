@@ -34,10 +34,10 @@ void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) 
     }
 }
 
-LightColors light_colors(Closure closure, vec3 viewer) {
+LightColors light_colors(uint path, Closure closure, vec3 viewer) {
     LightColors colors = LightColors(closure.diffuse + closure.translucent, vec3(0.0), vec3(0.0));
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(path, k);
         if (lobe.kind != LOBE_NONE) add_lobe_color(colors, lobe, viewer);
     }
     return colors;

@@ -11,13 +11,14 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "film/first_surface.glsl"
-#include "film/light_colors.glsl"
 #include "gbuffer/projections.glsl"
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
 layout(std430, binding = 0) readonly buffer Camera;
 layout(std430, binding = 1) readonly buffer Closures;
+#include "common/bsdf/stored_lobes.glsl"
+#include "film/light_colors.glsl"
 layout(std430, binding = 2) readonly buffer Rays;
 layout(std430, binding = 3) buffer CameraPaths;
 // iterations in the means; those with a surface
@@ -107,7 +108,7 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
     float rough = largest(albedo), total = rough;
     vec3 normal = rough * unpack_unit_vector(closure.diffuse_normal);
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         if (lobe.kind == LOBE_NONE) continue;
         vec3 lobe_color = lobe_albedo(lobe, lobe_cosine(lobe, viewer));
         float weight = largest(lobe_color);
@@ -130,7 +131,7 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
 }
 
 void add_colors(CameraPath path, Closure closure, vec3 viewer) {
-    LightColors colors = light_colors(closure, viewer);
+    LightColors colors = light_colors(index, closure, viewer);
     vec3 throughput = path.throughput * segment_transmittance(path.flags, closure);
     add_to_pass(PASS_DIFFUSE_COLOR, index, throughput * colors.diffuse);
     add_to_pass(PASS_GLOSSY_COLOR, index, throughput * colors.glossy);

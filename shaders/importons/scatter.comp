@@ -17,6 +17,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
+#include "common/bsdf/stored_lobes.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer CameraPaths;
 layout(std430, binding = 3) buffer Importons;
@@ -27,35 +28,47 @@ layout(std430, binding = 9) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 
-Importon make_importon(Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius, float radius,
-                       float u, uint gathers, uint history) {
-    Importon importon = Importon(closure.position, radius, viewer, closure.geometric_normal,
-                                 throughput * closure.diffuse / PI, closure.diffuse_normal,
-                                 throughput * closure.translucent / PI, closure.diffuse_roughness,
-                                 vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC, 0u, gathers,
-                                 closure.shading_normal, least_radius, history_word(history, history));
+// What does not wait for the lobe is written first: beside one, processors have no registers for all of an importon.
+void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius,
+                    float radius, float u, uint gathers, uint history) {
+    vec3 diffuse = throughput * closure.diffuse / PI, translucent = throughput * closure.translucent / PI;
+    importons[index].position = closure.position;
+    importons[index].direction = viewer;
+    importons[index].geometric_normal = closure.geometric_normal;
+    importons[index].diffuse = diffuse;
+    importons[index].diffuse_normal = closure.diffuse_normal;
+    importons[index].translucent = translucent;
+    importons[index].diffuse_roughness = closure.diffuse_roughness;
+    importons[index].next = 0u;
+    importons[index].gathers = gathers;
+    importons[index].shading_normal = closure.shading_normal;
+    importons[index].least_radius = least_radius;
+    importons[index].history = history_word(history, history);
     // One rough lobe stands for all of them, chosen by its albedo.
     float total = 0.0;
+    int chosen = -1;
     for (int k = 0; k < closure_lobes(closure); ++k) {
         float share = shares[1 + k];
         if (!(share > 0.0)) continue;
-        MicrofacetLobe lobe = closure_lobe(closure, k);
         total += share;
-        if (takes_candidate(share, total, u)) {
-            importon.lobe_weight = throughput * lobe.weight / share;
-            importon.lobe_kind = pack_kind(lobe.kind, lobe.tint);
-            importon.lobe_f0 = passes_by_f0(lobe.kind) ? throughput * lobe.f0 / share : lobe.f0;
-            importon.lobe_alpha = lobe.alpha;
-            importon.lobe_ior = lobe.ior;
-            importon.lobe_normal = lobe.normal;
-            importon.lobe_anisotropy = lobe.anisotropy;
-        }
+        if (takes_candidate(share, total, u)) chosen = k;
     }
-    importon.lobe_weight *= total;
-    uint kind = unpack_kind(importon.lobe_kind);
-    if (passes_by_f0(kind)) importon.lobe_f0 *= total;
-    if (kind == LOBE_NONE && largest(importon.diffuse + importon.translucent) <= 0.0) importon.radius = 0.0;
-    return importon;
+    ClosureLobe lobe = EMPTY_LOBE;
+    if (chosen >= 0) {
+        lobe = closures[index].lobes[max(chosen, 0)];
+        float share = shares[1 + max(chosen, 0)];
+        lobe.weight = throughput * lobe.weight / share * total;
+        if (passes_by_f0(unpack_kind(lobe.kind))) lobe.f0 = throughput * lobe.f0 / share * total;
+    }
+    bool stores = unpack_kind(lobe.kind) != LOBE_NONE || !(largest(diffuse + translucent) <= 0.0);
+    importons[index].radius = stores ? radius : 0.0;
+    importons[index].lobe_weight = lobe.weight;
+    importons[index].lobe_kind = lobe.kind;
+    importons[index].lobe_f0 = lobe.f0;
+    importons[index].lobe_alpha = lobe.alpha;
+    importons[index].lobe_ior = lobe.ior;
+    importons[index].lobe_normal = lobe.normal;
+    importons[index].lobe_anisotropy = lobe.anisotropy;
 }
 
 // The share that a ray has of the environment that shadow rays from its vertex find as well, with this pdf in 1/sr.
@@ -152,12 +165,12 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
 }
 
 // u: behind the share of what is no lobe.
-Event lobe_event(CameraPath path, Closure closure, vec3 viewer, float u, vec2 disk, float u_event, vec4 shares,
-                 float total) {
+Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, float u, vec2 disk, float u_event,
+                 vec4 shares, float total) {
     Event event;
     int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
     event.probability = shares[1 + chosen];
-    MicrofacetLobe lobe = closure_lobe(closure, chosen);
+    MicrofacetLobe lobe = stored_lobe(index, chosen);
     event.normal = lobe_normal(lobe);
     LobeSample sampled = sample_lobe(lobe, event.normal, viewer, disk, u_event, true);
     event.pdf = 0.0;
@@ -196,13 +209,15 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     Event event;
     bool diffuse = sets_out && u < shares.x;
     vec3 found_weight = vec3(1.0);
-    if (diffuse) {
+    // Lobes first, since they need most registers: what else there is would be kept beside.
+    if (!diffuse && !(u < shares.x))
+        event = lobe_event(index, path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
+    else if (diffuse) {
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
         found_weight = diffuse_factor(closure, facing, viewer, event.direction)
                      * terminator_factor(closure.flags, facing, event.direction);
-    } else if (u < shares.x) event = straight_event(path, closure, ray.direction, shares);
-    else event = lobe_event(path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
+    } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
     importons[index].history = history_word(history, scattered_history(history, event.scatter));
     path.flags = event.flags;
@@ -242,8 +257,7 @@ void main() {
         importons[index].history = 0u;
     }
     if (!(ray.maximum_distance > 0.0)) return;
-    Closure closure = closures[index];
-    bool hit = closure_hit(closure), gathered = (path.flags & PATH_GATHERED) != 0u;
+    bool hit = closures[index].triangle != NO_TRIANGLE, gathered = (path.flags & PATH_GATHERED) != 0u;
     vec3 world = vec3(0.0);
     float shadow_ray_pdf = 0.0;
     if (!hit) {
@@ -256,7 +270,7 @@ void main() {
     }
     vec3 lights_passed = vec3(0.0);
     if (!gathered && (path.flags & PATH_LIGHTS_FOUND) == 0u)
-        lights_passed = visible_light(ray.origin, ray.direction, hit ? closure.distance : INFINITY_DISTANCE,
+        lights_passed = visible_light(ray.origin, ray.direction, hit ? closures[index].distance : INFINITY_DISTANCE,
                                       camera_ray_kind(path.flags), path.scatter_pdf,
                                       light_set_at(ray.source_triangle));
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);
@@ -264,6 +278,7 @@ void main() {
         radiances[index] += seen + seen_environment(path, world, shadow_ray_pdf, largest(lights_passed) <= 0.0);
         return;
     }
+    Closure closure = closures[index];
     path.throughput *= segment_transmittance(path.flags, closure);
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
     radiances[index] += seen + seen_surface(path, ray, closure);
@@ -276,15 +291,15 @@ void main() {
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
-    PathShares shares = path_shares(closure, path.throughput, -ray.direction, parameters.specular_alpha, gathers);
+    PathShares shares = path_shares(index, closure, path.throughput, -ray.direction, parameters.specular_alpha,
+                                    gathers);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
         gathering_vertices[index].hit = closure.position;
         gathering_vertices[index].hit_normal = closure.geometric_normal;
     }
     float least_radius = gathered ? caustic_radius : radius;
-    importons[index] = make_importon(closure, path.throughput, -ray.direction, shares.stored, least_radius,
-                                     caustic_radius, u_lobe.y,
-                                     (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history);
+    leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius, caustic_radius,
+                   u_lobe.y, (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history);
     if (parameters.last_segment == 0u)
         go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, caustic_radius), choices,
               u_lobe.x, history);

@@ -202,9 +202,9 @@ float area_light_pdf(Light light, vec3 point, vec3 to_light) {
 
 // Toward an emissive triangle, or an area light, which is two triangles that share an edge.
 LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
-    LightSample result = NO_LIGHT_SAMPLE;
+    LightSample result;
+    result.triangle = NO_TRIANGLE;
     bool mesh = light.kind == LIGHT_MESH;
-    if (!mesh && dot(point - light.position, light.normal) <= 0.0) return result;
     vec3 to_light, radiance = vec3(0.0), offset = light.position - point;
     if (mesh || sampled_by_solid_angle(light, point)) {
         vec3 v0 = area_light_corner(light, 1.0, -1.0), v1 = area_light_corner(light, -1.0, 1.0),
@@ -218,8 +218,7 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
         vec2 angles = vec2(triangle_solid_angle(point, v0, v1, v2), 0.0);
         if (!mesh) angles.y = triangle_solid_angle(point, v0, v1, other);
         float total = angles.x + angles.y, chosen = u.x * total;
-        if (total <= 0.0) return NO_LIGHT_SAMPLE;
-        result.pdf = 1.0 / total;
+        result.pdf = total <= 0.0 ? 0.0 : 1.0 / total;
         bool first = mesh || chosen < angles.x;
         if (!mesh) u.x = first ? chosen / angles.x : (chosen - angles.x) / angles.y;
         to_light = sample_spherical_triangle(point, v0, v1, first ? v2 : other, first ? angles.x : angles.y, u);
@@ -232,16 +231,19 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
     }
     if (!mesh) radiance = light.strength * spread_attenuation(light, -dot(normalize(to_light), light.normal));
     result.distance = length(to_light);
-    if (!(result.pdf > 0.0 && result.distance > 0.0)) return result;
     result.direction = to_light / result.distance;
     result.weight = radiance / result.pdf;
+    bool arrives = (mesh || dot(point - light.position, light.normal) > 0.0) && result.pdf > 0.0
+                && result.distance > 0.0;
+    if (!arrives) return NO_LIGHT_SAMPLE;
     return result;
 }
 
+// Surfaces first, since they need most registers: what else there is would be kept beside.
 LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 point, vec2 u) {
-    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_SUN)
-        return sample_cone_light(light, point, u);
-    if (light.kind != LIGHT_WORLD) return sample_surface_light(light, emissive_triangle, point, u);
+    bool cone = light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_SUN;
+    if (!cone && light.kind != LIGHT_WORLD) return sample_surface_light(light, emissive_triangle, point, u);
+    if (cone) return sample_cone_light(light, point, u);
     LightSample result = NO_LIGHT_SAMPLE;
     result.direction = sample_world(u, result.pdf);
     result.distance = INFINITY_DISTANCE;

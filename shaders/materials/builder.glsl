@@ -19,6 +19,32 @@ struct ClosureBuilder {
     int lobes;
 };
 
+// By constant numbers: what is indexed by others many drivers keep in memory.
+MicrofacetLobe closure_lobe(Closure closure, int k) {
+    if (k == 0) return unpacked_lobe(closure.lobes[0]);
+    if (k == 1) return unpacked_lobe(closure.lobes[1]);
+    return unpacked_lobe(closure.lobes[2]);
+}
+
+void set_closure_lobe(inout Closure closure, int k, MicrofacetLobe lobe) {
+    ClosureLobe made = packed_lobe(lobe);
+    if (k == 0) closure.lobes[0] = made;
+    else if (k == 1) closure.lobes[1] = made;
+    else closure.lobes[2] = made;
+}
+
+// Where LOBES_IN_MEMORY names the array of closures, lobes go to that of the path resolved_path but for the last, which
+// another may take the place of: processors have no registers for them beside what nodes compute.
+void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
+#ifdef LOBES_IN_MEMORY
+    if (k < CLOSURE_LOBES - 1) {
+        LOBES_IN_MEMORY[resolved_path].lobes[k] = usable_lobe(packed_lobe(lobe));
+        return;
+    }
+#endif
+    set_closure_lobe(builder.closure, k, lobe);
+}
+
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
     ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice,
                                             false, 0);
@@ -115,7 +141,7 @@ void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
     float brightness = largest(lobe_albedo(lobe, lobe_cosine(lobe, builder.viewer)));
     if (brightness <= 0.0 && largest(lobe.weight) <= 0.0) return;
     if (builder.lobes < CLOSURE_LOBES) {
-        set_closure_lobe(builder.closure, builder.lobes, lobe);
+        hold_lobe(builder, builder.lobes, lobe);
         builder.lobes += 1;
         return;
     }
@@ -125,7 +151,7 @@ void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
     bool chosen = chance(builder, probability);
     if (!chosen) lobe = held;
     scale_lobe(lobe, 1.0 / max(chosen ? probability : 1.0 - probability, 1e-20));
-    set_closure_lobe(builder.closure, CLOSURE_LOBES - 1, lobe);
+    hold_lobe(builder, CLOSURE_LOBES - 1, lobe);
 }
 
 void add_holdout(inout ClosureBuilder builder, float weight) {

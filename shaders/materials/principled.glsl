@@ -102,6 +102,12 @@ void add_base(inout ClosureBuilder builder, Principled p, vec3 weight) {
     } else add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
 }
 
+#ifdef READS_TEXELS
+#define LAYER_IS_DONE(lobe)
+#else
+#define LAYER_IS_DONE(lobe) if (lobe.kind != LOBE_NONE && node_weight > 0.0) add_lobe(builder, lobe);
+#endif
+
 void add_principled(inout ClosureBuilder builder, float node_weight, Principled p) {
     // From the top; they are added together in one place, as drivers without calls have that code as often as it is
     // called.
@@ -116,7 +122,9 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         sheen = sheen_lobe(builder, weight * tint, p.sheen_roughness, normal, albedo);
         weight = beneath(weight, tint * albedo);
     }
+    LAYER_IS_DONE(sheen)
     if (p.coat > 0.0) coat = coat_lobe(builder, p, weight);
+    LAYER_IS_DONE(coat)
     builder.closure.emission += weight * p.emission;
 
     Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic),
@@ -130,6 +138,7 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
                            film ? vec3(1.0) : min(p.specular_tint, 1.0), p.multiscatter, whites);
         weight *= 1.0 - p.metallic;
     }
+    LAYER_IS_DONE(metal)
     if (p.transmission > 0.0) {
         vec3 share = weight * p.transmission, passed = sqrt(max(p.base_color, vec3(0.0)));
         Microfacets even = Microfacets(at.normal, at.packed_normal, ISOTROPIC, p.roughness * p.roughness, at.cosine);
@@ -143,12 +152,17 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
                                p.multiscatter);
         weight *= 1.0 - p.transmission;
     }
+    LAYER_IS_DONE(glass)
+    LAYER_IS_DONE(sheet)
     bool reaches_base = !(largest(weight) <= 0.0);
     if (reaches_base) base = base_lobe(p, at, whites, f0, ior, films.base, weight);
+    LAYER_IS_DONE(base)
+#ifdef READS_TEXELS
     int layers = node_weight > 0.0 ? 6 : 0;
     for (int k = 0; k < layers; ++k) {
         MicrofacetLobe lobe = k == 0 ? sheen : k == 1 ? coat : k == 2 ? metal : k == 3 ? glass : k == 4 ? sheet : base;
         if (lobe.kind != LOBE_NONE) add_lobe(builder, lobe);
     }
+#endif
     if (reaches_base) add_base(builder, p, weight);
 }

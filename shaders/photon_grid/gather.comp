@@ -9,13 +9,15 @@ layout(local_size_x = 32) in;
 #include <GatherPhotonsParameters>
 #include "common/invocation.glsl"
 layout(std140, binding = 0) uniform Parameters { GatherPhotonsParameters parameters; };
+#include <Importon>
+#include <Photon>
+layout(std430, binding = 0) buffer Photons;
+layout(std430, binding = 1) readonly buffer Importons;
 #include "common/importon.glsl"
 #include "photon_grid/grids.glsl"
 #include "splat_sums/roulette.glsl"
 #include "splat_sums/collect.glsl"
 #include "splat_sums/light.glsl"
-layout(std430, binding = 0) buffer Photons;
-layout(std430, binding = 1) readonly buffer Importons;
 layout(std430, binding = 2) readonly buffer Buckets;
 layout(std430, binding = 3) readonly buffer SortedPhotons;
 layout(std430, binding = 7) readonly buffer Visits;
@@ -27,15 +29,17 @@ layout(std430, binding = 8) buffer UnfinishedVisits {
 
 const uint CORNERS = 8u;
 
-// A sphere meets the cells from low to high, at most one apart along each axis.
-struct Cells { ivec3 low; ivec3 high; };
+// A sphere meets the cell at low and, along those axes whose bits are in steps, the next.
+struct Cells { ivec3 low; uint steps; };
 
 // A little farther than the radius: rounding must not part a photon from its cell.
 float reach_of(float radius) { return 1.0002 * radius + parameters.rounding; }
 
 Cells cells_around(vec3 position, float radius, float side) {
     float reach = reach_of(radius);
-    return Cells(cell_of(position - reach, side), cell_of(position + reach, side));
+    ivec3 low = cell_of(position - reach, side);
+    bvec3 steps = greaterThan(cell_of(position + reach, side), low);
+    return Cells(low, (steps.x ? 1u : 0u) | (steps.y ? 2u : 0u) | (steps.z ? 4u : 0u));
 }
 
 uint finest_grid(float radius) {
@@ -60,9 +64,9 @@ void main() {
     uint corners = (importon.gathers & GATHERS_BY_RAY) == 0u && wide_in_use[1] != 0u ? 3u * CORNERS
                  : wide_in_use[0] != 0u ? 2u * CORNERS : CORNERS;
     uint caustic_grid = finest_grid(importon.radius);
-    float narrow = importon.radius, radius = narrow;
-    float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, narrow, parameters.wide_radius);
-    Cells cells = cells_around(importon.position, narrow, side_of(caustic_grid));
+    float radius = importon.radius;
+    float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, radius, parameters.wide_radius);
+    Cells cells = cells_around(importon.position, radius, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u);
     uint next = 0u, end = 0u, passed = visit.y, looked_at = visit.y, rounds = parameters.most_rounds;
@@ -86,8 +90,7 @@ void main() {
                     cells = wide_cells;
                 }
                 ivec3 cell = cells.low + ivec3(corner & 1u, (corner >> 1u) & 1u, (corner >> 2u) & 1u);
-                ++corner;
-                if (all(lessThanEqual(cell, cells.high))) {
+                if ((corner++ & 7u & ~cells.steps) == 0u) {
                     uvec2 range = buckets[bucket_in(grid, cell)];
                     uint skipped = min(passed, range.y - range.x);
                     passed -= skipped;
@@ -97,10 +100,10 @@ void main() {
             }
         }
         if (!near) break;
+        if (rejected(number, visit.x)) continue;
         Estimate estimate;
         uint stands_for;
-        if (rejected(number, visit.x)) continue;
-        if (!density_estimate(importon, photons[number], number, parameters.wide_radius, estimate, stands_for))
+        if (!density_estimate(IMPORTON_OF(importon, visit.x), number, parameters.wide_radius, estimate, stands_for))
             continue;
         any = true;
         photons[number].contributed = 1u;

@@ -8,9 +8,9 @@ layout(local_size_x = 64) in;
 #include <AdjointParameters>
 #include "common/living_paths.glsl"
 #include "common/photon.glsl"
-#include "photons/parts.glsl"
 layout(std140, binding = 0) uniform Parameters { AdjointParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
+#include "photons/parts.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) buffer Photons;
@@ -25,7 +25,7 @@ void main() {
     if (query.part != PART_NONE) {
         uint slot = parameters.segment * parameters.photon_count + index;
         float ior = query.part == PART_SHARP_TRANSMITTING ? 1.0 / query.ior : 1.0;
-        vec3 share = part_share(closures[index], query.part, ior, viewer, photons[slot].direction);
+        vec3 share = part_share(index, closures[index], query.part, ior, viewer, photons[slot].direction);
         // What is too little to be compared stays as it is.
         flux *= mix(vec3(1.0), share / max(query.share, 1e-20), greaterThan(query.share, vec3(1e-20)));
         photons[slot].scattered_flux = flux;

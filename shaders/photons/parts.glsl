@@ -3,7 +3,7 @@
 // another.
 
 #include <AdjointQuery>
-#include "common/bsdf/closure.glsl"
+#include "common/bsdf/stored_lobes.glsl"
 
 // NONE: the other side need not be asked.
 const uint PART_NONE = 0u, PART_DIFFUSE = 1u, PART_TRANSLUCENT = 2u, PART_TRANSPARENT = 3u, PART_REFLECTING = 4u,
@@ -27,11 +27,11 @@ vec3 sharp_share(MicrofacetLobe lobe, bool transmitted, vec3 viewer, vec3 light)
 
 // Sum of all lobes that may send light this way, as is their probability. ior: of a sharp refraction.
 // Seen from the other side, the BSDF of a refraction is that times the squared index: its root is left to each side.
-vec3 lobes_share(Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
+vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
     bool transmitted = part == PART_TRANSMITTING || part == PART_SHARP_TRANSMITTING;
     vec3 share = vec3(0.0);
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(path, k);
         if (lobe.kind == LOBE_NONE || lobe_part(lobe, transmitted) != part) continue;
         if (part <= PART_TRANSMITTING)
             share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
@@ -42,9 +42,9 @@ vec3 lobes_share(Closure closure, uint part, float ior, vec3 viewer, vec3 light)
     return share;
 }
 
-vec3 part_share(Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
+vec3 part_share(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
     if (part == PART_TRANSPARENT) return closure.transparent;
-    if (part >= PART_REFLECTING) return lobes_share(closure, part, ior, viewer, light);
+    if (part >= PART_REFLECTING) return lobes_share(path, closure, part, ior, viewer, light);
     return (part == PART_DIFFUSE ? closure.diffuse : closure.translucent)
         * diffuse_factor(closure, unpack_unit_vector(closure.diffuse_normal), viewer, light);
 }

@@ -8,10 +8,10 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/photon.glsl"
-#include "photons/parts.glsl"
-#include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
+#include "photons/parts.glsl"
+#include "materials/medium.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) writeonly buffer Photons;
@@ -35,16 +35,13 @@ struct Scattering {
 const float SHARPEST_ALPHA = 0.05;
 
 // One event by its share of the flux; what is left of the probability is absorption.
-Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
-    vec3 normal = unpack_unit_vector(closure.diffuse_normal);
-    Scattering result = Scattering(normal, vec3(0.0), normal, false, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT,
-                                   PHOTON_NOT_DIFFUSE, true, PART_DIFFUSE, 1.0);
+Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
     float scale = 1.0 / largest(flux);
     float diffuse = largest(flux * closure.diffuse) * scale, translucent = largest(flux * closure.translucent) * scale,
           transparent = largest(flux * closure.transparent) * scale;
     vec3 shares = vec3(0.0);
     for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
+        MicrofacetLobe lobe = stored_lobe(index, k);
         shares[k] = largest(flux * lobe_albedo(lobe, lobe_cosine(lobe, arrival))) * scale;
     }
     if ((closure.flags & CLOSURE_KEEPS_LIGHT) != 0u) {
@@ -56,34 +53,41 @@ Scattering scatter(Closure closure, vec3 flux, vec3 arrival, inout RandomSequenc
     float u = next_random(random) * norm;
     vec2 disk = sample_disk(next_random2(random));
     float u_event = next_random(random);
+    Scattering result;
+    result.weight = vec3(0.0);
     if (u >= total) return result;
     bool reflected = u < diffuse;
     if (!reflected) u -= diffuse;
-    if (reflected || u < translucent) {
-        result.transmitted = !reflected;
-        result.direction = cosine_hemisphere(reflected ? normal : -normal, disk);
+    bool is_diffuse = reflected || u < translucent;
+    u -= translucent;
+    bool is_transparent = !is_diffuse && u < transparent;
+    u -= transparent;
+    // Lobes first, since they need most registers: what else there is to choose from would be kept beside.
+    if (!is_diffuse && !is_transparent) {
+        int chosen = u < shares.x ? 0 : (u < shares.x + shares.y ? 1 : 2);
+        float probability = shares[chosen];
+        MicrofacetLobe lobe = stored_lobe(index, chosen);
+        LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, u_event, false);
+        float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
+        result = Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
+                            lobe_normal(lobe), sampled.transmitted,
+                            (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
+                                | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
+                            sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY, lobe.kind == LOBE_SHEEN,
+                            lobe_part(lobe, sampled.transmitted), lobe.ior);
+    } else if (is_transparent)
+        result = Scattering(-arrival, closure.transparent * (norm / transparent), arrival, true, 0u, 0u, false,
+                            PART_TRANSPARENT, 1.0);
+    else {
+        vec3 normal = unpack_unit_vector(closure.diffuse_normal);
+        result = Scattering(cosine_hemisphere(reflected ? normal : -normal, disk), vec3(0.0), normal, !reflected,
+                            PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true,
+                            reflected ? PART_DIFFUSE : PART_TRANSLUCENT, 1.0);
         result.weight = (reflected ? closure.diffuse : closure.translucent)
                         * diffuse_factor(closure, normal, arrival, result.direction)
                         * (norm / (reflected ? diffuse : translucent));
-        if (!reflected) result.part = PART_TRANSLUCENT;
-        return result;
     }
-    u -= translucent;
-    if (u < transparent)
-        return Scattering(-arrival, closure.transparent * (norm / transparent), normal, true, 0u, 0u, false,
-                          PART_TRANSPARENT, 1.0);
-    u -= transparent;
-    int chosen = u < shares.x ? 0 : (u < shares.x + shares.y ? 1 : 2);
-    float probability = shares[chosen];
-    MicrofacetLobe lobe = closure_lobe(closure, chosen);
-    LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, u_event, false);
-    float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
-    return Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
-                      lobe_normal(lobe), sampled.transmitted,
-                      (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
-                          | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
-                      sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY, lobe.kind == LOBE_SHEEN,
-                      lobe_part(lobe, sampled.transmitted), lobe.ior);
+    return result;
 }
 
 // Diffuse surfaces make caustics of what lobes that are not sent there.
@@ -115,59 +119,63 @@ void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec
     AdjointQuery query = AdjointQuery(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
     if (matters) {
         query.part = scattering.part;
-        query.share = part_share(closure, scattering.part, scattering.ior, arrival, scattering.direction);
+        query.share = part_share(index, closure, scattering.part, scattering.ior, arrival, scattering.direction);
     } else photon_paths[index].flags = path_flags;
     adjoint_queries[index] = query;
     rays[index].direction = -scattering.direction;
     rays[index].maximum_distance = matters ? INFINITY_DISTANCE : 0.0;
 }
 
-// Rough surfaces end what is known of a path's neighbors, transparency changes nothing of it.
-void store_differential(uint index, PhotonDifferential at, Closure closure, Scattering scattering, vec3 arriving) {
-    bool rough = (scattering.flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u;
-    if (rough) at.known = 0u;
+// What is known of a path's neighbors where it hits a surface goes to memory, and what scattering changes of it is
+// read again: rough surfaces end it, transparency changes nothing of it.
+void scatter_differential(uint index, Closure closure, Scattering scattering, vec3 arriving) {
+    if ((scattering.flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) photon_differentials[index].known = 0u;
     else if (scattering.part != PART_TRANSPARENT) {
-        vec3 normal = scattering.normal;
+        vec3 normal = scattering.normal, leaving = scattering.direction;
         NormalChange change = normal_change(closure.triangle, closure.position, normal);
-        vec3 turn_u = normal_turn(change, at.place_u), turn_v = normal_turn(change, at.place_v);
         float ratio = 1.0 / scattering.ior;
-        vec3 leaving = scattering.direction;
-        at.turn_u = scattering.transmitted ? refracted_turn(at.turn_u, turn_u, arriving, leaving, normal, ratio)
-                                           : mirrored_turn(at.turn_u, turn_u, arriving, normal);
-        at.turn_v = scattering.transmitted ? refracted_turn(at.turn_v, turn_v, arriving, leaving, normal, ratio)
-                                           : mirrored_turn(at.turn_v, turn_v, arriving, normal);
+        vec3 turn = photon_differentials[index].turn_u,
+             turned = normal_turn(change, photon_differentials[index].place_u);
+        photon_differentials[index].turn_u =
+            scattering.transmitted ? refracted_turn(turn, turned, arriving, leaving, normal, ratio)
+                                   : mirrored_turn(turn, turned, arriving, normal);
+        turn = photon_differentials[index].turn_v;
+        turned = normal_turn(change, photon_differentials[index].place_v);
+        photon_differentials[index].turn_v =
+            scattering.transmitted ? refracted_turn(turn, turned, arriving, leaving, normal, ratio)
+                                   : mirrored_turn(turn, turned, arriving, normal);
     }
-    photon_differentials[index] = at;
 }
 
 // The ray and the flux that a path goes on with, if it does; path_flags are those that it came with.
-void go_on(uint index, Closure closure, uint path_flags, PhotonDifferential differential, inout Photon photon) {
+vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, vec3 arrival, vec3 flux) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
-    Scattering scattering = scatter(closure, photon.flux, photon.direction, random);
+    Scattering scattering = scatter(index, closure, flux, arrival, random);
     float side = dot(scattering.direction, geometric);
     bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
-    if (!(largest(scattering.weight) > 0.0 && passes)) return;
-    bool straight = scattering.direction == -photon.direction;
+    if (!(largest(scattering.weight) > 0.0 && passes)) return vec3(0.0);
+    bool straight = scattering.direction == -arrival;
     if (!straight)
-        scattering.weight *= adjoint_correction(photon.direction, scattering.direction, geometric,
+        scattering.weight *= adjoint_correction(arrival, scattering.direction, geometric,
                                                 scattering.normal);
-    photon.scattered_flux = photon.flux * scattering.weight;
-    photon_paths[index].flux = photon.scattered_flux;
+    flux *= scattering.weight;
     path_flags |= scattering.flags;
-    if ((path_flags & scattering.unseen) != 0u) photon_paths[index].flux = photon.scattered_flux = vec3(0.0);
+    if ((path_flags & scattering.unseen) != 0u) flux = vec3(0.0);
+    photon_paths[index].flux = flux;
     if (!straight)
         path_flags = scattered_flags(path_flags, scattering.diffuse)
                    & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
-    if (differential.known != 0u) store_differential(index, differential, closure, scattering, -photon.direction);
+    if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
     if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
     vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
     rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
     if (parameters.has_adjoint_queries != 0u)
-        store_adjoint_query(index, closure, scattering, photon.direction, path_flags);
+        store_adjoint_query(index, closure, scattering, arrival, path_flags);
     else photon_paths[index].flags = path_flags;
+    return flux;
 }
 
 void main() {
@@ -187,33 +195,30 @@ void main() {
         photons[slot].flags = 0u;
         return;
     }
-    Photon photon = Photon(vec3(0.0), 0u, vec3(0.0), 0u, vec3(0.0), NO_TRIANGLE, vec3(0.0), 0u);
-    Closure closure = closures[index];
-    photon.direction = -ray.direction;
-    photon.flux = carried;
     uint path_flags = photon_paths[index].flags;
-    photon.flags = PHOTON_ACTIVE | photon_flags(path_flags);
+    uint flags = PHOTON_ACTIVE | photon_flags(path_flags);
+    vec3 arrival = -ray.direction;
+    Closure closure = closures[index];
     if (!closure_hit(closure)) {
-        photon.flags |= PHOTON_ESCAPED;
-        photons[slot] = photon;
+        photons[slot] = Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, NO_TRIANGLE, vec3(0.0), 0u);
         return;
     }
-    photon.flux *= segment_transmittance(path_flags, closure);
+    vec3 flux = carried * segment_transmittance(path_flags, closure);
+    bool ends = parameters.segment + 1u >= parameters.segments || !(largest(flux) > 0.0);
     PhotonDifferential differential = photon_differentials[index];
-    if (differential.known != 0u) {
+    bool neighbors_known = differential.known != 0u;
+    if (neighbors_known) {
         differential = moved_to_hit(differential, ray.direction, closure.distance,
                                     unpack_unit_vector(closure.geometric_normal), parameters.segment == 0u);
-        photon.flags |= packed_footprint(differential);
+        flags |= packed_footprint(differential);
+        if (!ends) photon_differentials[index] = differential;
     }
-    photon.position = closure.position;
-    photon.triangle = closure.triangle;
-    photon.geometric_normal = closure.geometric_normal;
     bool stores = largest(closure.diffuse + closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        stores = stores || lobe_stores(closure_lobe(closure, k), parameters.specular_alpha);
-    if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) photon.flags |= PHOTON_STORED;
-
-    if (parameters.segment + 1u < parameters.segments && largest(photon.flux) > 0.0)
-        go_on(index, closure, path_flags, differential, photon);
-    photons[slot] = photon;
+        stores = stores || lobe_stores(stored_lobe(index, k), parameters.specular_alpha);
+    if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) flags |= PHOTON_STORED;
+    // Written before the path goes on: what it needs of registers then is more.
+    photons[slot] = Photon(closure.position, flags, flux, closure.geometric_normal, arrival, closure.triangle,
+                           vec3(0.0), 0u);
+    if (!ends) photons[slot].scattered_flux = go_on(index, closure, path_flags, neighbors_known, arrival, flux);
 }

@@ -9,17 +9,22 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; };
+#include "materials/usable.glsl"
+layout(std430, binding = 2) writeonly buffer Closures;
+// Drivers on the processor have registers in memory anyway.
+#ifndef READS_TEXELS
+#define LOBES_IN_MEMORY closures
+uint resolved_path;
+#endif
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
-#include "materials/usable.glsl"
 #include "common/photon.glsl"
 #include "common/light_sets.glsl"
 #include "resolve/ranges.glsl"
 
 layout(std430, binding = 0) readonly buffer Rays;
 layout(std430, binding = 1) readonly buffer Hits;
-layout(std430, binding = 2) writeonly buffer Closures;
 layout(std430, binding = 5) readonly buffer Materials;
 layout(std430, binding = 13) readonly buffer PathFlags { uint path_words[]; };
 
@@ -111,6 +116,27 @@ bool shines_there(Surface surface, ShadingInstance instance, uint source_triangl
     return has_set(light_sets, light_set_of(triangle_vertices[3u * source_triangle].w));
 }
 
+void store(uint index, Closure closure) {
+    closures[index].position = closure.position;
+    closures[index].triangle = closure.triangle;
+    closures[index].diffuse = closure.diffuse;
+    closures[index].flags = closure.flags;
+    closures[index].emission = closure.emission;
+    closures[index].geometric_normal = closure.geometric_normal;
+    closures[index].transparent = closure.transparent;
+    closures[index].shading_normal = closure.shading_normal;
+    closures[index].translucent = closure.translucent;
+    closures[index].diffuse_normal = closure.diffuse_normal;
+    closures[index].distance = closure.distance;
+    closures[index].material = closure.material;
+    closures[index].diffuse_roughness = closure.diffuse_roughness;
+#ifdef LOBES_IN_MEMORY
+    LOBES_IN_MEMORY[index].lobes[CLOSURE_LOBES - 1] = closure.lobes[CLOSURE_LOBES - 1];
+#else
+    closures[index].lobes = closure.lobes;
+#endif
+}
+
 void main() {
     uint place = invocation_index();
     if (place >= range_length(parameters.program)) return;
@@ -122,6 +148,9 @@ void main() {
         closures[index].triangle = NO_TRIANGLE;  // the rest of it is never read
         return;
     }
+#ifdef LOBES_IN_MEMORY
+    resolved_path = index;
+#endif
     uint flags = path_flags(index);
     Surface surface = surface_at(ray, hit, flags);
     uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
@@ -151,5 +180,5 @@ void main() {
     builder.closure.shading_normal = pack_unit_vector(builder.shading);
     builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT | instance.terminator_flags;
     make_usable(builder.closure);
-    closures[index] = builder.closure;
+    store(index, builder.closure);
 }

@@ -15,7 +15,8 @@ void meet(uint importon, uint photon) {
     if (!within_reach(importons[importon].gathers, offset, radius, flags)) return;
     Estimate estimate;
     uint stands_for;
-    if (!density_estimate(importons[importon], photons[photon], photon, parameters.wide_radius, estimate, stands_for))
+    if (!density_estimate(IMPORTON_OF(importons[importon], importon), photon, parameters.wide_radius, estimate,
+                          stands_for))
         return;
     add_splat(importon, photon, estimate.radiance, stands_for);
     if (parameters.light_sums != 0u) add_light(importon, importons[importon], photon, flags, estimate);

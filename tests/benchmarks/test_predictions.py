@@ -41,6 +41,22 @@ def test_sites_of_a_shader():
     assert "items[counted_item_" in text and "imageAtomicAdd(access_counts, 7, counted_0)" in text
 
 
+def test_arrays_within_items_count():
+    text = """#version 430 core
+struct Part { vec3 color; uint kind; };
+struct Whole { vec2 place; Part parts[3]; };
+layout(std430, binding = 0) buffer Wholes { Whole wholes[]; };
+void main() {
+    int k = int(wholes[2].place.x);
+    Whole whole = wholes[0];
+    Part part = wholes[1].parts[k + 1];
+    wholes[1].parts[k].color = part.color + whole.parts[0].color;
+}
+"""
+    sizes = [Site("read", "Wholes", size) for size in (4, 56, 16)]
+    assert counted(text, 0)[1] == [Site("invocations"), *sizes, Site("write", "Wholes", 12)]
+
+
 def test_programs_count_what_they_ask(tmp_path, monkeypatch):
     monkeypatch.setenv("RPPM_CACHE", str(tmp_path))
     monkeypatch.setattr(sources, "SHADER_FOLDER", tmp_path)

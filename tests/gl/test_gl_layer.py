@@ -30,6 +30,28 @@ def component_expressions(name: str, kind: str) -> list[tuple[str, str]]:
     return [(name, scalar)]
 
 
+def member_expressions(name: str, record: Record) -> list[tuple[str, str]]:
+    """The same of all members of a record, those of arrays of others part by part."""
+    found = []
+    for member in record.members:
+        names = [f"{name}.{member.name}[{k}]" for k in range(member.count)]
+        found += [e for part in names for e in member_expressions(part, Record.registry[member.kind])]
+        found += [] if names else component_expressions(f"{name}.{member.name}", member.kind)
+    return found
+
+
+def columns(array: np.ndarray) -> list[np.ndarray]:
+    """Views of an array's members in that order."""
+    if array.dtype.names is None:
+        return [array]
+    parts = array.reshape(len(array), -1).T
+    return [column for part in parts for name in array.dtype.names for column in columns(part[name])]
+
+
+def words(column: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(column).reshape(len(column), -1).view(np.uint32)
+
+
 def to_uint(expression: str, scalar: str) -> str:
     return {"float": f"floatBitsToUint({expression})", "int": f"uint({expression})", "uint": expression}[scalar]
 
@@ -51,20 +73,20 @@ def all_records() -> list[Record]:
 def test_record_layouts_agree_both_ways(context, record):
     """NumPy writes, GLSL reads every component and writes it to a plain list; and back."""
     count = 5
-    parts = [p for m in record.members for p in component_expressions(f"records[i].{m.name}", m.kind)]
+    parts = member_expressions("records[i]", record)
     reads = "".join(f"flat_list[i * {len(parts)}u + {k}u] = {to_uint(e, s)};" for k, (e, s) in enumerate(parts))
     writes = "".join(f"{e} = {from_uint(f'flat_list[i * {len(parts)}u + {k}u]', s)};" for k, (e, s) in enumerate(parts))
     head = f"""#version 430 core
 layout(local_size_x = 1) in;
-{record.glsl()}
+{"".join(part.glsl() for part in record.parts)} {record.glsl()}
 layout(std430, binding = 0) buffer Records {{ {record.name} records[]; }};
 layout(std430, binding = 1) buffer Flat {{ uint flat_list[]; }};
 void main() {{ uint i = gl_GlobalInvocationID.x; """
     gl = context.moderngl
     rng = np.random.default_rng(1)
     array = record.zeros(count)
-    for member in record.members:  # small whole numbers survive every cast exactly
-        array[member.name] = rng.integers(1, 1000, array[member.name].shape)
+    for column in columns(array):  # small whole numbers survive every cast exactly
+        column[...] = rng.integers(1, 1000, column.shape)
     stored = gl.buffer(array.tobytes())
     listed = gl.buffer(reserve=4 * count * len(parts))
     stored.bind_to_storage_buffer(0)
@@ -72,16 +94,14 @@ void main() {{ uint i = gl_GlobalInvocationID.x; """
     gl.compute_shader(head + reads + "}").run(count)
     context.barrier()
     got = np.frombuffer(listed.read(), np.uint32).reshape(count, len(parts))
-    expected = np.concatenate(
-        [np.ascontiguousarray(array[m.name]).reshape(count, -1).view(np.uint32) for m in record.members], axis=1
-    )
+    expected = np.concatenate([words(column) for column in columns(array)], axis=1)
     np.testing.assert_array_equal(got, expected)
     stored.write(bytes(record.size * count))
     gl.compute_shader(head + writes + "}").run(count)
     context.barrier()
     back = np.frombuffer(stored.read(), record.dtype)
-    for member in record.members:
-        np.testing.assert_array_equal(back[member.name], array[member.name])
+    for read, written in zip(columns(back), columns(array), strict=True):
+        np.testing.assert_array_equal(read, written)
 
 
 @pytest.fixture

@@ -122,6 +122,19 @@ class MicrofacetKind(enum.IntEnum):
 
 Constants("MicrofacetKinds", LOBE=MicrofacetKind)
 
+CLOSURE_LOBE = Record(
+    "ClosureLobe",
+    weight="vec3",
+    kind="uint",
+    f0="vec3",
+    alpha="float",
+    ior="float",
+    normal="uint",
+    anisotropy="uint",
+)
+"""A MicrofacetLobe as closures keep it: the kind comes with the tint."""
+CLOSURE_LOBES = 3
+Constants("ClosureLobes", signed=True, CLOSURE_LOBES=CLOSURE_LOBES)
 CLOSURE = Record(
     "Closure",
     position="vec3",
@@ -134,29 +147,14 @@ CLOSURE = Record(
     shading_normal="uint",
     translucent="vec3",
     diffuse_normal="uint",
-    lobe0_weight="vec3",
-    lobe0_kind="uint",
-    lobe0_f0="vec3",
-    lobe0_alpha="float",
-    lobe1_weight="vec3",
-    lobe1_kind="uint",
-    lobe1_f0="vec3",
-    lobe1_alpha="float",
-    lobe2_weight="vec3",
-    lobe2_kind="uint",
-    lobe2_f0="vec3",
-    lobe2_alpha="float",
-    lobe_ior="vec3",
     distance="float",
-    lobe_normals="uvec3",
     material="uint",
-    lobe_anisotropies="uvec3",
     diffuse_roughness="uint",
+    lobes=(CLOSURE_LOBE, CLOSURE_LOBES),
 )
 """All that scattering, storing and estimating need to know about a hit. Normals face the arriving
-path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The kind of a lobe
-comes with its tint (MicrofacetKind), the diffuse roughness with the albedo that its
-interreflection takes (common/bsdf/diffuse.glsl)."""
+path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The diffuse roughness comes with
+the albedo that its interreflection takes (common/bsdf/diffuse.glsl)."""
 StorageBlock("Closures", "Closure closures[];")
 
 CLOSURE_CURVED = 32

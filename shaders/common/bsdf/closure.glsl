@@ -1,67 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Closure>
+#include <ClosureLobes>
 #include <Terminators>
 #include "common/bsdf/microfacet.glsl"
 
-const int CLOSURE_LOBES = 3;
 const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
            CLOSURE_KEEPS_LIGHT = 8u,  // photons light it, but it sends none on
            CLOSURE_CROWDED = 16u;     // one part, chosen by chance, stands for others
 const uint LOBE_COUNT_SHIFT = 8u;  // where in the flags the number of lobes stands
 
+const ClosureLobe EMPTY_LOBE = ClosureLobe(vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC);
+
 Closure empty_closure() {
     vec3 none = vec3(0.0);
-    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, none, 0u,
-                   none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0, none, LOBE_NONE, none, 0.0,
-                   vec3(1.0), 0.0, uvec3(0u), 0u, uvec3(ISOTROPIC), 0u);
+    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, none, 0u, 0.0, 0u, 0u,
+                   ClosureLobe[CLOSURE_LOBES](EMPTY_LOBE, EMPTY_LOBE, EMPTY_LOBE));
 }
 
 // How many lobes a closure has. Loops go so far and no further, which also keeps drivers without calls from having the
 // code of a lobe three times.
 int closure_lobes(Closure closure) { return int((closure.flags >> LOBE_COUNT_SHIFT) & 3u); }
 
-MicrofacetLobe unpacked_lobe(vec3 weight, uint kind, vec3 f0, float alpha, float ior, uint normal, uint anisotropy) {
-    return MicrofacetLobe(weight, unpack_kind(kind), f0, alpha, unpack_tint(kind), ior, normal, anisotropy);
+MicrofacetLobe unpacked_lobe(ClosureLobe lobe) {
+    return MicrofacetLobe(lobe.weight, unpack_kind(lobe.kind), lobe.f0, lobe.alpha, unpack_tint(lobe.kind), lobe.ior,
+                          lobe.normal, lobe.anisotropy);
 }
 
-MicrofacetLobe closure_lobe(Closure c, int index) {
-    if (index == 0)
-        return unpacked_lobe(c.lobe0_weight, c.lobe0_kind, c.lobe0_f0, c.lobe0_alpha, c.lobe_ior.x, c.lobe_normals.x,
-                             c.lobe_anisotropies.x);
-    if (index == 1)
-        return unpacked_lobe(c.lobe1_weight, c.lobe1_kind, c.lobe1_f0, c.lobe1_alpha, c.lobe_ior.y, c.lobe_normals.y,
-                             c.lobe_anisotropies.y);
-    return unpacked_lobe(c.lobe2_weight, c.lobe2_kind, c.lobe2_f0, c.lobe2_alpha, c.lobe_ior.z, c.lobe_normals.z,
-                         c.lobe_anisotropies.z);
-}
-
-void set_closure_lobe(inout Closure c, int index, MicrofacetLobe lobe) {
-    uint kind = pack_kind(lobe.kind, lobe.tint);
-    if (index == 0) {
-        c.lobe0_weight = lobe.weight;
-        c.lobe0_kind = kind;
-        c.lobe0_f0 = lobe.f0;
-        c.lobe0_alpha = lobe.alpha;
-        c.lobe_ior.x = lobe.ior;
-        c.lobe_normals.x = lobe.normal;
-        c.lobe_anisotropies.x = lobe.anisotropy;
-    } else if (index == 1) {
-        c.lobe1_weight = lobe.weight;
-        c.lobe1_kind = kind;
-        c.lobe1_f0 = lobe.f0;
-        c.lobe1_alpha = lobe.alpha;
-        c.lobe_ior.y = lobe.ior;
-        c.lobe_normals.y = lobe.normal;
-        c.lobe_anisotropies.y = lobe.anisotropy;
-    } else {
-        c.lobe2_weight = lobe.weight;
-        c.lobe2_kind = kind;
-        c.lobe2_f0 = lobe.f0;
-        c.lobe2_alpha = lobe.alpha;
-        c.lobe_ior.z = lobe.ior;
-        c.lobe_normals.z = lobe.normal;
-        c.lobe_anisotropies.z = lobe.anisotropy;
-    }
+ClosureLobe packed_lobe(MicrofacetLobe lobe) {
+    return ClosureLobe(lobe.weight, pack_kind(lobe.kind, lobe.tint), lobe.f0, lobe.alpha, lobe.ior, lobe.normal,
+                       lobe.anisotropy);
 }
 
 // Share of the background that the surface cuts out of the picture.
@@ -118,20 +85,6 @@ float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
 // the diffuse and translucent parts together and of the lobes that store photons, by which a path that gathers goes on
 // once. total: of those by which it may go on.
 struct PathShares { vec4 specular; vec4 stored; float total; };
-
-PathShares path_shares(Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool gathers) {
-    PathShares shares = PathShares(vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0),
-                                   vec4(largest(throughput * closure.diffuse)
-                                        + largest(throughput * closure.translucent), 0.0, 0.0, 0.0), 0.0);
-    for (int k = 0; k < closure_lobes(closure); ++k) {
-        MicrofacetLobe lobe = closure_lobe(closure, k);
-        float share = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
-        if (lobe_is_specular(lobe, specular_alpha)) shares.specular[1 + k] = share;
-        else if (lobe_stores(lobe, specular_alpha)) shares.stored[1 + k] = share;
-    }
-    shares.total = sum(shares.specular) + (gathers ? sum(shares.stored) : 0.0);
-    return shares;
-}
 
 // Roulette sets in once the path's throughput has fallen; total: of all shares by which it may go on.
 float path_survival(float total) { return min(1.0, 4.0 * total); }

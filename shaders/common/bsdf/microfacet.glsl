@@ -76,75 +76,73 @@ void face_sheet(inout MicrofacetLobe lobe, vec3 n, inout vec3 wi) {
 // What sampling a lobe gives: a direction and f cos / pdf. weight is zero when nothing is scattered.
 struct LobeSample { vec3 direction; vec3 weight; bool transmitted; };
 
-// disk: sample_disk of two random numbers, which callers that choose among lobes and diffuse parts have anyway.
-LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
-    LobeSample result = LobeSample(n, vec3(0.0), false);
-    bool sheet = lobe.kind == LOBE_SHEET;
+// Of microfacets. Values are chosen in place of left early: what a branch leaves behind is kept beside what others
+// compute, and processors have few registers.
+LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
+    bool sheet = lobe.kind == LOBE_SHEET, smooth_lobe = lobe.alpha < 1e-6;
     if (sheet) lobe.kind = LOBE_MIRROR;
-    if (dot(wo, n) <= 0.0) return result;
-    if (lobe_is_sheen(lobe.kind)) {
-        SheenFrame sheen = sheen_frame(n, wo);
-        bool fitted = lobe.kind == LOBE_SHEEN;
-        result.direction = fitted ? sample_sheen(lobe.f0.xy, sheen, disk) : cosine_hemisphere(n, disk);
-        float cosine_i = dot(n, result.direction);
-        if (cosine_i <= 0.0) return result;
-        result.weight = lobe.weight * (fitted ? 1.0
-                                       : velvet_scattered(lobe.f0.x, n, wo, result.direction) * PI / cosine_i);
-        return result;
-    }
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
     vec3 local_wo = to_frame(frame, wo);
-    bool smooth_lobe = lobe.alpha < 1e-6;
     vec3 local_h = sample_visible_normal(local_wo, frame.alpha, disk);
     vec3 h = smooth_lobe ? n : from_frame(frame, local_h);
     float cosine = dot(wo, h);
-    if (cosine <= 0.0) return result;
     FacetShares shares = facet_shares(lobe, cosine);
-    float probability = shares.reflected;
-    if (u_event < probability) {
-        result.direction = normalize(2.0 * cosine * h - wo);
-        result.weight = lobe.weight * shares.reflectance / probability;
-        if (dot(result.direction, n) <= 0.0) result.weight = vec3(0.0);
-    } else {
-        float k = 1.0 - (1.0 - cosine * cosine) / (lobe.ior * lobe.ior);
-        if (k <= 0.0) return result;  // total internal reflection: a lobe without reflection scatters nothing
-        result.direction = normalize((cosine / lobe.ior - sqrt(k)) * h - wo / lobe.ior);
-        result.transmitted = true;
-        result.weight = shares.transmittance / (1.0 - probability);
-        // radiance shrinks with the beam's solid angle; flux does not (Veach 1997, section 5.2)
-        if (radiance) result.weight /= lobe.ior * lobe.ior;
-        if (dot(result.direction, n) >= 0.0) result.weight = vec3(0.0);
-    }
+    float probability = shares.reflected, k = 1.0 - (1.0 - cosine * cosine) / (lobe.ior * lobe.ior);
+    bool reflected = u_event < probability;
+    // Where total internal reflection is, a lobe without reflection scatters nothing.
+    bool scattered = !(cosine <= 0.0) && (reflected || !(k <= 0.0));
+    LobeSample result;
+    result.direction = normalize(reflected ? 2.0 * cosine * h - wo : (cosine / lobe.ior - sqrt(k)) * h - wo / lobe.ior);
+    result.weight = reflected ? lobe.weight * shares.reflectance / probability
+                              : shares.transmittance / (1.0 - probability);
+    // radiance shrinks with the beam's solid angle; flux does not (Veach 1997, section 5.2)
+    if (radiance && !reflected) result.weight /= lobe.ior * lobe.ior;
+    float side = dot(result.direction, n);
+    if (!scattered || (reflected ? side <= 0.0 : side >= 0.0)) result.weight = vec3(0.0);
     if (!smooth_lobe) {
         float lambda_o = facet_lambda(frame, local_wo),
             lambda_i = facet_lambda(frame, to_frame(frame, result.direction));
         float ratio = frame.beckmann ? beckmann_ratio(local_h, frame.alpha) : 1.0;
-        result.weight *= ratio * (1.0 + ggx_lambda(local_wo, frame.alpha)) / (1.0 + lambda_o + lambda_i);
+        float factor = ratio * (1.0 + ggx_lambda(local_wo, frame.alpha)) / (1.0 + lambda_o + lambda_i);
+        if (scattered) result.weight *= factor;
     }
-    if (sheet) {
-        result.direction = reflect(result.direction, n);
-        result.transmitted = true;
-    }
+    if (sheet) result.direction = reflect(result.direction, n);
+    if (!scattered) result.direction = n;
+    result.transmitted = scattered && (sheet || !reflected);
     return result;
 }
 
-// Of a pair of directions: the microfacet normal that links them and their cosines to it. False when
-// the lobe links none.
+// disk: sample_disk of two random numbers, which callers that choose among lobes and diffuse parts have anyway.
+LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
+    LobeSample result;
+    if (!lobe_is_sheen(lobe.kind)) result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
+    else {
+        SheenFrame sheen = sheen_frame(n, wo);
+        bool fitted = lobe.kind == LOBE_SHEEN;
+        result.direction = fitted ? sample_sheen(lobe.f0.xy, sheen, disk) : cosine_hemisphere(n, disk);
+        float cosine_i = dot(n, result.direction);
+        result.weight = lobe.weight * (fitted ? 1.0
+                                       : velvet_scattered(lobe.f0.x, n, wo, result.direction) * PI / cosine_i);
+        if (cosine_i <= 0.0) result.weight = vec3(0.0);
+        result.transmitted = false;
+    }
+    if (dot(wo, n) <= 0.0) return LobeSample(n, vec3(0.0), false);
+    return result;
+}
+
+// Of a pair of directions: the microfacet normal that links them and their cosines to it. False when the lobe links
+// none. All at once: what branches leave undone would have to be kept as well.
 bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, out float oh, out float ih) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
-    h = n;
-    oh = ih = 0.0;
-    if (cosine_o <= 0.0 || cosine_i == 0.0 || lobe.kind == LOBE_NONE) return false;
-    bool transmitted = cosine_i < 0.0;
-    if (transmitted && !lobe_transmits(lobe.kind)) return false;
+    bool transmitted = cosine_i < 0.0, behind = transmitted && lobe.ior < 1.0;
     h = transmitted ? -(lobe.ior * wi + wo) : wi + wo;
     float length_h = length(h);
-    if (length_h < 1e-8) return false;
     h /= length_h;
-    if (transmitted && lobe.ior < 1.0) h = -h;
+    if (behind) h = -h;
     oh = dot(wo, h);
     ih = dot(wi, h);
-    return dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
+    return cosine_o > 0.0 && cosine_i != 0.0 && lobe.kind != LOBE_NONE && !(transmitted && !lobe_transmits(lobe.kind))
+        && length_h >= 1e-8 && dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
 }
 
 // What a lobe gives of a pair of directions, unit vectors away from the surface.
@@ -153,37 +151,41 @@ struct LobeValue {
     float pdf;  // with which sample_lobe gives wi, 1/sr
 };
 
-LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
-    face_sheet(lobe, n, wi);
-    LobeValue value = LobeValue(vec3(0.0), 0.0);
+LobeValue microfacet_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
-    if (lobe_is_sheen(lobe.kind)) {
-        bool fitted = lobe.kind == LOBE_SHEEN;
-        float fitted_pdf = sheen_pdf(lobe.f0.xy, n, wo, wi);
-        value.pdf = fitted ? fitted_pdf : max(dot(n, wi), 0.0) / PI;
-        if (cosine_o > 0.0 && cosine_i > 0.0)
-            value.bsdf = lobe.weight * ((fitted ? fitted_pdf : velvet_scattered(lobe.f0.x, n, wo, wi)) / cosine_i);
-        return value;
-    }
     vec3 h;
     float oh, ih;
-    if (!linking_normal(lobe, n, wo, wi, h, oh, ih)) return value;
+    bool linked = linking_normal(lobe, n, wo, wi, h, oh, ih);
+    // Where the facets lie first: of that two numbers are kept while the colors are computed.
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
-    vec3 local_h = to_frame(frame, h), local_wo = to_frame(frame, wo);
-    FacetShares shares = facet_shares(lobe, oh);
+    vec3 local_h = to_frame(frame, h), local_wo = to_frame(frame, wo), local_wi = to_frame(frame, wi);
     float distribution = facet_distribution(frame, local_h);
-    float masking = 1.0 / (1.0 + facet_lambda(frame, local_wo) + facet_lambda(frame, to_frame(frame, wi)));
+    float masking = 1.0 / (1.0 + facet_lambda(frame, local_wo) + facet_lambda(frame, local_wi));
     float visible = ggx_distribution(local_h, frame.alpha) * oh
                     / (cosine_o * (1.0 + ggx_lambda(local_wo, frame.alpha)));
-    if (cosine_i > 0.0) {
-        value.bsdf = lobe.weight * shares.reflectance * (distribution * masking / (4.0 * cosine_o * cosine_i));
-        value.pdf = visible * shares.reflected / (4.0 * oh);
-        return value;
-    }
+    bool reflected = cosine_i > 0.0;
     float spread = lobe.ior * ih + oh;
-    value.bsdf = shares.transmittance
-        * (distribution * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * max(spread * spread, 1e-12)));
-    value.pdf = visible * (1.0 - shares.reflected) * lobe.ior * lobe.ior * abs(ih) / max(spread * spread, 1e-12);
+    float spread2 = max(spread * spread, 1e-12);
+    float factor = reflected ? distribution * masking / (4.0 * cosine_o * cosine_i)
+                             : distribution * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * spread2);
+    FacetShares shares = facet_shares(lobe, oh);
+    LobeValue value;
+    value.bsdf = factor * (reflected ? lobe.weight * shares.reflectance : shares.transmittance);
+    value.pdf = reflected ? visible * shares.reflected / (4.0 * oh)
+                          : visible * (1.0 - shares.reflected) * lobe.ior * lobe.ior * abs(ih) / spread2;
+    if (!linked) return LobeValue(vec3(0.0), 0.0);
+    return value;
+}
+
+LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    face_sheet(lobe, n, wi);
+    if (!lobe_is_sheen(lobe.kind)) return microfacet_value(lobe, n, wo, wi);
+    float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
+    bool fitted = lobe.kind == LOBE_SHEEN;
+    float fitted_pdf = sheen_pdf(lobe.f0.xy, n, wo, wi);
+    LobeValue value = LobeValue(vec3(0.0), fitted ? fitted_pdf : max(dot(n, wi), 0.0) / PI);
+    if (cosine_o > 0.0 && cosine_i > 0.0)
+        value.bsdf = lobe.weight * ((fitted ? fitted_pdf : velvet_scattered(lobe.f0.x, n, wo, wi)) / cosine_i);
     return value;
 }
 

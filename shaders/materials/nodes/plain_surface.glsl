@@ -19,6 +19,6 @@ void node_plain_surface(inout ClosureBuilder builder, float weight, vec3 color, 
     if (is_glass)
         lobe = microfacet_lobe(at, LOBE_GLASS, vec3(weight), weight * color, vec3(1.0), relative_ior(builder, index));
     else builder.closure.diffuse = weight * (1.0 - shine) * color;
-    set_closure_lobe(builder.closure, 0, lobe);
+    hold_lobe(builder, 0, lobe);
     builder.lobes = 1;
 }
