@@ -30,6 +30,7 @@ class RandomStage(enum.IntEnum):
     GATHERING = 7
     CAMERA = 8
     SHADOW_CATCHER = 9
+    WAVELENGTH = 10
 
 
 Constants("RandomStages", STAGE=RandomStage)
@@ -262,6 +263,8 @@ Constants("PhotonHistory", PHOTON=PhotonHistory, PHOTON_HISTORY_SHIFT=7)
 PHOTON_FLAG_BITS = 10
 """Of a photon's word; the others are a float's."""
 Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
+Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
+"""A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""
 
 
 class Scatter(enum.IntEnum):

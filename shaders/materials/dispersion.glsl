@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Refraction by wavelength: rppm_addon/materials/dispersion.py. Before the nodes of a material that disperses, whose
+// lobes from here on are those of the path's wavelength.
+
+#include "materials/builder.glsl"
+#include "materials/albedo_tables.glsl"
+#include <DispersionTable>
+#define DISPERSES
+
+// Of the path: the color of its light, white where it has it already, and by how much its index differs from n, times
+// (n - 1) over the Abbe number. Set before nodes are evaluated.
+vec3 wavelength_color = vec3(1.0);
+float wavelength_shift = 0.0;
+float inverse_abbe_number = 0.0;
+
+// u: in [0, 1), of which all values are alike in probability.
+void take_wavelength(float u, bool white) {
+    float place = u * float(WAVELENGTH_STEPS);
+    int step = min(whole_part(place), WAVELENGTH_STEPS - 1), at = DISPERSION_TABLE + 4 * step;
+    float f = place - float(step);
+    vec4 knots[2];
+    for (int k = 0; k < 2; ++k)
+        knots[k] = vec4(albedo_tables[at + 4 * k], albedo_tables[at + 4 * k + 1], albedo_tables[at + 4 * k + 2],
+                        albedo_tables[at + 4 * k + 3]);
+    vec4 value = mix(knots[0], knots[1], f);
+    if (white) wavelength_color = value.rgb;
+    wavelength_shift = value.a;
+}
+
+// The index of what is denser, where on either side something else than air is not known.
+float dispersed_ior(float ior) {
+    float dense = max(ior, 1.0 / ior);
+    dense += (dense - 1.0) * inverse_abbe_number * wavelength_shift;
+    return ior < 1.0 ? 1.0 / dense : dense;
+}
+
+void add_dispersed_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
+    if (lobe.kind >= LOBE_GLASS && lobe.kind <= LOBE_COATED_GLASS) {
+        lobe.ior = dispersed_ior(lobe.ior);
+        if (passes_by_f0(lobe.kind)) lobe.f0 *= wavelength_color;
+        if (is_dispersed(lobe, lobe.kind == LOBE_REFRACTION)) lobe.weight *= wavelength_color;
+    }
+    add_lobe(builder, lobe);
+}
+#define add_lobe add_dispersed_lobe
