@@ -5,7 +5,8 @@ A path whose light is dispersed has one wavelength, of all alike in probability 
 first refracts it colors it; the mean of these colors is white.
 
 Indices follow Cauchy's equation n = A + B / wavelength^2 with two terms, by the index n_d at the line d and the Abbe
-number V_d = (n_d - 1) / (n_F - n_C). So n = n_d + (n_d - 1) / V_d shift, where the shift is that of the wavelength alone.
+number V_d = (n_d - 1) / (n_F - n_C). So
+n = n_d + (n_d - 1) / V_d shift, where the shift is that of the wavelength alone.
 """
 
 import numpy as np

@@ -23,7 +23,7 @@ MATERIAL = Record(
 """A material: absorption of its interior in 1/m, the program that evaluates its node graph, and where its constants
 start in MaterialData; whether lights shine through where it is transparent (0) or not (1); whether what it scatters
 depends on where it is seen from (1); its index for compositors; and the number of its interior among those that absorb,
-from 1 on, 0 where it does not. ``material_of_medium`` is no member of this material: item n - 1 has that of medium n."""
+from 1 on, 0 where it does not. ``material_of_medium`` is not of this material: item n - 1 has that of medium n."""
 MOST_MEDIA = 1023
 """Interiors that absorb; paths have ten bits for the number of one (shaders/materials/medium.glsl)."""
 StorageBlock("Materials", "Material materials[];")

@@ -186,8 +186,8 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
                                                    min(SMOOTHEST_LIT, parameters.specular_alpha));
     event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND))
                 | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
-                | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | dispersed_flag(closure, lobe, sampled.transmitted)
-                | (lights_found ? PATH_LIGHTS_FOUND : 0u);
+                | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
+                | dispersed_flag(closure, lobe, sampled.transmitted);
     return event;
 }
 
