@@ -23,7 +23,6 @@ STEPS = 64
 SHORTEST, LONGEST = 390e-9, 710e-9
 """Meters. Beyond, eyes see less than a thousandth of the light."""
 _STEP = 0.1e-9
-Constants("DispersionTable", signed=True, WAVELENGTH_STEPS=STEPS, DISPERSION_TABLE=albedo_tables.length())
 
 _REFRACTING = {"bsdf_glass", "bsdf_refraction", "bsdf_principled"}
 
@@ -81,3 +80,23 @@ def _seen() -> tuple[np.ndarray, np.ndarray]:
 def _cumulated(density: np.ndarray) -> np.ndarray:
     ends = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
     return ends / ends[-1]
+
+
+def mean(values: np.ndarray) -> np.ndarray:
+    """Of (STEPS + 1, ...) values at the wavelengths of the table, over all paths."""
+    return 0.5 * (values[1:] + values[:-1]).mean(axis=0)
+
+
+def channel_shifts() -> np.ndarray:
+    """(3,) by how much the shift of the index of a channel's light differs from that of all, in the mean."""
+    values = table().astype(float)
+    return mean(values[:, :3] * values[:, 3:]) - mean(values[:, 3])
+
+
+Constants(
+    "DispersionTable",
+    signed=True,
+    WAVELENGTH_STEPS=STEPS,
+    DISPERSION_TABLE=albedo_tables.length(),
+    SHIFT_OF_CHANNELS=channel_shifts().tolist(),
+)
