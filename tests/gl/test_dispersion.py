@@ -78,8 +78,8 @@ def test_white_stays_white(mapper):
 
 
 def test_reflected_and_refracted_light_are_white_together(mapper):
-    """Of photons that came to the upper face, in channels apart. Four times their standard error: a twentieth of 16384 is
-    reflected, by chance, in each of eight iterations."""
+    """Of photons that came to the upper face, in channels apart, within four times their standard error: by chance, a
+    twentieth of them is reflected."""
     dispersing = dataclasses.replace(glass(), abbe_number=8.0)
     mapper.build(prism(dispersing, photons=16384, photon_path_length=3, direct_light=DirectLight.PHOTONS))
     arrived, left, escaped = np.zeros(3), np.zeros(3), np.zeros(3)
