@@ -125,7 +125,10 @@ class MaterialTables(BufferSet):
         for record, interior in zip(records, interiors, strict=True):
             if interior is not None:
                 record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
-        absorbing = np.flatnonzero(records["absorption"].any(axis=1))[:MOST_MEDIA]
+        absorbing = np.flatnonzero(records["absorption"].any(axis=1))
+        if len(absorbing) > MOST_MEDIA:
+            self._scene.warn(f"{len(absorbing)} materials have volumes that absorb; the first {MOST_MEDIA} do")
+            absorbing = absorbing[:MOST_MEDIA]
         records["medium"][absorbing] = 1 + np.arange(len(absorbing))
         records["material_of_medium"][: len(absorbing)] = absorbing
         self._buffers["Materials"].upload(records)
