@@ -320,8 +320,7 @@ def test_unknown_shaders_become_diffuse(scene, node):
 @pytest.mark.parametrize(
     ("node", "options", "inputs", "standing_in"),
     [
-        ("ShaderNodeBsdfToon", {"component": "GLOSSY"}, {}, "a glossy surface"),
-        ("ShaderNodeBsdfToon", {}, {}, "a diffuse surface"),
+        ("ShaderNodeBsdfToon", {"component": "GLOSSY"}, {}, ""),
         ("ShaderNodeBsdfHair", {"component": "Transmission"}, {}, "a translucent surface"),
         ("ShaderNodeSubsurfaceScattering", {}, {}, "a diffuse surface"),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "ASHIKHMIN_SHIRLEY"}, {}, "GGX"),

@@ -90,7 +90,7 @@ MICROFACET_LOBE = Record(
     normal="uint",
     anisotropy="uint",
 )
-"""A GGX or sheen lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+"""A GGX, sheen or toon lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
 over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
 (weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
 ``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
@@ -119,6 +119,10 @@ class MicrofacetKind(enum.IntEnum):
     """f0.xy are the coefficients of sheen_pdf."""
     VELVET = 9
     """f0.x is sigma."""
+    TOON = 10
+    """f0 is the shape of a cone about the normal (common/bsdf/toon.glsl)."""
+    GLOSSY_TOON = 11
+    """About the mirrored direction."""
 
 
 Constants("MicrofacetKinds", LOBE=MicrofacetKind)

@@ -105,7 +105,7 @@ float path_survival(float total) { return min(1.0, 4.0 * total); }
 // Whether a smooth lobe reflects so seldom that a shadow ray looks for light objects where its reflection leads, since
 // paths that go there would find them seldom and then very bright. alpha: up to which lobes are smooth.
 bool looks_for_reflected_lights(MicrofacetLobe lobe, vec4 shares, float total, int k, vec3 viewer, float alpha) {
-    if (!lobe_is_specular(lobe, alpha) || lobe_is_sheen(lobe.kind) || !(shares[1 + k] > 0.0)) return false;
+    if (!lobe_is_specular(lobe, alpha) || !lobe_has_facets(lobe.kind) || !(shares[1 + k] > 0.0)) return false;
     float reflected = facet_shares(lobe, lobe_cosine(lobe, viewer)).reflected;
     return reflected > 0.0 && shares[1 + k] * reflected < 0.5 * total;
 }
