@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ....scene import Instance, Light
-from ..meshes.attributes import GENERATED, ISLAND, TANGENT, title_of
+from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
 from ..omissions import objects_of
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
@@ -327,7 +327,7 @@ class ObjectPass:
         key = instance.mesh, len(mesh.attributes), tuple(instance.materials), tuple(instance.attributes)
         if key in self._lacks_nothing:
             return
-        known = {GENERATED, ISLAND, TANGENT, *mesh.attributes, *instance.attributes}
+        known = {GENERATED, ISLAND, POINTINESS, TANGENT, *mesh.attributes, *instance.attributes}
         asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
         if all(attributes.keys() <= known for _, attributes in asked):
             self._lacks_nothing.add(key)
