@@ -80,7 +80,6 @@ USES = {
     "Hair of particle systems": add_hair,
     "Adaptive Subdivision": subdivide,
     "Culling (Simplify)": simplify("use_camera_cull", True),
-    "Texture Limit (Simplify)": simplify("texture_limit_render", "512"),
     "Rolling Shutter": roll,
     "Spherical Stereo": look_around_with_both_eyes,
     "Transparent Glass": see_through,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from .images.images import ImageTable
+from .images.texture_limit import texture_limit
 from .layers import LayerMasks, world_of
 from .light_linking import LightLinks
 from .report import Report
@@ -16,6 +17,8 @@ class ExportContext:
     """Where warnings and images go, and what is the same for all that is exported."""
 
     report: Report
+    viewport: bool = False
+    """Whether what is exported is for a viewport, of which some settings are its own."""
     images: ImageTable = field(default_factory=ImageTable)
     owners: tuple[bpy.types.bpy_struct | None, ...] = ()
     """View layer, scene and world, in the order in which they are asked for attributes."""
@@ -44,6 +47,7 @@ class ExportContext:
         """What follows comes from this depsgraph, as it is now."""
         scene = depsgraph.scene_eval
         self.images.frame = scene.frame_current
+        self.images.longest_side = texture_limit(scene, self.viewport)
         layer = depsgraph.view_layer_eval
         self.owners = (layer, scene, world_of(depsgraph))
         self.material_override = layer.material_override

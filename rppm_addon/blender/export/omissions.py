@@ -85,12 +85,6 @@ OF_SCENES = (
         _culls,
     ),
     Omission(
-        "Texture Limit (Simplify)",
-        "images have their full size",
-        ("render.use_simplify", "cycles.texture_limit_render"),
-        lambda scene: scene.render.use_simplify and _cycles(scene, "texture_limit_render", "OFF") != "OFF",
-    ),
-    Omission(
         "Rolling Shutter",
         "all of the picture is exposed at once",
         ("render.use_motion_blur", "cycles.rolling_shutter_type"),

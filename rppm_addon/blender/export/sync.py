@@ -13,6 +13,7 @@ from ...scene.garbage import collector_paused
 from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
+from .images.texture_limit import texture_limit
 from .layers import overrides_of, world_of
 from .libraries import warn_of_missing
 from .light_linking import LightLinks
@@ -128,7 +129,7 @@ class SceneSync:
     def _begin(self) -> None:
         self._report = self._make_report()
         warn_of_missing(self._report)
-        self._context = ExportContext(self._report)
+        self._context = ExportContext(self._report, self._viewport)
         self._images = self._context.images
         self._objects = ObjectExporter(self._context)
         self._omissions = OmissionList()
@@ -146,7 +147,7 @@ class SceneSync:
         self._most_images = 0
         self._frame: float | None = None
         self._overrides: tuple[object, ...] = ()
-        """What the view layer made of the scene."""
+        """What the view layer made of the scene, and the texture limit."""
         self._light_links = LightLinks()
 
     def update(
@@ -173,7 +174,7 @@ class SceneSync:
         be called again, with a depsgraph that is up to date. Between two calls anything may change: nothing of Blender
         is held, and what changes is exported again.
         """
-        overrides = overrides_of(depsgraph)
+        overrides = *overrides_of(depsgraph), texture_limit(depsgraph.scene_eval, self._viewport)
         if overrides != self._overrides or 0 < self._most_images < len(self._images.images):
             self._begin()
         edits = self.note(depsgraph)
