@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from .culling import Culling
 from .images.images import ImageTable
 from .images.texture_limit import texture_limit
 from .layers import LayerMasks, world_of
@@ -25,6 +26,8 @@ class ExportContext:
     material_override: bpy.types.Material | None = None
     """What all surfaces of the view layer have in place of their materials."""
     masks: LayerMasks = field(default_factory=LayerMasks)
+    culling: Culling = field(default_factory=Culling)
+    """Of objects that the camera does not see; nothing at first."""
     light_links: LightLinks = field(default_factory=LightLinks)
     use_environment: bool = True
     """Whether the view layer has the world's light."""

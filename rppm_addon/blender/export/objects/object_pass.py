@@ -168,7 +168,7 @@ class ObjectPass:
         self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
     ) -> None:
         original = source.original
-        if not (self._shown is None or self._shown(original)):
+        if not (self._shown is None or self._shown(original)) or self._reader.culling.leaves_out(source, matrix):
             return
         uid = original.session_uid
         if self._identify:
@@ -202,7 +202,7 @@ class ObjectPass:
         if kind is None:
             kind = self._kinds[key] = _Kind(source.original.session_uid)
             self._multiple.add(kind.uid)
-        if not owner.shown or not instance.show_self:
+        if not owner.shown or not instance.show_self or self._reader.culling.leaves_out(source, matrix):
             return
         if self._identify:
             self._identity = identity_of(instance, source.original, parent.original)
