@@ -74,8 +74,8 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout R
                             (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
                                 | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u)
                                 | dispersed_flag(closure, lobe, sampled.transmitted),
-                            sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY, lobe_is_diffuse(lobe.kind),
-                            lobe_part(lobe, sampled.transmitted), lobe.ior);
+                            sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
+                            lobe_is_diffuse(lobe.kind), lobe_part(lobe, sampled.transmitted), lobe.ior);
     } else if (is_transparent)
         result = Scattering(-arrival, closure.transparent * (norm / transparent), arrival, true, 0u, 0u, false,
                             PART_TRANSPARENT, 1.0);
