@@ -172,13 +172,14 @@ Arriving arriving_from_light(uint index, uint flags, float radius, Closure closu
     LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(index, closure),
                                                   light_set_at(closure.triangle)),
                                          environment_irradiance, u.x, u.y);
-    if (!(choice.probability > 0.0)) return NOTHING_ARRIVES;
     Light light = lights[choice.light];
-    if (((flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces) return NOTHING_ARRIVES;
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
-    if (!(largest(sampled.weight) > 0.0) || sampled.triangle == closure.triangle) return NOTHING_ARRIVES;
     float side = dot(facing, sampled.direction);
-    if (side == 0.0) return NOTHING_ARRIVES;
+    bool too_far = ((flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces;
+    // All at once, since what each branch gives back would be kept beside what others compute.
+    bool arrives = choice.probability > 0.0 && !too_far && largest(sampled.weight) > 0.0
+                && sampled.triangle != closure.triangle && side != 0.0;
+    if (!arrives) return NOTHING_ARRIVES;
     // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
     float light_pdf = sampled.pdf * light.selection_probability;
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
