@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scene.rppm, view_layer.rppm, light.rppm and a viewport's shading.rppm.
+"""scene.rppm, view_layer.rppm, light.rppm, material.rppm and a viewport's shading.rppm.
 
 The scene's properties are made of what RenderSettings says of its fields.
 """
@@ -185,6 +185,29 @@ class RppmLightProperties(bpy.types.PropertyGroup):
     )
 
 
+class RppmMaterialProperties(bpy.types.PropertyGroup):
+    """Settings of a material."""
+
+    use_dispersion: BoolProperty(
+        name="Dispersion",
+        description="Refract each wavelength by an index of its own, so that glass spreads white light into colors",
+        default=False,
+    )
+    abbe_number: FloatProperty(
+        name="Abbe Number",
+        description=(
+            "How little the glass disperses light, V_d: crown glass 64, diamond 55, dense flint glass 30; smaller "
+            "numbers spread colors further. The nodes' IOR is that of yellow light (587.6 nm)"
+        ),
+        default=64.0,
+        min=1.0,
+        soft_min=10.0,
+        soft_max=100.0,
+        step=100,
+        precision=1,
+    )
+
+
 class RppmViewLayerProperties(bpy.types.PropertyGroup):
     """Switches of the passes for which Blender's view layers have none."""
 
@@ -209,13 +232,14 @@ class RppmShadingProperties(bpy.types.PropertyGroup):
 _OWNERS = {
     bpy.types.Scene: RppmSceneProperties,
     bpy.types.Light: RppmLightProperties,
+    bpy.types.Material: RppmMaterialProperties,
     bpy.types.ViewLayer: RppmViewLayerProperties,
     bpy.types.View3DShading: RppmShadingProperties,
 }
 
 
 def register() -> None:
-    """Give scenes, lights, view layers and viewports their ``rppm``."""
+    """Give scenes, lights, materials, view layers and viewports their ``rppm``."""
     for owner, properties in _OWNERS.items():
         bpy.utils.register_class(properties)
         owner.rppm = props.PointerProperty(type=properties, name="RPPM")

@@ -45,6 +45,11 @@ def _starts() -> dict[str, int]:
     return dict(zip(SHAPES, [0, *ends[:-1]], strict=True))
 
 
+def length() -> int:
+    """Of the list of all tables."""
+    return sum(int(np.prod(shape)) for shape in SHAPES.values())
+
+
 Constants(
     "AlbedoTables",
     signed=True,

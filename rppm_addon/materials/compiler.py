@@ -14,6 +14,7 @@ import numpy as np
 from ..scene.errors import RppmError
 from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ..scene.passes import PassKind, RenderPass
+from .dispersion import disperses
 from .node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
 from .nodes import KINDS
 from .pieces import in_pieces
@@ -77,8 +78,9 @@ class _Scope:
 
 
 class _Compiler:
-    def __init__(self, graph: NodeGraph, aovs: Sequence[RenderPass]) -> None:
+    def __init__(self, graph: NodeGraph, aovs: Sequence[RenderPass], abbe_number: float | None) -> None:
         self._graph = graph
+        self._abbe_number = abbe_number
         self._aovs = aovs
         self._constants: list[float | Resource] = []
         self._places: dict[tuple[int, str], int] = {}
@@ -90,6 +92,11 @@ class _Compiler:
 
     def compile(self) -> CompiledGraph:
         scope = _Scope()
+        text = ""
+        if self._abbe_number is not None and disperses(self._graph):
+            text = '#include "materials/dispersion.glsl"\n'
+            place = self._place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
+            scope.lines.append(f"inverse_abbe_number = constant_float(first + {place}u);")
         if self._graph.normal is not None:
             self._sources[KINDS[BUMP].source] = None
             # Apart: what nodes ask of the surface may be another with the new normal.
@@ -101,7 +108,7 @@ class _Compiler:
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
         aovs = self._aov_function()
-        text = "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
+        text += "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
         text += "".join(self._functions)
         text += (
             "void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {\n"
@@ -343,9 +350,12 @@ def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:
         raise GraphError(f'node "{node.name}" ({node.kind}) {error}') from error
 
 
-def compile_graph(graph: NodeGraph, aovs: Sequence[RenderPass] = ()) -> CompiledGraph:
-    """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered.
+def compile_graph(
+    graph: NodeGraph, aovs: Sequence[RenderPass] = (), abbe_number: float | None = None
+) -> CompiledGraph:
+    """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
+    ``abbe_number``: by which its glass disperses light, None where it does not.
 
     Raises GraphError when nodes, options or links are unknown.
     """
-    return _Compiler(graph, aovs).compile()
+    return _Compiler(graph, aovs, abbe_number).compile()

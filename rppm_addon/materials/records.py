@@ -15,10 +15,17 @@ MATERIAL = Record(
     opaque_shadow="uint",
     depends_on_view="uint",
     pass_index="uint",
+    medium="uint",
+    material_of_medium="uint",
+    unused0="uint",
+    unused1="uint",
 )
 """A material: absorption of its interior in 1/m, the program that evaluates its node graph, and where its constants
 start in MaterialData; whether lights shine through where it is transparent (0) or not (1); whether what it scatters
-depends on where it is seen from (1); and its index for compositors."""
+depends on where it is seen from (1); its index for compositors; and the number of its interior among those that absorb,
+from 1 on, 0 where it does not. ``material_of_medium`` is not of this material: item n - 1 has that of medium n."""
+MOST_MEDIA = 1023
+"""Interiors that absorb; paths have ten bits for the number of one (shaders/materials/medium.glsl)."""
 StorageBlock("Materials", "Material materials[];")
 
 IMAGE_ENTRY = Record("ImageEntry", first_texel="uint", width="uint", height="uint", format="uint")

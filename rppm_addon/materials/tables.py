@@ -16,11 +16,11 @@ from ..scene.node_graphs import NodeGraph
 from ..scene.passes import RenderPass, aov_passes
 from ..scene.scene import Scene
 from ..scene.sharing import same_members
-from . import albedo_tables
+from . import albedo_tables, dispersion
 from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
 from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LightSurface
-from .records import IMAGE_ENTRY, MATERIAL, TexelFormat
+from .records import IMAGE_ENTRY, MATERIAL, MOST_MEDIA, TexelFormat
 from .view_dependence import depends_on_view
 
 
@@ -64,7 +64,7 @@ class MaterialTables(BufferSet):
         self._buffers = {
             name: self.own(GrowingBuffer(context, f"material {name}", self.remedy, texel_bytes=16)) for name in names
         }
-        self._buffers["AlbedoTables"].upload(albedo_tables.load())
+        self._buffers["AlbedoTables"].upload(np.concatenate([albedo_tables.load(), dispersion.table().ravel()]))
         self.default_material = 0
         self.programs: list[str] = []
         self.attribute_names: list[str] = []
@@ -95,7 +95,7 @@ class MaterialTables(BufferSet):
         compiled, self.emits, self.users = [], [], {}
         for material in materials:
             owner = f'Material "{material.name}"'
-            graph, emission = self._compile(material.graph, owner, "it is gray", aovs)
+            graph, emission = self._compile(material.graph, owner, "it is gray", aovs, material.abbe_number)
             compiled.append(graph)
             self.emits.append(emission)
             self.users.setdefault(graph.text, []).append(material.name)
@@ -125,6 +125,12 @@ class MaterialTables(BufferSet):
         for record, interior in zip(records, interiors, strict=True):
             if interior is not None:
                 record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
+        absorbing = np.flatnonzero(records["absorption"].any(axis=1))
+        if len(absorbing) > MOST_MEDIA:
+            self._scene.warn(f"{len(absorbing)} materials have volumes that absorb; the first {MOST_MEDIA} do")
+            absorbing = absorbing[:MOST_MEDIA]
+        records["medium"][absorbing] = 1 + np.arange(len(absorbing))
+        records["material_of_medium"][: len(absorbing)] = absorbing
         self._buffers["Materials"].upload(records)
 
     def follow(self, scene: Scene) -> None:
@@ -142,10 +148,15 @@ class MaterialTables(BufferSet):
         self._images = images
 
     def _compile(
-        self, graph: NodeGraph, owner: str, remedy: str, aovs: Sequence[RenderPass] = ()
+        self,
+        graph: NodeGraph,
+        owner: str,
+        remedy: str,
+        aovs: Sequence[RenderPass] = (),
+        abbe_number: float | None = None,
     ) -> tuple[CompiledGraph, Emits]:
         try:
-            return compile_graph(graph, aovs), emits(graph)
+            return compile_graph(graph, aovs, abbe_number), emits(graph)
         except GraphError as error:
             self._scene.warn(f"{owner}: {error}; {remedy}")
             return CompiledGraph(NEUTRAL_TEXT), Emits.NOTHING

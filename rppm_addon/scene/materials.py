@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass, field
 
+from .declared import declared
 from .node_graphs import NodeGraph
 
 
@@ -18,3 +19,6 @@ class Material:
     """Whether light of light objects and meshes passes where the surface is transparent; the world's always does."""
     pass_index: int = 0
     """Of the pass Material Index."""
+    abbe_number: float | None = field(default=None, metadata=declared(minimum=1.0))
+    """V_d of what refracts light: by it the index depends on the wavelength, and that of the nodes is n_d. None: all
+    wavelengths have the same."""

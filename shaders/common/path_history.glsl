@@ -13,7 +13,7 @@ uint first_scatter(uint history) { return history & HISTORY_FIRST; }
 
 // How a lobe scatters, as Cycles' passes tell it; kind: of the lobe.
 uint lobe_scatter(uint kind, bool transmitted) {
-    if (kind == LOBE_SHEEN) return SCATTER_DIFFUSE;
+    if (lobe_is_diffuse(kind)) return SCATTER_DIFFUSE;
     return transmitted ? SCATTER_TRANSMISSION : SCATTER_GLOSSY;
 }
 

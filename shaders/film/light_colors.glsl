@@ -15,8 +15,8 @@ void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) 
     float cosine = lobe_cosine(lobe, viewer), roughness = sqrt(lobe.alpha);
     uint kind = lobe.kind;
     vec3 reflectance = facet_shares(lobe, cosine).reflectance;
-    if (kind == LOBE_SHEEN) colors.diffuse += lobe.weight * reflectance;
-    else if (kind == LOBE_VELVET) colors.glossy += lobe.weight * reflectance;
+    if (lobe_is_diffuse(kind)) colors.diffuse += lobe.weight * reflectance;
+    else if (!lobe_has_facets(kind)) colors.glossy += lobe.weight * reflectance;
     else if (kind == LOBE_REFRACTION) colors.transmission += lobe.weight;
     else if (kind == LOBE_SHEET) colors.transmission += lobe.weight * white_albedo(roughness, cosine);
     else if (kind == LOBE_MIRROR || kind == LOBE_METAL)

@@ -186,7 +186,8 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
                                                    min(SMOOTHEST_LIT, parameters.specular_alpha));
     event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND))
                 | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
-                | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u);
+                | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
+                | dispersed_flag(closure, lobe, sampled.transmitted);
     return event;
 }
 
@@ -223,7 +224,8 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     path.flags = event.flags;
     path.scatter_pdf = event.pdf;
     path.throughput *= event.weight * (total / (event.probability * survival));
-    if (sets_out) path.flags &= ~PATH_CAUSTIC;
+    // What a gathering ray finds serves neighbors, of other wavelengths: it begins white.
+    if (sets_out) path.flags &= ~(PATH_CAUSTIC | PATH_DISPERSED);
     if (sets_out && gathered) {
         gathering_vertices[index].radius = disk;
         path.throughput *= found_weight;

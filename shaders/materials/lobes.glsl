@@ -151,3 +151,13 @@ MicrofacetLobe velvet_lobe(ClosureBuilder builder, vec3 weight, float sigma, vec
     return MicrofacetLobe(weight, LOBE_VELVET, vec3(max(sigma, 0.01), 0.0, 0.0), 1.0, vec3(1.0), 1.0,
                           pack_unit_vector(given_normal(builder, normal)), ISOTROPIC);
 }
+
+// Glossy cones are followed as microfacets that spread light as far are.
+MicrofacetLobe toon_lobe(ClosureBuilder builder, uint kind, vec3 weight, float size, float fading, vec3 normal) {
+    vec2 angles = clamp(vec2(size, fading), vec2(1e-3, 0.0), vec2(1.0)) * (0.5 * PI);
+    float half_edge = min(0.5 * (angles.x + angles.y), 0.25 * PI), s = sin(half_edge);
+    vec3 n = kind == LOBE_TOON ? given_normal(builder, normal) : reflecting_normal(builder, normal);
+    float alpha = kind == LOBE_TOON ? 1.0 : min(tan(half_edge), 1.0);
+    return MicrofacetLobe(weight, kind, vec3(angles, 2.0 * s * s), alpha, vec3(1.0), 1.0, pack_unit_vector(n),
+                          ISOTROPIC);
+}

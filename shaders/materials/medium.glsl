@@ -4,11 +4,13 @@
 
 layout(std430, binding = 10) readonly buffer Materials;
 
-// A path's flags: 10 bits of its own, then two material numbers plus one, 11 bits each.
-const uint MEDIUM_BITS = 11u, MEDIUM_MASK = 0x7ffu, FIRST_MEDIUM = 10u, SECOND_MEDIUM = 21u;
-const uint PATH_MASK = 0x3ffu;
+// A path's flags: 12 bits of its own, then the numbers of two media, 10 bits each; 0 is none.
+const uint MEDIUM_MASK = 0x3ffu, FIRST_MEDIUM = 12u, SECOND_MEDIUM = 22u;
+const uint PATH_MASK = 0xfffu;
 
-vec3 medium_absorption(uint medium) { return medium == 0u ? vec3(0.0) : materials[medium - 1u].absorption; }
+vec3 medium_absorption(uint medium) {
+    return medium == 0u ? vec3(0.0) : materials[materials[medium - 1u].material_of_medium].absorption;
+}
 
 vec3 path_absorption(uint flags) {
     return medium_absorption((flags >> FIRST_MEDIUM) & MEDIUM_MASK) + medium_absorption(flags >> SECOND_MEDIUM);
@@ -25,8 +27,8 @@ vec3 segment_transmittance(uint flags, Closure closure) {
 
 // The flags of a path after it has passed through the closure's surface.
 uint cross_surface(uint flags, Closure closure) {
-    uint medium = closure.material + 1u;
-    if (medium > MEDIUM_MASK || materials[closure.material].absorption == vec3(0.0)) return flags;
+    uint medium = materials[closure.material].medium;
+    if (medium == 0u) return flags;
     uint first = (flags >> FIRST_MEDIUM) & MEDIUM_MASK, second = flags >> SECOND_MEDIUM;
     if ((closure.flags & CLOSURE_BACKFACING) == 0u) {
         second = first;

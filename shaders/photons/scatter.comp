@@ -72,9 +72,10 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout R
         result = Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
                             lobe_normal(lobe), sampled.transmitted,
                             (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
-                                | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u),
-                            sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY, lobe.kind == LOBE_SHEEN,
-                            lobe_part(lobe, sampled.transmitted), lobe.ior);
+                                | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u)
+                                | dispersed_flag(closure, lobe, sampled.transmitted),
+                            sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
+                            lobe_is_diffuse(lobe.kind), lobe_part(lobe, sampled.transmitted), lobe.ior);
     } else if (is_transparent)
         result = Scattering(-arrival, closure.transparent * (norm / transparent), arrival, true, 0u, 0u, false,
                             PART_TRANSPARENT, 1.0);
@@ -101,7 +102,7 @@ uint scattered_flags(uint path_flags, bool diffuse) {
 // Those of a path as a photon has them.
 uint photon_flags(uint path_flags) {
     const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
-    return (path_flags & PATH_MASK & ~(history | history >> PHOTON_HISTORY_SHIFT))
+    return (path_flags & PHOTON_FLAG_MASK & ~(history | history >> PHOTON_HISTORY_SHIFT))
          | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
 }
 

@@ -71,6 +71,19 @@ Surface surface_at(Ray ray, Hit hit, uint flags) {
     return surface;
 }
 
+#ifdef DISPERSES
+// One for all vertices of a path; but behind each vertex where a camera path gathers, another. Those of photons are
+// spread evenly over the paths of an iteration, those of a pixel over its iterations (Roberts' R1 sequence, 2018).
+float wavelength_choice(uint index, uint flags) {
+    const uint golden = 2654435769u;
+    bool photon = parameters.path_kind == PATH_OF_PHOTON;
+    uint gathers = photon ? 0u : flags & (PATH_GATHERED | PATH_GATHERED_AGAIN);
+    uint start = pcg4d(uvec4(photon ? parameters.iteration : index, gathers, parameters.seed,
+                             STAGE_WAVELENGTH << 24u | parameters.path_kind)).x;
+    return unit_float(start + golden * (photon ? index : parameters.iteration));
+}
+#endif
+
 ClosureBuilder builder_at(Surface surface, float u_choice) {
     return closure_builder(surface.viewer, surface.geometric, surface.normal, surface.backfacing, u_choice);
 }
@@ -160,6 +173,12 @@ void main() {
     builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;
     uint material = attributes[hit.triangle].material;
     ShadingInstance instance = shading_instances[surface.instance];
+#ifdef DISPERSES
+    if (parameters.path_kind != PATH_OF_NONE) {
+        take_wavelength(wavelength_choice(index, flags), (flags & PATH_DISPERSED) == 0u);
+        builder.closure.flags |= CLOSURE_DISPERSES;
+    }
+#endif
     bool unseen = parameters.path_kind == PATH_OF_CAMERA
         && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);

@@ -49,7 +49,7 @@ fast_gi_method ao_bounces ao_bounces_render diffuse_bounces glossy_bounces trans
 """
 _OF_WHAT_IS_NAMED = """
 dicing_rate preview_dicing_rate max_subdivisions dicing_camera offscreen_dicing_scale film_transparent_roughness
-camera_cull_margin distance_cull_margin rolling_shutter_duration texture_limit volume_bounces volume_step_rate
+rolling_shutter_duration volume_bounces volume_step_rate
 volume_preview_step_rate volume_max_steps volume_biased
 """
 

@@ -101,6 +101,15 @@ def mixed(material, factor, first, second, kind="ShaderNodeMixShader"):
     return mix
 
 
+def test_the_abbe_number_is_that_of_the_panel(scene):
+    material, _ = surface("ShaderNodeBsdfGlass")
+    material.rppm.abbe_number = 30.0
+    add_mesh(scene).data.materials.append(material)
+    assert [exported.abbe_number for exported in export(scene).materials] == [None]
+    material.rppm.use_dispersion = True
+    assert [exported.abbe_number for exported in export(scene).materials] == [30.0]
+
+
 def test_nested_mix_and_add(scene):
     material = new_material()
     tree = material.node_tree
@@ -311,8 +320,7 @@ def test_unknown_shaders_become_diffuse(scene, node):
 @pytest.mark.parametrize(
     ("node", "options", "inputs", "standing_in"),
     [
-        ("ShaderNodeBsdfToon", {"component": "GLOSSY"}, {}, "a glossy surface"),
-        ("ShaderNodeBsdfToon", {}, {}, "a diffuse surface"),
+        ("ShaderNodeBsdfToon", {"component": "GLOSSY"}, {}, ""),
         ("ShaderNodeBsdfHair", {"component": "Transmission"}, {}, "a translucent surface"),
         ("ShaderNodeSubsurfaceScattering", {}, {}, "a diffuse surface"),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "ASHIKHMIN_SHIRLEY"}, {}, "GGX"),

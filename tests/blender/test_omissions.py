@@ -43,14 +43,6 @@ def set_of_cycles(block, name, value):
     block.update_tag()
 
 
-def simplify(name, value):
-    def use(scene):
-        scene.render.use_simplify = True
-        setattr(scene.cycles, name, value)
-
-    return use
-
-
 def subdivide_adaptively(mesh, used=True):
     modifier = next(iter(mesh.modifiers), None) or mesh.modifiers.new("smooth", "SUBSURF")
     owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else mesh.cycles
@@ -79,8 +71,6 @@ def look_around_with_both_eyes(scene):
 USES = {
     "Hair of particle systems": add_hair,
     "Adaptive Subdivision": subdivide,
-    "Culling (Simplify)": simplify("use_camera_cull", True),
-    "Texture Limit (Simplify)": simplify("texture_limit_render", "512"),
     "Rolling Shutter": roll,
     "Spherical Stereo": look_around_with_both_eyes,
     "Transparent Glass": see_through,

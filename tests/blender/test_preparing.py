@@ -44,7 +44,7 @@ def add_picture():
 def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepared, monkeypatch):
     add_picture()
     exported = export(lit)
-    expected = {text_of(material.graph) for material in exported.materials}
+    expected = {text_of(material) for material in exported.materials}
 
     def read(*_):
         raise AssertionError("an image was read")
@@ -53,7 +53,7 @@ def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepar
     monkeypatch.setattr(preparing, "_SLICE_SECONDS", 1e-9)  # a material at a time
     go_on()
     (scene,) = prepared.scenes
-    assert {text_of(material.graph) for material in scene.materials} == expected
+    assert {text_of(material) for material in scene.materials} == expected
     assert (scene.settings.direct_light, scene.warnings) == (exported.settings.direct_light, [])
 
 

@@ -15,7 +15,7 @@ from rppm_addon.session.renderer import Progress
 class FakeRenderer:
     made = []
 
-    def __init__(self, device=None, denoiser=None):
+    def __init__(self, device=None, denoiser=None, times_stages=False):
         self.threads = [threading.current_thread()]
         self.released = False
         FakeRenderer.made.append(self)
@@ -129,6 +129,6 @@ def test_an_error_between_iterations_ends_the_render(renderers, monkeypatch):
 
 
 def test_what_the_renderer_raises_reaches_the_caller(renderers, monkeypatch):
-    monkeypatch.setattr(FakeRenderer, "__init__", lambda self, device, denoiser: 1 / 0)
+    monkeypatch.setattr(FakeRenderer, "__init__", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         renderers.render(SCENE, Job())

@@ -32,7 +32,8 @@ void main() {
     MicrofacetLobe back = lobe;
     if (through) back.ior = 1.0 / lobe.ior;
     vec3 forward = evaluate_lobe(lobe, n, wo, wi), reverse = evaluate_lobe(back, through ? -n : n, wi, wo);
-    results[5u * index + 2u] = vec4(forward.x, reverse.x, through ? 1.0 : 0.0, 0.0);
+    results[5u * index + 2u] = vec4(forward.x, reverse.x, through ? 1.0 : 0.0,
+                                       abs(dot(wi, n)) * 4.0 * PI);
     // The direction's pdf, by the means of functions of it.
     vec3 at = sampled.direction;
     results[5u * index + 3u] = largest(sampled.weight) > 0.0 ? vec4(1.0, at.x, at.y * at.y, at.z * at.x) : vec4(0.0);

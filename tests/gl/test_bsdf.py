@@ -17,7 +17,7 @@ Record(
     aspect="float", radiance="uint", beckmann="uint",
 )  # fmt: skip
 SHADER = str(Path(__file__).with_name("lobe_albedo.comp"))
-_, MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET = MicrofacetKind
+_, MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET, TOON, GLOSSY_TOON = MicrofacetKind
 COUNT = 1 << 18
 
 
@@ -139,6 +139,22 @@ def test_velvet(context, library, sigma):
         # Light along the surface is left out.
         reflected = lobe.pairs[(lobe.pairs[:, 2] == 0) & (lobe.pairs[:, :2] > 1e-4).all(axis=1)]
         np.testing.assert_allclose(reflected[:, 0], reflected[:, 1], rtol=2e-3)
+
+
+@pytest.mark.parametrize("kind", [TOON, GLOSSY_TOON])
+@pytest.mark.parametrize(("size", "fading"), [(0.05, 0.1), (0.5, 0.0), (0.8, 0.6)])
+def test_toon(context, library, kind, size, fading):
+    """A cone of even density. Photons are scattered by the same BSDF, seen from where they go."""
+    edge = min(size + fading, 1.0) * np.pi / 2
+    shape = size * np.pi / 2, fading * np.pi / 2, 1 - np.cos(edge)
+    for cosine in (0.35, 0.95):
+        lobe = run(context, library, kind, 1.0, 1.0, cosine, f0=shape)
+        what = f"toon {kind} {size} {fading} cosine {cosine}"
+        for channel in (0, 2):
+            assert_equal_means(lobe.sampled[:, channel], lobe.evaluated[:, channel], what)
+        flux = run(context, library, kind, 1.0, 1.0, cosine, f0=shape, radiance=0)
+        # Of uniform pairs: what leaves to wi, of light from wo.
+        assert_equal_means(flux.sampled[:, 0], flux.pairs[:, 1] * flux.pairs[:, 3], f"{what} flux")
 
 
 @pytest.mark.parametrize("alpha", [0.0, 0.3, 1.0])

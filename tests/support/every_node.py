@@ -36,8 +36,9 @@ def graph_of(names: list[str]) -> NodeGraph:
 
 
 def programs() -> dict[str, str]:
-    """The text of a graph for each file of kinds."""
-    return {
+    """The text of a graph for each file of kinds, and of one whose light is dispersed."""
+    texts = {
         source: compile_graph(graph_of([name for name, kind in KINDS.items() if kind.source == source])).text
         for source in SOURCES
     }
+    return texts | {"dispersion": compile_graph(graph_of(["bsdf_glass", "bsdf_refraction"]), abbe_number=64.0).text}

@@ -72,7 +72,7 @@ def full_scene() -> Scene:
         ],
         materials=[
             material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0])),
-            Material("b", graph_of_everything()),
+            Material("b", graph_of_everything(), abbe_number=30.0),
         ],
         lights=[
             Light(

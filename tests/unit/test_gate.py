@@ -90,6 +90,8 @@ BROKEN = [
     ("materials.1.graph", lambda scene: NodeGraph([ShaderNode("a", inputs={"x": [[1]]})]), "must be a number"),
     ("materials.1.graph", lambda scene: NodeGraph([ShaderNode("a", inputs={"x": (1.0, ())})]), "must be a number"),
     ("materials.1.graph", lambda scene: NodeGraph([ShaderNode("a", inputs={"x": 1 << 400})]), "must be finite"),
+    ("materials.1.abbe_number", lambda scene: 0.0, "abbe_number is 0.0; it must be 1 or more"),
+    ("materials.1.abbe_number", lambda scene: NAN, "abbe_number is nan"),
     ("shutter.instances.0.member", lambda scene: 2, "shutter: instances.0.: member is 2; there are 2 instances"),
     ("shutter.lights.0.matrices", lambda scene: np.full((2, 4, 4), INF), "matrices is inf"),
     ("shutter.lights.0.times", lambda scene: np.array([1.0, 0.0]), "times must ascend"),

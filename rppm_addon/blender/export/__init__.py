@@ -14,6 +14,7 @@ from .camera.camera import export_camera
 from .camera.eyes import Eye, views_of
 from .camera.view import export_view
 from .context import ExportContext
+from .culling import Culling
 from .frames import FrameExporter
 from .layers import world_of
 from .libraries import warn_of_missing
@@ -67,6 +68,7 @@ def export_scene(
     if is_preview:
         scene.settings = preview_settings(scene.settings)
     scene.settings.validate()
+    context.culling = Culling(source, scene.camera)
     objects = ObjectExporter(context)
     blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
     placed = objects.export(depsgraph, identify=blurred or neighbors)

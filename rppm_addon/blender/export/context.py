@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from .culling import Culling
 from .images.images import ImageTable
+from .images.texture_limit import texture_limit
 from .layers import LayerMasks, world_of
 from .light_linking import LightLinks
 from .report import Report
@@ -16,12 +18,16 @@ class ExportContext:
     """Where warnings and images go, and what is the same for all that is exported."""
 
     report: Report
+    viewport: bool = False
+    """Whether what is exported is for a viewport, of which some settings are its own."""
     images: ImageTable = field(default_factory=ImageTable)
     owners: tuple[bpy.types.bpy_struct | None, ...] = ()
     """View layer, scene and world, in the order in which they are asked for attributes."""
     material_override: bpy.types.Material | None = None
     """What all surfaces of the view layer have in place of their materials."""
     masks: LayerMasks = field(default_factory=LayerMasks)
+    culling: Culling = field(default_factory=Culling)
+    """Of objects that the camera does not see; nothing at first."""
     light_links: LightLinks = field(default_factory=LightLinks)
     use_environment: bool = True
     """Whether the view layer has the world's light."""
@@ -44,6 +50,7 @@ class ExportContext:
         """What follows comes from this depsgraph, as it is now."""
         scene = depsgraph.scene_eval
         self.images.frame = scene.frame_current
+        self.images.longest_side = texture_limit(scene, self.viewport)
         layer = depsgraph.view_layer_eval
         self.owners = (layer, scene, world_of(depsgraph))
         self.material_override = layer.material_override

@@ -15,6 +15,7 @@ from ...scene import CameraMovement, Deformation, Instance, Light, Mesh, Movemen
 from .camera.camera import camera_pose, export_camera
 from .camera.eyes import Eye
 from .context import ExportContext
+from .culling import Culling
 from .meshes.meshes import read_shape, read_velocities
 from .objects.matrices import usable_matrices
 from .objects.object_pass import Identity, Placed, identity_of
@@ -136,6 +137,7 @@ class MotionExporter:
         objects.meshes.forget(read_edits(self._depsgraph).shapes)
         source, report = self._depsgraph.scene_eval, self._context.report
         scene.camera = export_camera(source, self._depsgraph, report, camera, self._eye)
+        self._context.culling = Culling(source, scene.camera)
         return objects.export(self._depsgraph, identify=True)
 
     def _all_times(self) -> list[float]:

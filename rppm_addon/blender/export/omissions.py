@@ -65,12 +65,6 @@ OF_OBJECTS = (
 """By what an evaluated object uses."""
 
 
-def _culls(scene: bpy.types.Scene) -> bool:
-    return scene.render.use_simplify and bool(
-        _cycles(scene, "use_camera_cull", False) or _cycles(scene, "use_distance_cull", False)
-    )
-
-
 def _is_spherical_stereo(scene: bpy.types.Scene) -> bool:
     camera = None if scene.camera is None else scene.camera.data
     panoramic = scene.render.use_multiview and getattr(camera, "type", "") == "PANO"
@@ -78,18 +72,6 @@ def _is_spherical_stereo(scene: bpy.types.Scene) -> bool:
 
 
 OF_SCENES = (
-    Omission(
-        "Culling (Simplify)",
-        "objects far away or outside the camera's view are rendered",
-        ("render.use_simplify", "cycles.use_camera_cull", "cycles.use_distance_cull"),
-        _culls,
-    ),
-    Omission(
-        "Texture Limit (Simplify)",
-        "images have their full size",
-        ("render.use_simplify", "cycles.texture_limit_render"),
-        lambda scene: scene.render.use_simplify and _cycles(scene, "texture_limit_render", "OFF") != "OFF",
-    ),
     Omission(
         "Rolling Shutter",
         "all of the picture is exposed at once",

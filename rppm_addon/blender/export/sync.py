@@ -13,6 +13,8 @@ from ...scene.garbage import collector_paused
 from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
+from .culling import Culling
+from .images.texture_limit import texture_limit
 from .layers import overrides_of, world_of
 from .libraries import warn_of_missing
 from .light_linking import LightLinks
@@ -128,7 +130,7 @@ class SceneSync:
     def _begin(self) -> None:
         self._report = self._make_report()
         warn_of_missing(self._report)
-        self._context = ExportContext(self._report)
+        self._context = ExportContext(self._report, self._viewport)
         self._images = self._context.images
         self._objects = ObjectExporter(self._context)
         self._omissions = OmissionList()
@@ -146,8 +148,10 @@ class SceneSync:
         self._most_images = 0
         self._frame: float | None = None
         self._overrides: tuple[object, ...] = ()
-        """What the view layer made of the scene."""
+        """What the view layer made of the scene, and the texture limit."""
         self._light_links = LightLinks()
+        self._culling: tuple[object, ...] = ()
+        """Culling.state."""
 
     def update(
         self, depsgraph: bpy.types.Depsgraph, camera: Camera, shown: Callable[[bpy.types.Object], bool] | None = None
@@ -173,7 +177,7 @@ class SceneSync:
         be called again, with a depsgraph that is up to date. Between two calls anything may change: nothing of Blender
         is held, and what changes is exported again.
         """
-        overrides = overrides_of(depsgraph)
+        overrides = *overrides_of(depsgraph), texture_limit(depsgraph.scene_eval, self._viewport)
         if overrides != self._overrides or 0 < self._most_images < len(self._images.images):
             self._begin()
         edits = self.note(depsgraph)
@@ -243,6 +247,10 @@ class SceneSync:
         """Bring ``scene`` up to date. Raises Unfinished when the slice is over."""
         source = depsgraph.scene_eval
         self._context.read_from(depsgraph)
+        culling = self._context.culling = Culling() if self._viewport else Culling(source, camera)
+        if culling.state != self._culling:
+            self._culling = culling.state
+            self.relist()
         self._add_untracked(source.frame_current_final)
         self._renew_materials(depsgraph, edits)
         if self._world is None:
@@ -252,6 +260,7 @@ class SceneSync:
             self._world_may_change = self._context.untracked_reads > reads
         pending = self._pending
         lists = self._placed is None or pending.others or pending.attributes or pending.objects != edits.objects.keys()
+        lists |= culling.is_used
         if lists or not self._patch(depsgraph, edits):
             self._list(depsgraph, shown)
         else:

@@ -49,6 +49,10 @@ class RPPM_PT_material_settings(RppmMaterialPanel, bpy.types.Panel):
         for name in ("displacement_method", "use_transparent_shadow"):
             if hasattr(material, name):
                 column.prop(material, name)
+        column.prop(material.rppm, "use_dispersion")
+        row = column.row()
+        row.active = material.rppm.use_dispersion
+        row.prop(material.rppm, "abbe_number")
 
 
 class RppmWorldPanel(RppmNodePanel):

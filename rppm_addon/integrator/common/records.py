@@ -30,6 +30,7 @@ class RandomStage(enum.IntEnum):
     GATHERING = 7
     CAMERA = 8
     SHADOW_CATCHER = 9
+    WAVELENGTH = 10
 
 
 Constants("RandomStages", STAGE=RandomStage)
@@ -89,7 +90,7 @@ MICROFACET_LOBE = Record(
     normal="uint",
     anisotropy="uint",
 )
-"""A GGX or sheen lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+"""A GGX, sheen or toon lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
 over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
 (weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
 ``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
@@ -118,6 +119,10 @@ class MicrofacetKind(enum.IntEnum):
     """f0.xy are the coefficients of sheen_pdf."""
     VELVET = 9
     """f0.x is sigma."""
+    TOON = 10
+    """f0 is the shape of a cone about the normal (common/bsdf/toon.glsl)."""
+    GLOSSY_TOON = 11
+    """About the mirrored direction."""
 
 
 Constants("MicrofacetKinds", LOBE=MicrofacetKind)
@@ -262,6 +267,8 @@ Constants("PhotonHistory", PHOTON=PhotonHistory, PHOTON_HISTORY_SHIFT=7)
 PHOTON_FLAG_BITS = 10
 """Of a photon's word; the others are a float's."""
 Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
+Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
+"""A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""
 
 
 class Scatter(enum.IntEnum):

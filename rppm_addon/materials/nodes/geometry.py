@@ -41,7 +41,7 @@ KINDS = {
     "new_geometry": _geometry(
         {
             **dict.fromkeys(("position", "normal", "tangent", "true_normal", "incoming", "parametric"), VECTOR),
-            **dict.fromkeys(("backfacing", "pointiness"), FLOAT),
+            "backfacing": FLOAT,
         },
     ),
     "random_per_island": _geometry({"random_per_island": FLOAT}, resources=("attribute",)),

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes.
 
-Approximations: GGX for the distribution of Ashikhmin and Shirley; diffuse for subsurface scattering and
-for toon shading, whose glossy part is GGX; for hair, GGX stretched across the fiber and translucency; for the physical
-conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
+Approximations: GGX for the distribution of Ashikhmin and Shirley; diffuse for subsurface scattering; for hair,
+GGX stretched across the fiber and translucency; for the physical conductor of the metallic node, the F82 curve that
+meets its own at normal incidence and at 82 degrees.
 """
 
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, SHADER, VECTOR, NodeKind
@@ -83,7 +83,6 @@ KINDS = {
         "bsdf",
         _GRAY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL,
         {"component": ("DIFFUSE", "GLOSSY")},
-        {"DIFFUSE": "a diffuse surface", "GLOSSY": "a glossy surface"},
     ),
     "bsdf_hair": _shader(
         "bsdf",

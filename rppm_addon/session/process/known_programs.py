@@ -3,7 +3,7 @@
 
 from ...materials.compiler import NEUTRAL_TEXT, GraphError, compile_graph
 from ...materials.tables import MaterialTables, default_material
-from ...scene.node_graphs import NodeGraph
+from ...scene.materials import Material
 from ...scene.scene import Scene
 
 MOST_TRIANGLES = 100_000
@@ -28,13 +28,13 @@ class KnownPrograms:
         if sum(triangles[instance.mesh] for instance in scene.instances if instance.mesh in known) > MOST_TRIANGLES:
             return False
         return bool(self._texts) and all(
-            text_of(material.graph) in self._texts for material in (*scene.materials, default_material())
+            text_of(material) in self._texts for material in (*scene.materials, default_material())
         )
 
 
-def text_of(graph: NodeGraph) -> str:
-    """The GLSL that a material with this graph is rendered with."""
+def text_of(material: Material) -> str:
+    """The GLSL that a material is rendered with."""
     try:
-        return compile_graph(graph).text
+        return compile_graph(material.graph, abbe_number=material.abbe_number).text
     except GraphError:
         return NEUTRAL_TEXT

@@ -54,7 +54,7 @@ class Preparation:
             mapper.link_programs(dataclasses.replace(scene, materials=[]))
         finally:
             mapper.release()
-        for text in dict.fromkeys(text_of(material.graph) for material in scene.materials):
+        for text in dict.fromkeys(text_of(material) for material in scene.materials):
             yield
             has_stand_in(self._library, text)
 

@@ -59,14 +59,14 @@ class StandIns:
 
     def _text(self, material: Material) -> str:
         known = self._texts.get(id(material))
-        return text_of(material.graph) if known is None else known[1]
+        return text_of(material) if known is None else known[1]
 
     def _shown(self, material: Material, scene: Scene) -> Material:
         if self._texts[id(material)][1] not in self._waited_for:
             return material
         if id(material) not in self._made:
             graph = stand_in_graph(material.graph, scene.images)
-            self._made[id(material)] = material, dataclasses.replace(material, graph=graph)
+            self._made[id(material)] = material, dataclasses.replace(material, graph=graph, abbe_number=None)
         return self._made[id(material)][1]
 
     @property

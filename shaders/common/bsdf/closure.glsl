@@ -2,11 +2,13 @@
 #include <Closure>
 #include <ClosureLobes>
 #include <Terminators>
+#include <Dispersion>
 #include "common/bsdf/microfacet.glsl"
 
 const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
            CLOSURE_KEEPS_LIGHT = 8u,  // photons light it, but it sends none on
-           CLOSURE_CROWDED = 16u;     // one part, chosen by chance, stands for others
+           CLOSURE_CROWDED = 16u,     // one part, chosen by chance, stands for others
+           CLOSURE_DISPERSES = 64u;   // the indices of its refracting lobes are those of the path's wavelength
 const uint LOBE_COUNT_SHIFT = 8u;  // where in the flags the number of lobes stands
 
 const ClosureLobe EMPTY_LOBE = ClosureLobe(vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC);
@@ -44,6 +46,17 @@ bool lobe_stores(MicrofacetLobe lobe, float specular_alpha) {
 }
 bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) {
     return lobe.kind != LOBE_NONE && lobe.alpha <= specular_alpha;
+}
+
+// Whether the weight of what a lobe scatters this way holds the color of a path's wavelength. From within, what is
+// reflected does, too: total reflection begins at another angle for each wavelength.
+bool is_dispersed(MicrofacetLobe lobe, bool transmitted) {
+    return lobe.kind >= LOBE_GLASS && lobe.kind <= LOBE_COATED_GLASS && (transmitted || lobe.ior < 1.0);
+}
+
+// Of a path from there on.
+uint dispersed_flag(Closure closure, MicrofacetLobe lobe, bool transmitted) {
+    return (closure.flags & CLOSURE_DISPERSES) != 0u && is_dispersed(lobe, transmitted) ? PATH_DISPERSED : 0u;
 }
 
 // Smoother lobes cannot be evaluated toward a light, only followed.
@@ -92,7 +105,7 @@ float path_survival(float total) { return min(1.0, 4.0 * total); }
 // Whether a smooth lobe reflects so seldom that a shadow ray looks for light objects where its reflection leads, since
 // paths that go there would find them seldom and then very bright. alpha: up to which lobes are smooth.
 bool looks_for_reflected_lights(MicrofacetLobe lobe, vec4 shares, float total, int k, vec3 viewer, float alpha) {
-    if (!lobe_is_specular(lobe, alpha) || lobe_is_sheen(lobe.kind) || !(shares[1 + k] > 0.0)) return false;
+    if (!lobe_is_specular(lobe, alpha) || !lobe_has_facets(lobe.kind) || !(shares[1 + k] > 0.0)) return false;
     float reflected = facet_shares(lobe, lobe_cosine(lobe, viewer)).reflected;
     return reflected > 0.0 && shares[1 + k] * reflected < 0.5 * total;
 }

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lobes of a closure: microfacets that reflect or refract, and sheen. n is a lobe's own normal.
+// Lobes of a closure: microfacets that reflect or refract, sheen and toon. n is a lobe's own normal.
 
 #include <MicrofacetLobe>
 #include "common/bsdf/diffuse.glsl"
 #include "common/bsdf/fresnel.glsl"
 #include "common/bsdf/ggx.glsl"
 #include "common/bsdf/sheen.glsl"
+#include "common/bsdf/toon.glsl"
 
 #include <MicrofacetKinds>
 
 bool lobe_transmits(uint kind) { return kind >= LOBE_GLASS && kind <= LOBE_SHEET; }
-bool lobe_is_sheen(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_VELVET; }
+bool lobe_is_toon(uint kind) { return kind >= LOBE_TOON; }
+bool lobe_has_facets(uint kind) { return kind < LOBE_SHEEN; }
+// For Cycles, as are the diffuse parts of a closure.
+bool lobe_is_diffuse(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_TOON; }
 
 // Of these lobes f0 is a share of the light, as weight is of the others'.
 bool passes_by_f0(uint kind) { return kind == LOBE_GLASS || kind == LOBE_COATED_GLASS; }
@@ -27,8 +31,8 @@ vec3 unpack_tint(uint bits) {
 
 // What a normal map takes from light to or from wi; smooth_normal: packed, without the map.
 float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
-    return lobe.kind == LOBE_SHEEN ? bump_shadowing(unpack_unit_vector(smooth_normal), unpack_unit_vector(lobe.normal),
-                                                    wi) : 1.0;
+    return lobe_is_diffuse(lobe.kind) ? bump_shadowing(unpack_unit_vector(smooth_normal),
+                                                       unpack_unit_vector(lobe.normal), wi) : 1.0;
 }
 
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
@@ -51,7 +55,7 @@ FacetShares facet_shares(MicrofacetLobe lobe, float cosine) {
     else if (glass) shares.reflectance = tinted_reflectance(reflectance, f0, lobe.tint);
     else if (coated_glass || lobe.kind == LOBE_DIELECTRIC)
         shares.reflectance = mix(coated_glass ? lobe.tint : lobe.f0, vec3(1.0), rise);
-    else if (lobe.kind == LOBE_MIRROR || lobe_is_sheen(lobe.kind)) shares.reflectance = vec3(1.0);
+    else if (lobe.kind == LOBE_MIRROR || !lobe_has_facets(lobe.kind)) shares.reflectance = vec3(1.0);
     if (glass) shares.reflected = reflectance;
     else if (coated_glass) shares.reflected = mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, rise);
     if (glass || coated_glass) shares.transmittance = lobe.f0 * (1.0 - shares.reflectance);
@@ -112,10 +116,22 @@ LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, f
     return result;
 }
 
+// What a viewer sees depends on where the light is, not the other way round: photons go all ways.
+LobeSample sample_toon_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, bool radiance) {
+    bool diffuse = lobe.kind == LOBE_TOON, evenly = diffuse && !radiance;
+    vec3 axis = diffuse ? n : reflect(-wo, n);
+    vec3 direction = evenly ? cosine_hemisphere(n, disk) : sample_toon(lobe.f0, axis, disk);
+    float cosine_o = dot(n, wo), cosine_i = dot(n, direction);
+    float scale = radiance ? 1.0 : (evenly ? PI * toon_pdf(lobe.f0) : cosine_i) / cosine_o;
+    float intensity = toon_intensity(lobe.f0, evenly ? cosine_o : dot(axis, direction));
+    return LobeSample(direction, cosine_i > 0.0 ? lobe.weight * (scale * intensity) : vec3(0.0), false);
+}
+
 // disk: sample_disk of two random numbers, which callers that choose among lobes and diffuse parts have anyway.
 LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
     LobeSample result;
-    if (!lobe_is_sheen(lobe.kind)) result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
+    if (lobe_has_facets(lobe.kind)) result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
+    else if (lobe_is_toon(lobe.kind)) result = sample_toon_lobe(lobe, n, wo, disk, radiance);
     else {
         SheenFrame sheen = sheen_frame(n, wo);
         bool fitted = lobe.kind == LOBE_SHEEN;
@@ -179,8 +195,13 @@ LobeValue microfacet_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 
 LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     face_sheet(lobe, n, wi);
-    if (!lobe_is_sheen(lobe.kind)) return microfacet_value(lobe, n, wo, wi);
+    if (lobe_has_facets(lobe.kind)) return microfacet_value(lobe, n, wo, wi);
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
+    if (lobe_is_toon(lobe.kind)) {
+        float intensity = toon_intensity(lobe.f0, dot(lobe.kind == LOBE_TOON ? n : reflect(-wo, n), wi));
+        float pdf = cosine_o > 0.0 && cosine_i > 0.0 && intensity > 0.0 ? toon_pdf(lobe.f0) : 0.0;
+        return LobeValue(lobe.weight * (pdf * intensity / max(cosine_i, 1e-20)), pdf);
+    }
     bool fitted = lobe.kind == LOBE_SHEEN;
     float fitted_pdf = sheen_pdf(lobe.f0.xy, n, wo, wi);
     LobeValue value = LobeValue(vec3(0.0), fitted ? fitted_pdf : max(dot(n, wi), 0.0) / PI);

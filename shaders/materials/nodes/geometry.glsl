@@ -54,15 +54,13 @@ void node_random_per_island(Surface surface, uint layer, out float random) {
 }
 
 void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out vec3 tangent,
-                       out vec3 true_normal, out vec3 incoming, out vec3 parametric, out float backfacing,
-                       out float pointiness) {
+                       out vec3 true_normal, out vec3 incoming, out vec3 parametric, out float backfacing) {
     position = surface.position;
     normal = surface.normal;
     true_normal = surface.geometric;
     incoming = surface.viewer;
     parametric = vec3(surface.barycentrics.x, surface.barycentrics.y, 0.0);
     backfacing = surface.backfacing ? 1.0 : 0.0;
-    pointiness = 0.5;
     tangent = default_tangent(surface);
 }
 

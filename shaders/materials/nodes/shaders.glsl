@@ -113,11 +113,10 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
     add_lobe(builder, metal_lobe(at, vec3(weight), f0, edge, distribution == 2, white_albedos(at)));
 }
 
-// A diffuse or a glossy surface stands in.
 void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, vec3 color, float size,
                     float smoothness, vec3 normal) {
-    if (component == 0) add_diffuse(builder, vec3(weight), max(color, 0.0), 0.0, normal);
-    else add_mirror(builder, isotropic_microfacets(builder, normal, unit(size)), weight, max(color, 0.0), false);
+    add_lobe(builder, toon_lobe(builder, component == 0 ? LOBE_TOON : LOBE_GLOSSY_TOON, weight * max(color, 0.0), size,
+                                smoothness, normal));
 }
 
 // A glossy surface stretched across the fiber, or a translucent one, stands in.

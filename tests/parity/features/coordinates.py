@@ -68,10 +68,6 @@ value(
     "Geometry",
     "Pointiness",
     lambda net: net.out("NewGeometry", "Pointiness"),
-    warns=True,
-    mean=0.05,
-    block=0.3,
-    reason="surfaces count as flat",
 )
 
 CAMERA = (("View Vector", 0.5, 0.5), ("View Z Depth", 0.1, 0.0), ("View Distance", 0.1, 0.0))

@@ -158,6 +158,20 @@ value(
     lambda net: texture(inputs={"Vector": net.out("UVMap", uv_map="Second")})(net),
     prepare=second_uv,
 )
+
+
+def _limited(kind, width, height):
+    def give(net):
+        scene = bpy.context.scene
+        scene.render.use_simplify, scene.cycles.texture_limit_render = True, "128"
+        loaded = bpy.data.images.load(picture(kind, width, height))
+        return net.out("TexImage", image=loaded)
+
+    return give
+
+
+value(GROUP, "texture limit", _limited("png", 300, 140))
+value(GROUP, "texture limit, float", _limited("exr", 520, 2), 0.3, 0.5)
 value(GROUP, "without an image", lambda net: net.out("TexImage"), warns=True)
 
 

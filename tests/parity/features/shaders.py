@@ -69,7 +69,9 @@ lit("Sheen", "ASHIKHMIN", shader("BsdfSheen", COLOR | {"Roughness": 0.4}, distri
 lit("Emission", "plain", shader("Emission", COLOR | {"Strength": 2.0}), effort=3)
 lit("Holdout", "plain", shader("Holdout"))
 lit("Metallic", "plain", shader("BsdfMetallic", {"Roughness": 0.3}))
-lit("Toon", "plain", shader("BsdfToon", COLOR), mean=0.05, block=1.8, warns=True, reason="a diffuse surface stands in")
+lit("Toon", "plain", shader("BsdfToon", COLOR))
+lit("Toon", "smooth", shader("BsdfToon", COLOR | {"Size": 0.8, "Smooth": 0.6}))
+lit("Toon", "glossy", shader("BsdfToon", COLOR | {"Size": 0.2, "Smooth": 0.2}, component="GLOSSY"))
 lit("Subsurface Scattering", "small radius", shader("SubsurfaceScattering", {"Scale": 0.02}), warns=True)
 lit(
     "Ray Portal",

@@ -11,6 +11,7 @@ from . import (  # noqa: F401
     profiles,
     shaders,
     shadow_terminator,
+    simplify,
     values,
     worlds,
     zones_and_closures,

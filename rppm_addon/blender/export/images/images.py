@@ -14,6 +14,7 @@ from ....scene.whole_files import is_no_file
 from ..slices import Slices
 from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 from .kept_images import keep, kept
+from .texture_limit import limited
 
 Warn = Callable[[str], None]
 """Tells the user what is done about the node that shows an image."""
@@ -32,6 +33,8 @@ class ImageTable:
         self.images: list[Image] = []
         self.frame = 1
         """Of the scene, whose sequences and movies are shown."""
+        self.longest_side = 0
+        """Pixels that no side of an image exceeds, 0 for any."""
         self.reads_by_frame = 0
         """How often an image was asked for that depends on the frame."""
         self.slices = Slices()
@@ -87,7 +90,7 @@ class ImageTable:
     ) -> int:
         if key not in self._indices:
             record = self._unfinished.setdefault(key, {})
-            exported = None if _is_no_file(image.filepath, image) else _export(image, load, self.slices, record)
+            exported = self._pixels(image, load, record)
             del self._unfinished[key]
             if exported is None:
                 self._indices[key] = MISSING
@@ -98,6 +101,15 @@ class ImageTable:
             place = image.filepath or "no file"
             warn(f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
         return self._indices[key]
+
+    def _pixels(self, image: bpy.types.Image, load: Callable[[], bpy.types.Image | None], record: dict) -> Image | None:
+        if "whole" not in record:
+            is_none = _is_no_file(image.filepath, image)
+            record["whole"] = None if is_none else _export(image, load, self.slices, record)
+        whole = record["whole"]
+        if whole is None or self.longest_side == 0:
+            return whole
+        return self.slices.computed(record, "limited", lambda: limited(whole, self.longest_side))
 
 
 def _export(

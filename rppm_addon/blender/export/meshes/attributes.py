@@ -10,12 +10,15 @@ import numpy as np
 from ....scene import AttributeDomain, Mesh, MeshAttribute
 from ..slices import Slices
 from .meshes import read_uv
+from .pointiness import pointiness
 from .tangents import corner_tangents, sphere_uv
 
 GENERATED = ".generated"
 """Name under which Blender's generated coordinates are exported."""
 ISLAND = ".random_per_island"
 """Name under which a random number for each connected part is exported."""
+POINTINESS = ".pointiness"
+"""Name under which the vertices' pointiness is exported."""
 TANGENT = ".tangent:"
 """Before the name of a UV map, the name under which its tangents are exported; alone, those of the map in use."""
 ACTIVE_COLOR = ".active_color"
@@ -66,7 +69,7 @@ def export_attribute(
 
     record: what was done of it in slices before. Raises Unfinished.
     """
-    if name == ISLAND or name.startswith(TANGENT):
+    if name in {ISLAND, POINTINESS} or name.startswith(TANGENT):
         return _computed(exported, mesh, name, slices, record)
     return slices.step(record, name, lambda: _read(exported, mesh, name))
 
@@ -79,6 +82,9 @@ def _computed(
         count, edges = len(mesh.vertices), slices.step(record, (name, "read"), lambda: _edges(mesh))
         numbers = slices.computed(record, name, lambda: _random_per_island(count, edges))
         return MeshAttribute(AttributeDomain.POINT, numbers)
+    if name == POINTINESS:
+        read = slices.step(record, (name, "read"), lambda: (*_vertices(mesh), _edges(mesh)))
+        return MeshAttribute(AttributeDomain.POINT, slices.computed(record, name, lambda: pointiness(*read)))
     uv = slices.step(record, (name, "read"), lambda: _uv_of_tangents(exported, mesh, name.removeprefix(TANGENT)))
     if uv is None:
         return None
@@ -156,6 +162,14 @@ def _uv_of_tangents(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> np.ndarr
     places = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("undeformed_co", places)
     return sphere_uv(places.reshape(-1, 3))[exported.corner_vertices]
+
+
+def _vertices(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """(vertices, 3) places and normals, each."""
+    places, normals = (np.empty(3 * len(mesh.vertices), np.float32) for _ in range(2))
+    mesh.vertices.foreach_get("co", places)
+    mesh.vertex_normals.foreach_get("vector", normals)
+    return places.reshape(-1, 3), normals.reshape(-1, 3)
 
 
 def _edges(mesh: bpy.types.Mesh) -> np.ndarray:

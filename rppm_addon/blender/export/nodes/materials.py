@@ -99,6 +99,8 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
     ]
     shadow = getattr(material, "use_transparent_shadow", True)
     exported = Material(material.name, graph, transparent_shadow=shadow, pass_index=material.pass_index)
+    if hasattr(material, "rppm") and material.rppm.use_dispersion:
+        exported.abbe_number = material.rppm.abbe_number
     if exporter.is_linked(output.inputs["Volume"], ()):
         exported.interior = _interior(owner, context, tree)
         if not exporter.is_linked(output.inputs["Surface"], ()):

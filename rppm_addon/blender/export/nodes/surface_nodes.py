@@ -13,7 +13,7 @@ from ....scene import Image, Link
 from ....scene.sky import Sky
 from ....scene.whole_files import is_no_file
 from ..images.images import is_associated
-from ..meshes.attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, TANGENT, attribute_of
+from ..meshes.attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, POINTINESS, TANGENT, attribute_of
 from .graphs import GraphExporter, handles, snake_case
 from .links import Path
 
@@ -60,8 +60,7 @@ def _geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.N
     if name == "random_per_island":
         return exporter.shared("random_per_island", name, ISLAND)
     if name == "pointiness":
-        exporter.warn(node, "has Pointiness, which is not rendered; surfaces count as flat")
-        return 0.5
+        return exporter.shared("attribute", "fac", POINTINESS)
     return exporter.shared("new_geometry", name)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ....scene import Instance, Light, LightLinking, RayVisibility
 from ..context import ExportContext
+from ..culling import Culling
 from ..layers import light_group_of
 from ..lights.lights import export_light
 from ..meshes.attributes import attribute_of
@@ -122,6 +123,11 @@ class InstanceReader:
     def use_surfaces(self) -> bool:
         """Whether the view layer has anything but lights."""
         return self._context.use_surfaces
+
+    @property
+    def culling(self) -> Culling:
+        """What is left out."""
+        return self._context.culling
 
     @property
     def has_masks(self) -> bool:

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ....scene import Instance, Light
-from ..meshes.attributes import GENERATED, ISLAND, TANGENT, title_of
+from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
 from ..omissions import objects_of
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
@@ -168,7 +168,7 @@ class ObjectPass:
         self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
     ) -> None:
         original = source.original
-        if not (self._shown is None or self._shown(original)):
+        if not (self._shown is None or self._shown(original)) or self._reader.culling.leaves_out(source, matrix):
             return
         uid = original.session_uid
         if self._identify:
@@ -202,7 +202,7 @@ class ObjectPass:
         if kind is None:
             kind = self._kinds[key] = _Kind(source.original.session_uid)
             self._multiple.add(kind.uid)
-        if not owner.shown or not instance.show_self:
+        if not owner.shown or not instance.show_self or self._reader.culling.leaves_out(source, matrix):
             return
         if self._identify:
             self._identity = identity_of(instance, source.original, parent.original)
@@ -327,7 +327,7 @@ class ObjectPass:
         key = instance.mesh, len(mesh.attributes), tuple(instance.materials), tuple(instance.attributes)
         if key in self._lacks_nothing:
             return
-        known = {GENERATED, ISLAND, TANGENT, *mesh.attributes, *instance.attributes}
+        known = {GENERATED, ISLAND, POINTINESS, TANGENT, *mesh.attributes, *instance.attributes}
         asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
         if all(attributes.keys() <= known for _, attributes in asked):
             self._lacks_nothing.add(key)
