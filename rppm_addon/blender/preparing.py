@@ -49,7 +49,7 @@ class _Preparing:
     """Exports a file's materials bit by bit, and has their programs compiled."""
 
     def __init__(self) -> None:
-        self._context = ExportContext(_NoReport(), _NoImages())
+        self._context = ExportContext(_NoReport(), viewport=True, images=_NoImages())
         self._names = [material.name for material in bpy.data.materials if material.users > material.use_fake_user]
         self._materials: list[Material] = []
 
