@@ -8,36 +8,9 @@ Both scenes show the same objects. F12 in the scene Picture renders both. Length
 import math
 
 import bpy
-from sample_scene import add_faces, color_world, material, save, set_up_pictures
+from sample_scene import add_faces, color_world, material, save, set_up_pictures, surface_of_revolution
 
 from mathutils import Vector  # isort: skip
-
-
-def surface_of_revolution(name, profile, surface, around=96):
-    """Round the Z axis, smooth; profile: closed, (radius, height) each; points on the axis are radius 0."""
-    rings = [
-        [(radius * math.cos(u), radius * math.sin(u), height) for u in (math.tau * i / around for i in range(around))]
-        if radius
-        else [(0.0, 0.0, height)]
-        for radius, height in profile
-    ]
-    points, starts = [], []
-    for ring in rings:
-        starts.append(len(points))
-        points += ring
-    faces = []
-    for k in range(len(rings)):
-        low, high = k, (k + 1) % len(rings)
-        if len(rings[low]) == len(rings[high]) == 1:
-            continue
-        for i in range(around):
-            corners = []
-            for ring, order in ((low, (i, i + 1)), (high, (i + 1, i))):
-                corners += [starts[ring] + (0 if len(rings[ring]) == 1 else j % around) for j in order]
-            faces.append(tuple(dict.fromkeys(corners)))
-    made = add_faces(name, points, faces, surface)
-    made.data.shade_smooth()
-    return made
 
 
 def build_table():

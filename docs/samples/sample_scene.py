@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the scripts that make the samples do alike."""
 
+import math
 import sys
 from pathlib import Path
 
@@ -32,6 +33,33 @@ def add_faces(name, points, faces, surface):
     data.materials.append(surface)
     made = bpy.data.objects.new(name, data)
     bpy.context.collection.objects.link(made)
+    return made
+
+
+def surface_of_revolution(name, profile, surface, around=96):
+    """Round the Z axis, smooth; profile: closed, (radius, height) each; points on the axis are radius 0."""
+    rings = [
+        [(radius * math.cos(u), radius * math.sin(u), height) for u in (math.tau * i / around for i in range(around))]
+        if radius
+        else [(0.0, 0.0, height)]
+        for radius, height in profile
+    ]
+    points, starts = [], []
+    for ring in rings:
+        starts.append(len(points))
+        points += ring
+    faces = []
+    for k in range(len(rings)):
+        low, high = k, (k + 1) % len(rings)
+        if len(rings[low]) == len(rings[high]) == 1:
+            continue
+        for i in range(around):
+            corners = []
+            for ring, order in ((low, (i, i + 1)), (high, (i + 1, i))):
+                corners += [starts[ring] + (0 if len(rings[ring]) == 1 else j % around) for j in order]
+            faces.append(tuple(dict.fromkeys(corners)))
+    made = add_faces(name, points, faces, surface)
+    made.data.shade_smooth()
     return made
 
 
