@@ -16,6 +16,7 @@ from typing import Any
 
 from ..scene.errors import DeviceError
 from .devices import Choice, Device, choose, list_devices
+from .driver_errors import OUT_OF_MEMORY, DriverErrors
 from .kernel_devices import DeviceKind
 from .losses import LossWatch
 from .project_mesa import load_project_mesa
@@ -267,9 +268,13 @@ class Context:
         self._losses.check()
 
     @functools.cached_property
+    def _errors(self) -> DriverErrors:
+        return DriverErrors(self.function)
+
+    @functools.cached_property
     def _losses(self) -> LossWatch:
         gl = self.moderngl
-        return LossWatch(self.function, gl.version_code, gl.extensions)
+        return LossWatch(self.function, self._errors, gl.version_code, gl.extensions)
 
     def seconds_of(self, work: Callable[[], object]) -> float:
         """Seconds from an idle device until it has done what ``work`` gives it, by the wall clock."""
@@ -283,7 +288,7 @@ class Context:
     def lacks_memory(self) -> bool:
         """Whether the driver had none left for what it was given since this was asked last, which moderngl does not
         ask it: a buffer is without memory then, and what is to be in it is lost."""
-        return self.moderngl.error == "GL_OUT_OF_MEMORY"
+        return self._errors.take(OUT_OF_MEMORY)
 
     def refuse_lost_memory(self) -> None:
         """Raise DeviceError where the device lacks memory: some allocate it only as they draw."""

@@ -8,6 +8,7 @@ import signal
 import numpy as np
 import pytest
 
+from rppm_addon.gl.driver_errors import OUT_OF_MEMORY, DriverErrors
 from rppm_addon.gl.losses import LossWatch
 from rppm_addon.scene.errors import DeviceLostError
 from rppm_addon.session import renderer as renderer_module
@@ -40,7 +41,11 @@ class Losses:
 
 def driver(status=0, error=0, version=430, extensions=()):
     functions = {"glGetGraphicsResetStatus": lambda: status, "glGetError": lambda: error}
-    return LossWatch(lambda name, *_: functions.get(name), version, set(extensions))
+
+    def function(name, *_):
+        return functions.get(name)
+
+    return LossWatch(function, DriverErrors(function), version, set(extensions))
 
 
 @pytest.mark.parametrize(
@@ -59,6 +64,13 @@ def test_a_lost_context_is_found(lost):
 def test_other_errors_are_no_loss():
     driver(version=450).check()
     driver(error=0x0502).check()
+
+
+def test_who_asks_for_one_error_leaves_the_others():
+    kept = [OUT_OF_MEMORY, 0x0502]
+    errors = DriverErrors(lambda *_: lambda: kept.pop() if kept else 0)
+    LossWatch(lambda *_: None, errors, 430, set()).check()
+    assert not kept and errors.take(OUT_OF_MEMORY) and not errors.take(OUT_OF_MEMORY)
 
 
 def test_a_render_goes_on_in_another_context(monkeypatch):
