@@ -11,7 +11,7 @@ GRACE = 20
 """Frames after which all programs have been made and buffers have grown."""
 
 
-@pytest.mark.parametrize("persistent", [False, True])
+@pytest.mark.parametrize("persistent", [pytest.param(False, marks=pytest.mark.long), True])
 def test_sixty_frames_hold_no_more_than_twenty(lit, tmp_path, persistent):
     """Geometry, its amount, objects, a material and a light change all the time."""
     lit.render.resolution_x = lit.render.resolution_y = 16

@@ -7,6 +7,7 @@ RPPM_FUZZ_EXAMPLES sets how many trees are tried, which then differ from run to 
 import os
 
 import bpy
+import pytest
 from blender_scenes import new_material
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -90,6 +91,7 @@ def grow(tree, drawn: dict) -> None:
             tree.links.new(found, tree.nodes["Output"].inputs[name])
 
 
+@pytest.mark.long
 @settings(
     max_examples=EXAMPLES or 20,
     derandomize=not EXAMPLES,

@@ -79,7 +79,7 @@ def test_a_resumed_render_is_the_uninterrupted_one(tmp_path, two_floors, uninter
     np.testing.assert_array_equal(read_exr(tmp_path / "picture.exr").combined, picture.combined)
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGTERM, marks=pytest.mark.long), signal.SIGKILL])
 def test_a_render_that_a_signal_ends_is_gone_on_with(tmp_path, rppm, two_floors, uninterrupted, number):
     """By another process."""
     checkpoint, picture = tmp_path / "still.exr", tmp_path / "out.exr"
@@ -175,6 +175,7 @@ def test_ranges_that_make_no_sense(tmp_path, two_floors):
         assert (status, "give one -o PART.exr" in errors) == (1, True)
 
 
+@pytest.mark.long
 def test_stills_of_a_blend_file(tmp_path, rppm, blend_files):
     """Checkpoints are written in Blender's own render; what is merged has the scene's view, bit for bit."""
     view = ("--set", "view_settings.view_transform=AgX", "--set", "view_settings.exposure=1.5", "--frame", 1)

@@ -134,7 +134,10 @@ def test_frames_are_those_of_single_renders(tmp_path, rppm, blend_files):
     assert (status, output) == (0, "3 of 3 frames are there already\n")
 
 
-@pytest.mark.parametrize(("number", "expected"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
+@pytest.mark.parametrize(
+    ("number", "expected"),
+    [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.long), (signal.SIGKILL, -9)],
+)
 def test_whoever_ends_it_leaves_whole_files(tmp_path, blend_files, number, expected):
     frames = tmp_path / "out_####.exr"
     arguments = ("render", blend_files[0], "--frames", "6..4000", "--samples", 20, "-o", frames)

@@ -81,6 +81,7 @@ def test_a_killed_farm_goes_on_where_it_was(tmp_path, rppm, blend_files):
     assert (status, " s on " in output) == (0, False)
 
 
+@pytest.mark.long
 def test_interrupting_a_farm_leaves_finished_work_only(tmp_path, blend_files):
     with start_rppm(*farm(blend_files[0], tmp_path, "--workers", 1)) as process:
         wait_for("a frame", lambda: pictures(tmp_path))
@@ -96,6 +97,7 @@ def test_interrupting_a_farm_leaves_finished_work_only(tmp_path, blend_files):
     assert left_over(tmp_path) == []
 
 
+@pytest.mark.long
 def test_a_failing_frame_of_a_chunk_is_told_and_the_others_are_made(tmp_path, rppm, blend_files):
     options = ("-o", tmp_path / "####.exr", "--samples", 2, "--retries", 1, "--chunk", 3)
     status, output, errors = rppm("farm", blend_files[0], "--frames", "4..6", *options)

@@ -297,6 +297,7 @@ def test_bias_of_direct_light(mapper, alpha):
     assert_bias(means, floor_radiance(np.linalg.norm(points, axis=-1)), bias, alpha)
 
 
+@pytest.mark.long
 def test_bias_of_a_caustic(mapper):
     scene = lens(4096, 0.16)
     points = pixel_points(scene)
@@ -319,6 +320,7 @@ def test_bias_of_interreflection(mapper, monkeypatch):
 
 # Few photons in a kernel, so that the strata of the emission's Sobol points, larger than that, do not matter: with
 # many the variance is up to hundreds of times smaller than that of independent photons, and falls more slowly.
+@pytest.mark.long
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_variance_of_direct_light(mapper, alpha):
     scene = lit_floor(0.5, 512, 0.06, alpha, 16)
@@ -333,6 +335,7 @@ def test_variance_of_a_caustic(mapper):
     assert_variance(means, predicted_variance(scene, lens_radiance, squares, radii), 0.7)
 
 
+@pytest.mark.long
 def test_total_error_of_interreflection(mapper, monkeypatch):
     """Both: the squared error is the predicted bias' square and the predicted variance, none of them small."""
     monkeypatch.setattr("rppm_addon.integrator.density_estimation.radii.EXPECTED_PHOTONS", 100)

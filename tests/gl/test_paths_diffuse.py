@@ -83,8 +83,17 @@ def test_diffuse_paths_are_rendered_once(mapper, name, mode):
     compare(mapper, f"{name} {mode.value}", CLASSES[name](mode))
 
 
-@pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.value)
-@pytest.mark.parametrize("name", CLASSES)
+@pytest.mark.parametrize(
+    ("name", "mode"),
+    [
+        pytest.param(
+            name, mode, id=f"{name}-{mode.value}",
+            marks=[pytest.mark.long] if (name, mode) == ("LDDE", PHOTONS) else [],
+        )
+        for name in CLASSES
+        for mode in MODES
+    ],
+)  # fmt: skip
 def test_diffuse_paths_are_gathered_once(mapper, monkeypatch, name, mode):
     case = gathering(CLASSES[name](mode), monkeypatch, 64 if name in FOUND else None)
     compare(mapper, f"{name} gathered {mode.value}", case)

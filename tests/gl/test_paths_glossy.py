@@ -69,9 +69,14 @@ OFTEN = {*FOUND, "LGE traced", "LGE stored"}
 SELDOM = {
     ("LSGE traced", PHOTONS), ("LGGE traced traced", PHOTONS), ("LGGE stored traced", PHOTONS),
     ("LGDGE stored", RAYS), ("LGDGE stored", PHOTONS),
+    ("LGDE sharp", PHOTONS), ("LDGE traced", PHOTONS), ("LGDGE traced", PHOTONS), ("LGGE traced traced", RAYS),
 }  # fmt: skip
-"""Five seconds and more each; in the other mode or gathered, the classes are tried each time."""
-GATHERED_SELDOM = {("LGDE stored", PHOTONS), ("LGDGE stored", RAYS), ("LGGE stored stored", RAYS)}
+"""The dearest of their families: in the other mode, gathered or with a lobe that stores photons, the classes are tried
+each time."""
+GATHERED_SELDOM = {
+    ("LGE traced", PHOTONS), ("LGDE stored", PHOTONS), ("LDGE stored", PHOTONS), ("LGDGE stored", RAYS),
+    ("LGGE stored stored", RAYS),
+}  # fmt: skip
 GATHERING = [
     pytest.param(
         name, mode, id=f"{name}-{mode.value}",
@@ -135,7 +140,7 @@ def test_glossy_paths_are_rendered_once(mapper, name, mode):
     compare(mapper, f"{name} {mode.value}", CLASSES[name](mode))
 
 
-@pytest.mark.parametrize("name", WITHOUT_EXTENT)
+@pytest.mark.parametrize("name", ["LGE point", pytest.param("LGGE point", marks=pytest.mark.long)])
 def test_a_light_without_extent_is_found_by_rays(mapper, name):
     compare(mapper, name, WITHOUT_EXTENT[name](RAYS))
 

@@ -73,7 +73,10 @@ def states_of_a_whole(context, library):
     return states
 
 
-@pytest.mark.parametrize(("direct_light", "stops"), [(DirectLight.RAYS, STOPS), (DirectLight.PHOTONS, (2, 16))])
+@pytest.mark.parametrize(
+    ("direct_light", "stops"),
+    [pytest.param(DirectLight.RAYS, STOPS, marks=pytest.mark.long), (DirectLight.PHOTONS, (2, 16))],
+)
 def test_a_state_goes_on_bit_for_bit(mapper, other_mapper, states_of_a_whole, direct_light, stops):
     scene = busy_room(direct_light)
     mapper.build(scene)

@@ -177,12 +177,19 @@ WAYS = (
     ("LDGE", DirectLight.RAYS),
     ("LGDE", DirectLight.PHOTONS),
 )
+EACH_TIME = {
+    ("LGE", DirectLight.RAYS, LobeKind.GLOSSY),
+    ("LGE", DirectLight.PHOTONS, LobeKind.GLASS),
+    ("LDGE", DirectLight.RAYS, LobeKind.REFRACTION),
+    ("LGDE", DirectLight.PHOTONS, LobeKind.GLOSSY),
+}
+"""Each way and each kind once."""
 
 
 @pytest.mark.parametrize(
     ("path", "mode", "kind"),
     [
-        pytest.param(*way, kind, marks=[pytest.mark.long] if way[0] == "LGDE" and kind is not LobeKind.GLOSSY else [])
+        pytest.param(*way, kind, marks=[] if (*way, kind) in EACH_TIME else [pytest.mark.long])
         for way in WAYS
         for kind in SWEPT
     ],

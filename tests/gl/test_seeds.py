@@ -33,7 +33,7 @@ def arrays(renderer: Renderer, scene: Scene) -> list[np.ndarray]:
     return [frame.combined, *frame.passes.values()]
 
 
-@pytest.mark.parametrize("direct_light", DirectLight)
+@pytest.mark.parametrize("direct_light", [DirectLight.RAYS, pytest.param(DirectLight.PHOTONS, marks=pytest.mark.long)])
 def test_a_seed_gives_the_same_picture(renderer, monkeypatch, direct_light):
     monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", 32 * 12)  # three bands
     first = arrays(renderer, busy_room(direct_light))

@@ -16,6 +16,7 @@ from rppm_addon.session.renderer import Renderer
 SPEED = Speed(1.0, 0.1, 0.01, 1e6, {"tracing": 2.0, "splatting": 1.0})
 
 
+@pytest.mark.long
 def test_rays_and_picture_are_right_here():
     assert checks.exact_rays(None).passed
     with Renderer() as renderer:

@@ -40,8 +40,17 @@ def _toward(elevation: float, azimuth: float) -> tuple[float, float, float]:
     return along * math.sin(azimuth), along * math.cos(azimuth), math.sin(elevation)
 
 
+EACH_TIME = {
+    ("night", MULTIPLE), ("sunset", SINGLE), ("noon", SINGLE), ("past_zenith", MULTIPLE), ("air", SINGLE),
+    ("haze", MULTIPLE), ("ozone", SINGLE), ("airplane", MULTIPLE),
+}  # fmt: skip
+"""Each with one of the skies."""
 SCATTERING = [
-    pytest.param(elevation, altitude, densities, rotation, id=name)
+    pytest.param(
+        sky_type, elevation, altitude, densities, rotation, id=f"{name}-{sky_type}",
+        marks=[] if (name, sky_type) in EACH_TIME else [pytest.mark.long],
+    )
+    for sky_type in (SINGLE, MULTIPLE)
     for name, elevation, altitude, densities, rotation in [
         ("night", -5.0, 100.0, (1, 1, 1), 0.0),
         ("sunset", 2.0, 100.0, (1, 1, 1), 70.0),
@@ -52,11 +61,10 @@ SCATTERING = [
         ("ozone", 5.0, 100.0, (2, 0, 5), 0.0),
         ("airplane", 20.0, 12000.0, (1, 1, 1), 0.0),
     ]
-]
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("sky_type", [SINGLE, MULTIPLE])
-@pytest.mark.parametrize("elevation, altitude, densities, rotation", SCATTERING)
+@pytest.mark.parametrize("sky_type, elevation, altitude, densities, rotation", SCATTERING)
 def test_scattering(sky_type, elevation, altitude, densities, rotation):
     sky = _sky(sky_type, elevation, altitude, densities, rotation=rotation, sun_disc=False)
     _compare(sky, mean=5e-4, pixel=0.005)
