@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..scene.errors import RppmError
+from ..scene.meshes import UNDISPLACED
 from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ..scene.passes import PassKind, RenderPass
 from .dispersion import disperses
@@ -108,14 +109,23 @@ class _Compiler:
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
         aovs = self._aov_function()
-        text += "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
-        text += "".join(self._functions)
+        text += "".join([*self._includes(), *self._functions])
         text += (
             "void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {\n"
             + "".join(f"    {line}\n" for line in in_pieces(scope.lines))
             + "}\n"
         )
         return CompiledGraph(text + aovs, self._constants)
+
+    def compile_displacement(self) -> CompiledGraph:
+        assert self._graph.displacement is not None
+        scope = _Scope()
+        value = self._converted(scope, self._graph.displacement, SocketType.VECTOR)
+        function = _function("vec3", "material_displacement", scope.lines, value)
+        return CompiledGraph("".join([*self._includes(), *self._functions, function]), self._constants)
+
+    def _includes(self) -> list[str]:
+        return [f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources)]
 
     def _aov_function(self) -> str:
         """The function that writes the passes of AOV Output nodes, and what it needs; nothing of a graph that has
@@ -318,17 +328,32 @@ class _Compiler:
         others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
         width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
+        if self._graph.nodes[index].attribute == UNDISPLACED:
+            there, as_undisplaced = self._undisplaced(index)
+        else:
+            there, as_undisplaced = "surface_beside(surface, way)", []
         scope.lines += [
             f"vec3 {value};",
             f"{{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, {width}, along_x, along_y);",
             # A loop, so that drivers need not compile the height three times.
             "  for (int k = 0; k < 3; ++k) {",
             "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",
-            f"    float height = {function}(surface_beside(surface, way), first);",
+            f"    float height = {function}({there}, first);",
             "    if (k == 0) heights.x = height; else if (k == 1) heights.y = height; else heights.z = height;",
             "  }",
+            *as_undisplaced,
             f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, heights.y - heights.x,",
             f"            heights.z - heights.x, {value}); }}",
+        ]
+
+    def _undisplaced(self, index: int) -> tuple[str, list[str]]:
+        """Of a bump on a surface that is displaced as well, which Cycles sees as it was before: the place whose height
+        is asked, and what turns the ways there."""
+        self._sources["undisplaced.glsl"] = None
+        layer = f"constant_index(first + {self._place((index, '<attribute>'), [Resource('attribute', index)])}u)"
+        return f"undisplaced(surface_beside(surface, way), {layer})", [
+            f"  along_x = undisplaced_way(surface, along_x, {layer});",
+            f"  along_y = undisplaced_way(surface, along_y, {layer});",
         ]
 
 
@@ -350,12 +375,15 @@ def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:
         raise GraphError(f'node "{node.name}" ({node.kind}) {error}') from error
 
 
-def compile_graph(
-    graph: NodeGraph, aovs: Sequence[RenderPass] = (), abbe_number: float | None = None
-) -> CompiledGraph:
+def compile_graph(graph: NodeGraph, aovs: Sequence[RenderPass] = (), abbe_number: float | None = None) -> CompiledGraph:
     """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
     ``abbe_number``: by which its glass disperses light, None where it does not.
 
     Raises GraphError when nodes, options or links are unknown.
     """
     return _Compiler(graph, aovs, abbe_number).compile()
+
+
+def compile_displacement(graph: NodeGraph) -> CompiledGraph:
+    """The GLSL of what moves vertices, ``material_displacement``, and its constants. Raises as compile_graph does."""
+    return _Compiler(graph, (), None).compile_displacement()

@@ -9,6 +9,12 @@ import numpy as np
 from .declared import declared
 from .light_linking import LightLinking
 
+SMOOTH_NORMALS = ".smooth_normals"
+"""Name of the attribute by which meshes that are displaced tell of faces that are not smooth: of corners, the normal
+along which vertices move, and 1 where the face is smooth, 0 where it is flat. Without it all faces are smooth."""
+UNDISPLACED = ".undisplaced"
+"""Name of the attribute that has the positions of vertices before they were displaced, object space."""
+
 
 class AttributeDomain(enum.Enum):
     """What an attribute has a value for."""

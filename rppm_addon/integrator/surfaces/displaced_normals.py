@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Normals of meshes whose vertices have been moved, as Cycles 5.2 finds them."""
+
+import numpy as np
+
+from ...scene.meshes import SMOOTH_NORMALS, Mesh
+
+
+def displaced_normals(
+    mesh: Mesh, keeps: np.ndarray, before: np.ndarray, after: np.ndarray, normals: np.ndarray
+) -> np.ndarray:
+    """(corners, 3) float32: those of the corners once vertices went from places ``before`` to places ``after``.
+
+    keeps: (triangles,) which have no part in new normals; before, after: (vertices, 3); normals: (corners, 3) before.
+    A normal of 0 is that of the triangle.
+    """
+    vertices, smooth = mesh.corner_vertices[mesh.triangle_corners], mesh.attributes.get(SMOOTH_NORMALS)
+    if smooth is None:
+        if keeps.all():
+            return normals
+        new = _vertex_normals(vertices[~keeps], after)[mesh.corner_vertices]
+        return np.where(new.any(axis=1)[:, None], new, normals)
+    is_smooth = smooth.values[:, 3:] > 0.0
+    if not is_smooth.any():
+        return np.zeros_like(normals)
+    # Corners of a vertex differ where edges are sharp, and all turn by as much.
+    turned = normals + (_vertex_normals(vertices, after) - _vertex_normals(vertices, before))[mesh.corner_vertices]
+    return np.where(is_smooth, _unit(turned), np.float32(0.0))
+
+
+def _vertex_normals(triangles: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """(vertices, 3) float32 means of the normals of triangles (n, 3), each counted alike; 0 of none."""
+    corners = positions[triangles].astype(np.float64)
+    faces = _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    vertices, count = triangles.ravel(), len(positions)
+    sums = [np.bincount(vertices, np.repeat(faces[:, axis], 3), count) for axis in range(3)]
+    return _unit(np.stack(sums, axis=-1)).astype(np.float32)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 1e-30)
