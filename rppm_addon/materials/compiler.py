@@ -325,35 +325,35 @@ class _Compiler:
             height = self._input(inner, index, "height", *kind.inputs["height"])
             self._functions.append(_function("float", function, inner.lines, height))
             self._heights[index, scope.depth] = function
-        others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
+        strength, distance, normal = (
+            self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")
+        )
         width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
-        if self._graph.nodes[index].attribute == UNDISPLACED:
-            there, as_undisplaced = self._undisplaced(index)
-        else:
-            there, as_undisplaced = "surface_beside(surface, way)", []
+        there, before, ways, after, along = "surface_beside(surface, way)", [], [], [], "along"
+        if self._graph.nodes[index].attribute == UNDISPLACED:  # as Cycles: where the surface was, in object space
+            layer = f"constant_index(first + {self._place((index, '<attribute>'), [Resource('attribute', index)])}u)"
+            self._sources["undisplaced.glsl"] = None
+            before = ["surface.normal = undisplaced_normal(surface);"]
+            ways = [f"  vec3 way_{axis} = undisplaced_way(surface, along_{axis}, {layer});" for axis in "xy"]
+            ways += ["  float stretch = undisplaced_stretch(surface, along_x, way_x, way_y);"]
+            there, along = f"undisplaced_beside(surface, way, stretch, {layer})", "way"
+            normal = f"unit_to_object(surface, {normal})"
+            after = [f"{value} = unit_to_world(surface, {value});"]
         scope.lines += [
+            *before,
             f"vec3 {value};",
             f"{{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, {width}, along_x, along_y);",
+            *ways,
             # A loop, so that drivers need not compile the height three times.
             "  for (int k = 0; k < 3; ++k) {",
             "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",
             f"    float height = {function}({there}, first);",
             "    if (k == 0) heights.x = height; else if (k == 1) heights.y = height; else heights.z = height;",
             "  }",
-            *as_undisplaced,
-            f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, heights.y - heights.x,",
-            f"            heights.z - heights.x, {value}); }}",
-        ]
-
-    def _undisplaced(self, index: int) -> tuple[str, list[str]]:
-        """Of a bump on a surface that is displaced as well, which Cycles sees as it was before: the place whose height
-        is asked, and what turns the ways there."""
-        self._sources["undisplaced.glsl"] = None
-        layer = f"constant_index(first + {self._place((index, '<attribute>'), [Resource('attribute', index)])}u)"
-        return f"undisplaced(surface_beside(surface, way), {layer})", [
-            f"  along_x = undisplaced_way(surface, along_x, {layer});",
-            f"  along_y = undisplaced_way(surface, along_y, {layer});",
+            f"  node_bump(surface, {invert}, {strength}, {distance}, {normal}, {along}_x, {along}_y,",
+            f"            heights.y - heights.x, heights.z - heights.x, {value}); }}",
+            *after,
         ]
 
 

@@ -7,25 +7,32 @@ from ...scene.meshes import SMOOTH_NORMALS, Mesh
 
 
 def displaced_normals(
-    mesh: Mesh, keeps: np.ndarray, before: np.ndarray, after: np.ndarray, normals: np.ndarray
+    mesh: Mesh,
+    renews: np.ndarray,
+    bumped: np.ndarray,
+    before: np.ndarray,
+    after: np.ndarray,
+    normals: np.ndarray,
 ) -> np.ndarray:
     """(corners, 3) float32: those of the corners once vertices went from places ``before`` to places ``after``.
 
-    keeps: (triangles,) which have no part in new normals; before, after: (vertices, 3); normals: (corners, 3) before.
-    A normal of 0 is that of the triangle.
+    renews, bumped: (triangles,) which are displaced, and of those that are bumped as well: these have the normals that
+    their vertices had before, as bump turns them. before, after: (vertices, 3); normals: (corners, 3) before. A normal
+    of 0 is that of the triangle.
     """
     vertices, smooth = mesh.corner_vertices[mesh.triangle_corners], mesh.attributes.get(SMOOTH_NORMALS)
     if smooth is None:
-        if keeps.all():
-            return normals
-        new = _vertex_normals(vertices[~keeps], after)[mesh.corner_vertices]
-        return np.where(new.any(axis=1)[:, None], new, normals)
-    is_smooth = smooth.values[:, 3:] > 0.0
-    if not is_smooth.any():
-        return np.zeros_like(normals)
-    # Corners of a vertex differ where edges are sharp, and all turn by as much.
-    turned = normals + (_vertex_normals(vertices, after) - _vertex_normals(vertices, before))[mesh.corner_vertices]
-    return np.where(is_smooth, _unit(turned), np.float32(0.0))
+        new = _vertex_normals(vertices[renews], after)[mesh.corner_vertices] if renews.any() else np.zeros_like(normals)
+        result, kept = np.where(new.any(axis=1)[:, None], new, normals), normals
+    else:
+        kept, is_smooth = smooth.values[:, :3], smooth.values[:, 3:] > 0.0
+        result = np.zeros_like(normals)
+        if is_smooth.any():  # corners of a vertex differ where edges are sharp, and all turn by as much
+            turn = _vertex_normals(vertices, after) - _vertex_normals(vertices, before)
+            result = np.where(is_smooth, _unit(normals + turn[mesh.corner_vertices]), result)
+    corners = mesh.triangle_corners[bumped]
+    result[corners] = kept[corners]
+    return result
 
 
 def _vertex_normals(triangles: np.ndarray, positions: np.ndarray) -> np.ndarray:

@@ -37,11 +37,11 @@ class _Shape:
     placed: dict[int, tuple[Instance, Instance]] = field(default_factory=dict)
     """By the id of an instance, it and the same of the displaced mesh, where others have the mesh as it was."""
 
-    @property
-    def keeps_normals(self) -> np.ndarray:
-        """(triangles,) whether the normals stay what they are: where bump turns them, or nothing is displaced."""
-        by_slot = np.array([slot is None or slot[1] for slot in self.slots])
-        return by_slot[np.minimum(self.mesh.triangle_slots, len(by_slot) - 1)]
+    def normals(self, before: np.ndarray, after: np.ndarray, normals: np.ndarray) -> np.ndarray:
+        """(corners, 3) as displaced_normals gives them."""
+        by_slot = np.array([(slot is not None, slot is not None and slot[1]) for slot in self.slots])
+        displaced, bumped = by_slot[np.minimum(self.mesh.triangle_slots, len(by_slot) - 1)].T
+        return displaced_normals(self.mesh, displaced & ~bumped, bumped, before, after, normals)
 
 
 class Displacement:
@@ -147,7 +147,7 @@ def _moved(shape: _Shape, offsets: np.ndarray) -> Mesh:
     attributes = dict(mesh.attributes)
     if any(slot is not None and slot[1] for slot in shape.slots):
         attributes[UNDISPLACED] = MeshAttribute(AttributeDomain.POINT, mesh.positions)
-    normals = displaced_normals(mesh, shape.keeps_normals, mesh.positions, positions, mesh.corner_normals)
+    normals = shape.normals(mesh.positions, positions, mesh.corner_normals)
     return dataclasses.replace(mesh, positions=positions, corner_normals=normals, attributes=attributes)
 
 
@@ -171,7 +171,7 @@ def _bent(shape: _Shape, deformation: Deformation, place: int) -> Deformation:
     if bent is None or before is not deformation or bent.mesh != place:
         positions = deformation.positions + shape.offsets
         keys = zip(deformation.positions, positions, deformation.corner_normals, strict=True)
-        normals = np.stack([displaced_normals(shape.mesh, shape.keeps_normals, *key) for key in keys])
+        normals = np.stack([shape.normals(*key) for key in keys])
         bent = Deformation(place, deformation.times, positions, normals)
         shape.deformations[id(deformation)] = deformation, bent
     return bent
