@@ -15,7 +15,7 @@ from ...scene.camera import Camera
 from ...scene.meshes import SMOOTH_NORMALS, Instance, Mesh
 from ...scene.scene import Scene
 from .geometry import Geometry, Placement
-from .surface_attributes import SurfaceAttributes
+from .surface_attributes import SurfaceAttributes, mirrored
 
 DISPLACED_VERTEX = Record(
     "DisplacedVertex",
@@ -147,8 +147,7 @@ def _records(mesh: Mesh, placement: Placement, places: np.ndarray, first_constan
     records["normal"] = mesh.corner_normals[corners] if smooth is None else smooth.values[corners, :3]
     records["triangle"] = placement.first_triangle + places // 3
     corner = places % 3
-    # Triangles of what is mirrored are turned round (shaders/geometry/gather.comp).
-    mirrored = np.linalg.det(placement.instance.matrix[:3, :3]) < 0.0
-    records["corner"] = (3 - corner) % 3 if mirrored else corner
+    (is_turned,) = mirrored(np.asarray(placement.instance.matrix)[None])
+    records["corner"] = (3 - corner) % 3 if is_turned else corner
     records["first_constant"] = first_constant
     return records
