@@ -87,7 +87,9 @@ class DisplacedVertices(BufferSet):
             for material in np.unique(given_by).tolist():
                 graph, own = materials.displacing[material], vertices[given_by == material]
                 program = self._program(graph.text, scene, scene.materials[material].name)
-                for some in np.array_split(own, -(-len(own) // _AT_ONCE)) if program else ():
+                if program is None:
+                    continue
+                for some in np.array_split(own, -(-len(own) // _AT_ONCE)):
                     records = _records(mesh, placement, first[some], graph.first_constant)
                     offsets[some] = self._run(program, records, scene.camera, materials)
         return found
