@@ -7,10 +7,12 @@ from ..scenes import place
 from . import stage
 from .net import Net, material
 from .rows import Kind, Row, add
-from .shaders import COLOR
+
+GROUP = "Displacement"
+COLOR = {"Color": (0.8, 0.45, 0.3)}
 
 
-def displaced(name, displacement, method="DISPLACEMENT", prepare=None, group="Displacement", **members):
+def displaced(name, displacement, method="DISPLACEMENT", prepare=None, **members):
     """A row of a diffuse ball that is displaced, under an area light and a weak world; ``displacement`` takes the
     net."""
 
@@ -23,7 +25,7 @@ def displaced(name, displacement, method="DISPLACEMENT", prepare=None, group="Di
         if prepare is not None:
             prepare()
 
-    add(Row(group, name, build, Kind.LIGHT, **members))
+    add(Row(GROUP, name, build, Kind.LIGHT, **members))
 
 
 def surface(name: str, displacement, method: str) -> bpy.types.Material:
@@ -83,4 +85,4 @@ displaced("by Generated, world space", lambda net: noise(net, 0.3, "Generated", 
 displaced("two materials", along_u, prepare=other_half)
 displaced("two objects of a mesh", noise, prepare=twin)
 for _space in ("OBJECT", "WORLD", "TANGENT"):
-    displaced(f"space {_space}", vector(_space), group="Vector Displacement")
+    displaced(f"by a vector, {_space}", vector(_space))
