@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..scene.errors import RppmError
-from ..scene.meshes import UNDISPLACED
+from ..scene.meshes import SMOOTH_NORMALS, UNDISPLACED
 from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ..scene.passes import PassKind, RenderPass
 from .dispersion import disperses
@@ -42,6 +42,8 @@ class Resource:
     what: str
     """table, image or attribute."""
     node: int
+    name: str = ""
+    """Of an attribute that is not the node's own."""
 
 
 @dataclass
@@ -332,9 +334,12 @@ class _Compiler:
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
         there, before, ways, after, along = "surface_beside(surface, way)", [], [], [], "along"
         if self._graph.nodes[index].attribute == UNDISPLACED:  # as Cycles: where the surface was, in object space
-            layer = f"constant_index(first + {self._place((index, '<attribute>'), [Resource('attribute', index)])}u)"
+            layer, normals = (
+                f"constant_index(first + {self._place((index, f'<{name}>'), [Resource('attribute', index, name)])}u)"
+                for name in (UNDISPLACED, SMOOTH_NORMALS)
+            )
             self._sources["undisplaced.glsl"] = None
-            before = ["surface.normal = undisplaced_normal(surface);"]
+            before = [f"surface.normal = undisplaced_normal(surface, {normals});"]
             ways = [f"  vec3 way_{axis} = undisplaced_way(surface, along_{axis}, {layer});" for axis in "xy"]
             ways += ["  float stretch = undisplaced_stretch(surface, along_x, way_x, way_y);"]
             there, along = f"undisplaced_beside(surface, way, stretch, {layer})", "way"

@@ -239,7 +239,7 @@ class _Layout:
         if resource.what == "image":
             return float(self._image(node.image))
         if resource.what == "attribute":
-            return float(self.attributes.setdefault(node.attribute, len(self.attributes)))
+            return float(self.attributes.setdefault(resource.name or node.attribute, len(self.attributes)))
         table = np.zeros(4, np.float32) if node.table is None else np.asarray(node.table, np.float32)
         if node.kind == "tex_image_tiles":
             table = np.array([-1.0 if image < 0 else self._image(int(image)) for image in table.ravel()], np.float32)

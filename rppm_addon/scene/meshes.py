@@ -33,6 +33,17 @@ class MeshAttribute:
     """(elements of the domain, 1 to 4) float32; colors are linear Rec.709."""
 
 
+@dataclass(frozen=True)
+class Dicing:
+    """How finely a mesh is divided where it is displaced (Adaptive Subdivision)."""
+
+    edge_length: float = field(metadata=declared(minimum=1e-6))
+    """How long edges may be: in pixels, of which Scene.dicing_rate is the unit, or in meters, object space."""
+    in_pixels: bool
+    is_curved: bool
+    """Whether faces bend by their normals as they are divided; else they stay flat."""
+
+
 @dataclass
 class Mesh:
     """One evaluated mesh in its object space, shared by all its instances.
@@ -58,6 +69,8 @@ class Mesh:
     """Middle and half extent of the box in which generated coordinates run from 0 to 1, object space."""
     attributes: dict[str, MeshAttribute] = field(default_factory=dict)
     """By name, those that the materials in use ask for."""
+    dicing: Dicing | None = None
+    """None: it is displaced as it is."""
 
     @property
     def triangle_count(self) -> int:

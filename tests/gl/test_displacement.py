@@ -22,7 +22,7 @@ from rppm_addon.scene import (
     Shutter,
     World,
 )
-from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED
+from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED, Dicing
 from rppm_addon.self_test.meshes import placed, polygons
 
 STEPS, WAVES, HEIGHT = 128, 6.0, 0.15
@@ -165,12 +165,12 @@ def test_flat_faces_take_their_triangles_normals(displaced):
     mesh = grid(8)
     values = np.concatenate([mesh.corner_normals, np.zeros((len(mesh.corner_vertices), 1), np.float32)], axis=1)
     mesh.attributes[SMOOTH_NORMALS] = MeshAttribute(AttributeDomain.CORNER, values)
-    (only,) = displaced(scene_of(waves(), meshes=[mesh])).meshes
-    assert not only.corner_normals.any()
+    for bump in (False, True):
+        (moved,) = displaced(scene_of(waves(bump=bump), meshes=[mesh])).meshes
+        assert not moved.corner_normals.any()
     # Bump begins from smooth normals even there.
-    (both,) = displaced(scene_of(waves(bump=True), meshes=[mesh])).meshes
-    np.testing.assert_array_equal(both.corner_normals, mesh.corner_normals)
-    np.testing.assert_array_equal(both.attributes[UNDISPLACED].values, mesh.positions)
+    np.testing.assert_array_equal(moved.attributes[SMOOTH_NORMALS].values, values)
+    np.testing.assert_array_equal(moved.attributes[UNDISPLACED].values, mesh.positions)
 
 
 def test_sharp_edges_stay_sharp_and_shut(displaced):
@@ -241,3 +241,30 @@ def test_a_displacement_that_is_malformed_is_left_out_with_a_warning(displaced):
     scene = scene_of(material)
     assert displaced(scene) is scene
     assert any('"Plain"' in text and "displaces nothing" in text for text in scene.warnings)
+
+
+def test_meshes_are_divided_before(displaced):
+    """By pixels as the camera sees them, and their shapes and triangles with them."""
+    mesh = dataclasses.replace(grid(4), dicing=Dicing(0.05, False, True))
+    bent = Deformation(0, np.array([0.0, 1.0]), np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
+    scene = scene_of(waves(bump=True), meshes=[mesh])
+    scene.shutter = Shutter(np.ones(4), meshes=[bent])
+    result = displaced(scene)
+    (moved,) = result.meshes
+    assert moved.triangle_count == 16 * 16**2 * 2 and moved.dicing is None  # edges of 0.7 in 16 parts, not 15
+    np.testing.assert_allclose(moved.positions[:, 2], HEIGHT * np.sin(WAVES * moved.positions[:, 0]), atol=1e-5)
+    np.testing.assert_array_equal(result.shutter.meshes[0].positions[1], moved.positions)
+    assert displaced(scene).meshes[0] is moved
+    pixels = dataclasses.replace(mesh, dicing=Dicing(4.0, True, True))
+    near, far = (
+        displaced(dataclasses.replace(scene_of(waves(), meshes=[pixels]), dicing_rate=rate)).meshes[0].triangle_count
+        for rate in (1.0, 8.0)
+    )
+    assert near > far == mesh.triangle_count
+
+
+def test_divided_meshes_are_no_larger_than_they_may_be(displaced, monkeypatch):
+    monkeypatch.setattr("rppm_addon.integrator.surfaces.dicing.MOST_TRIANGLES", 512)
+    scene = scene_of(waves(), meshes=[dataclasses.replace(grid(4), dicing=Dicing(0.05, False, True))])
+    assert displaced(scene).meshes[0].triangle_count == 32 * 16
+    assert any("Adaptive Subdivision leaves edges" in text for text in scene.warnings)

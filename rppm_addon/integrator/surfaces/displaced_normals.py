@@ -16,23 +16,22 @@ def displaced_normals(
 ) -> np.ndarray:
     """(corners, 3) float32: those of the corners once vertices went from places ``before`` to places ``after``.
 
-    renews, bumped: (triangles,) which are displaced, and of those that are bumped as well: these have the normals that
-    their vertices had before, as bump turns them. before, after: (vertices, 3); normals: (corners, 3) before. A normal
-    of 0 is that of the triangle.
+    renews, bumped: (triangles,) which are displaced without bump and with: the latter keep the normals that they had,
+    as bump turns these. before, after: (vertices, 3); normals: (corners, 3) before. A normal of 0 is that of the
+    triangle, as all of flat faces are.
     """
     vertices, smooth = mesh.corner_vertices[mesh.triangle_corners], mesh.attributes.get(SMOOTH_NORMALS)
     if smooth is None:
         new = _vertex_normals(vertices[renews], after)[mesh.corner_vertices] if renews.any() else np.zeros_like(normals)
-        result, kept = np.where(new.any(axis=1)[:, None], new, normals), normals
-    else:
-        kept, is_smooth = smooth.values[:, :3], smooth.values[:, 3:] > 0.0
-        result = np.zeros_like(normals)
-        if is_smooth.any():  # corners of a vertex differ where edges are sharp, and all turn by as much
-            turn = _vertex_normals(vertices, after) - _vertex_normals(vertices, before)
-            result = np.where(is_smooth, _unit(normals + turn[mesh.corner_vertices]), result)
+        result = np.where(new.any(axis=1)[:, None], new, normals)
+    elif not smooth.values[:, 3].any():
+        return np.zeros_like(normals)
+    else:  # corners of a vertex differ where edges are sharp, and all turn by as much
+        turn = _vertex_normals(vertices, after) - _vertex_normals(vertices, before)
+        result = _unit(normals + turn[mesh.corner_vertices])
     corners = mesh.triangle_corners[bumped]
-    result[corners] = kept[corners]
-    return result
+    result[corners] = normals[corners]
+    return result if smooth is None else np.where(smooth.values[:, 3:] > 0.0, result, np.float32(0.0))
 
 
 def _vertex_normals(triangles: np.ndarray, positions: np.ndarray) -> np.ndarray:

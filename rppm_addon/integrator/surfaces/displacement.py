@@ -2,6 +2,7 @@
 """Meshes whose vertices are moved by what the nodes of their materials give there, as Cycles does before a render."""
 
 import dataclasses
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -14,6 +15,7 @@ from ...scene.meshes import UNDISPLACED, AttributeDomain, Instance, Mesh, MeshAt
 from ...scene.motion import Deformation, Shutter
 from ...scene.scene import Scene
 from ...scene.sharing import same_bits
+from .dicing import MOST_TRIANGLES, DicedMesh, parts_of_edges, rounded_parts
 from .displaced_normals import displaced_normals
 from .displaced_vertices import DisplacedVertices
 
@@ -25,10 +27,12 @@ _Slots = tuple[tuple[int, bool] | None, ...]
 class _Shape:
     """A mesh with displacing materials, and what became of it."""
 
-    mesh: Mesh
+    source: Mesh
     slots: _Slots
     instance: Instance
     """The first that has it: of this one nodes are asked, whatever the others are."""
+    parts: int
+    """Into which edges are divided before."""
     offsets: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.float32))
     """(vertices, 3) object space."""
     displaced: Mesh | None = None
@@ -36,6 +40,16 @@ class _Shape:
     """By the id of a deformation, it and that of the displaced mesh."""
     placed: dict[int, tuple[Instance, Instance]] = field(default_factory=dict)
     """By the id of an instance, it and the same of the displaced mesh, where others have the mesh as it was."""
+
+    @functools.cached_property
+    def diced(self) -> DicedMesh | None:
+        """The source divided; None where it stays whole."""
+        return DicedMesh(self.source, self.parts) if self.parts > 1 else None
+
+    @property
+    def mesh(self) -> Mesh:
+        """What is displaced."""
+        return self.source if self.diced is None else self.diced.mesh
 
     def normals(self, before: np.ndarray, after: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """(corners, 3) as displaced_normals gives them."""
@@ -62,7 +76,9 @@ class Displacement:
         stale = []
         for mesh, slots, members in _displaced(users):
             source, first = scene.meshes[mesh], scene.instances[members[0]]
-            shape = known.get((id(source), slots)) or _Shape(source, slots, first)
+            parts, shape = _parts(scene, source, members), known.get((id(source), slots))
+            if shape is None or shape.parts != parts:
+                shape = _Shape(source, slots, first, parts)
             if renewed or shape.displaced is None or shape.instance is not first:
                 shape.instance = first
                 stale.append(shape)
@@ -114,6 +130,8 @@ _Users = dict[int, dict[_Slots, list[int]]]
 
 def _users(scene: Scene, materials: MaterialTables) -> _Users:
     """Those of meshes of which any is displaced."""
+    if not materials.displacing:
+        return {}
     found: _Users = {}
     slots_of = {index: (index, graph.keeps_normals) for index, graph in materials.displacing.items()}
     known: dict[tuple[int, ...], _Slots] = {}
@@ -130,6 +148,22 @@ def _displaced(users: _Users) -> Iterator[tuple[int, _Slots, list[int]]]:
         for slots, members in by_slots.items():
             if any(slots):
                 yield mesh, slots, members
+
+
+def _parts(scene: Scene, mesh: Mesh, members: list[int]) -> int:
+    """Into how many parts the edges of a mesh are divided that these instances have."""
+    if mesh.dicing is None or scene.camera.texels is not None:  # whose triangles are known by number
+        return 1
+    instances = [scene.instances[member] for member in members]
+    wanted = parts_of_edges(mesh, instances, scene.camera, scene.dicing_rate)
+    parts = rounded_parts(wanted, mesh.triangle_count * len(instances))
+    if parts < wanted:
+        scene.warn(
+            f'Object "{instances[0].object_name}": Adaptive Subdivision leaves edges {wanted / parts:.1f} times as '
+            f"long as it is asked for, as it makes no more than {MOST_TRIANGLES} triangles; raise its Pixel Size or "
+            "the Dicing Rate"
+        )
+    return parts
 
 
 def _placed(shape: _Shape, instance: Instance, mesh: int) -> Instance:
@@ -169,8 +203,9 @@ def _with_displaced(
 def _bent(shape: _Shape, deformation: Deformation, place: int) -> Deformation:
     before, bent = shape.deformations.get(id(deformation), (None, None))
     if bent is None or before is not deformation or bent.mesh != place:
-        positions = deformation.positions + shape.offsets
-        keys = zip(deformation.positions, positions, deformation.corner_normals, strict=True)
+        whole = deformation if shape.diced is None else shape.diced.deformed(deformation)
+        positions = whole.positions + shape.offsets
+        keys = zip(whole.positions, positions, whole.corner_normals, strict=True)
         normals = np.stack([shape.normals(*key) for key in keys])
         bent = Deformation(place, deformation.times, positions, normals)
         shape.deformations[id(deformation)] = deformation, bent

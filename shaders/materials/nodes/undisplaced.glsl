@@ -26,9 +26,11 @@ Surface undisplaced_beside(Surface surface, vec3 way, float stretch, uint layer)
     return there;
 }
 
-// That of the mesh, which is the one before, however it lies to triangle and viewer now.
-vec3 undisplaced_normal(Surface surface) {
-    vec3 n = triangle_normal(surface.triangle, surface.barycentrics);
+// That of the mesh, which is the one before, however it lies to triangle and viewer now; layer: of those that flat faces
+// share at their vertices, where there are any.
+vec3 undisplaced_normal(Surface surface, uint layer) {
+    vec3 n = attribute_place(surface, layer).y < 3u ? triangle_normal(surface.triangle, surface.barycentrics)
+             : normal_to_world(surface, attribute_value(surface, layer).xyz);
     float size = length(n);
     return size > 1e-6 ? (surface.backfacing ? -n : n) / size : surface.normal;
 }

@@ -68,6 +68,21 @@ def other_half() -> None:
         face.material_index = int(face.center.x > 0.0)
 
 
+def subdivided(kind: str, space: str):
+    """Adaptive Subdivision of a coarse ball."""
+
+    def make() -> None:
+        old = bpy.data.objects["Ball"]
+        ball = stage.ball(old.data.materials[0], segments=8)
+        bpy.data.objects.remove(old)
+        modifier = ball.modifiers.new("Subdivision", "SUBSURF")
+        modifier.levels = modifier.render_levels = 2
+        modifier.subdivision_type, modifier.adaptive_space = kind, space
+        modifier.use_adaptive_subdivision, modifier.adaptive_object_edge_length = True, 0.05
+
+    return make
+
+
 def twin() -> None:
     """A smaller object of the same mesh, turned round and mirrored."""
     ball = bpy.data.objects["Ball"]
@@ -84,5 +99,7 @@ displaced("along the seam of a UV map", along_u)
 displaced("by Generated, world space", lambda net: noise(net, 0.3, "Generated", "WORLD"))
 displaced("two materials", along_u, prepare=other_half)
 displaced("two objects of a mesh", noise, prepare=twin)
+displaced("Adaptive Subdivision", noise, prepare=subdivided("CATMULL_CLARK", "PIXEL"), warns=True)
+displaced("Adaptive Subdivision, simple, meters", noise, prepare=subdivided("SIMPLE", "OBJECT"), warns=True)
 for _space in ("OBJECT", "WORLD", "TANGENT"):
     displaced(f"by a vector, {_space}", vector(_space))
