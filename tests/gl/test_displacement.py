@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from rppm_addon.integrator.first_look import FirstLook
 from rppm_addon.integrator.surfaces.displacement import Displacement
 from rppm_addon.materials.tables import MaterialTables
 from rppm_addon.scene import (
@@ -225,6 +226,25 @@ def test_what_did_not_change_is_the_same_object(displaced):
     assert displaced(dataclasses.replace(scene, materials=[red])).meshes[0] is first
     other = displaced(dataclasses.replace(scene, materials=[waves(height=0.2)])).meshes[0]
     assert np.ptp(other.positions[:, 2]) > 1.2 * np.ptp(first.positions[:, 2])
+
+
+def test_first_looks_draw_what_is_displaced(context, library, mapper):
+    """They share the device's triangles with what renders, and leave them as they are."""
+    scene = scene_of(waves(), raised((0.0, 0.0, 0.25)), meshes=[grid(8), grid(4)])
+    scene.instances = [Instance(0, np.eye(4), [0]), Instance(1, placed(0.5, 0.0, -1.0), [1])]
+    mapper.build(scene)
+    built = mapper.device_scene
+    triangles = built.geometry.triangles.buffer.read()
+    look = FirstLook(context, library, built.geometry, built.displacement.as_known)
+    look.draw(scene)
+    assert built.geometry.triangles.buffer.read() == triangles
+    # What the mapper does not know yet is drawn as it is, until it has been built.
+    other = dataclasses.replace(scene, meshes=[grid(8), scene.meshes[1]])
+    look.draw(other)
+    assert built.geometry.bounds_high[2] == 0.0
+    mapper.update(other)
+    assert built.geometry.triangles.buffer.read() == triangles
+    look.release()
 
 
 def test_ways_that_are_no_numbers_count_as_none(displaced):

@@ -65,13 +65,16 @@ class Displacement:
         self._context, self._library = context, library
         self._shapes: dict[tuple[int, _Slots], _Shape] = {}
         """By the id of the mesh, and materials."""
+        self._slots: dict[int, tuple[int, bool]] = {}
+        """Of the materials of the last scene that displace."""
 
     def displaced(self, scene: Scene, materials: MaterialTables, renewed: bool) -> Scene:
         """The scene with its meshes displaced, and their shapes at other times; itself where nothing is displaced.
 
         materials: built for the scene; renewed: since the scene before. Raises DeviceError.
         """
-        users = _users(scene, materials)
+        self._slots = {index: (index, graph.keeps_normals) for index, graph in materials.displacing.items()}
+        users = _users(scene, self._slots)
         known, self._shapes = self._shapes, {}
         stale = []
         for mesh, slots, members in _displaced(users):
@@ -87,6 +90,13 @@ class Displacement:
             return scene
         self._evaluate(scene, materials, stale)
         return self._with_shapes(scene, users)
+
+    def as_known(self, scene: Scene) -> Scene:
+        """The scene with those of its meshes displaced that the last one had; itself where there are none."""
+        users = _users(scene, self._slots)
+        unknown = {mesh for mesh, slots, _ in _displaced(users) if (id(scene.meshes[mesh]), slots) not in self._shapes}
+        users = {mesh: by_slots for mesh, by_slots in users.items() if mesh not in unknown}
+        return self._with_shapes(scene, users) if users else scene
 
     def _evaluate(self, scene: Scene, materials: MaterialTables, shapes: list[_Shape]) -> None:
         if not shapes:
@@ -128,12 +138,11 @@ _Users = dict[int, dict[_Slots, list[int]]]
 """By mesh and slots, the instances."""
 
 
-def _users(scene: Scene, materials: MaterialTables) -> _Users:
+def _users(scene: Scene, slots_of: dict[int, tuple[int, bool]]) -> _Users:
     """Those of meshes of which any is displaced."""
-    if not materials.displacing:
+    if not slots_of:
         return {}
     found: _Users = {}
-    slots_of = {index: (index, graph.keeps_normals) for index, graph in materials.displacing.items()}
     known: dict[tuple[int, ...], _Slots] = {}
     for member, instance in enumerate(scene.instances):
         key = tuple(instance.materials)
