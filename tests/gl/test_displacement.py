@@ -14,6 +14,8 @@ from rppm_addon.scene import (
     Camera,
     Deformation,
     Instance,
+    Light,
+    LightKind,
     Material,
     Mesh,
     MeshAttribute,
@@ -226,6 +228,29 @@ def test_what_did_not_change_is_the_same_object(displaced):
     assert displaced(dataclasses.replace(scene, materials=[red])).meshes[0] is first
     other = displaced(dataclasses.replace(scene, materials=[waves(height=0.2)])).meshes[0]
     assert np.ptp(other.positions[:, 2]) > 1.2 * np.ptp(first.positions[:, 2])
+
+
+def test_caustics_of_displaced_water_are_those_of_a_mesh_with_its_waves(mapper, displaced):
+    """Bit for bit: nothing but the mesh counts, for light and photons alike."""
+    water, floor = waves("Water", 0.05), grid(4)
+    water.graph.surface = water.graph.add("bsdf_glass", "bsdf", ior=1.33)
+    scene = scene_of(water, plain(), meshes=[grid(32), floor])
+    scene.instances = [Instance(0, placed(0.0, 0.0, 0.5), [0]), Instance(1, np.eye(4), [1])]
+    scene.lights, scene.world = [Light("Sun", LightKind.SUN, np.eye(4), np.full(3, 2.0))], World(np.zeros(3))
+    scene.settings = RenderSettings(iterations=2, photons=4096)
+
+    def rendered(scene):
+        mapper.build(scene)
+        mapper.iterate()
+        mapper.iterate()
+        return mapper.film.read_radiance()
+
+    still = dataclasses.replace(water, graph=dataclasses.replace(water.graph, displacement=None))
+    calm = dataclasses.replace(scene, materials=[still, scene.materials[1]])
+    moved = dataclasses.replace(calm, meshes=displaced(scene).meshes)
+    caustic = rendered(scene)
+    np.testing.assert_array_equal(rendered(moved), caustic)
+    assert not np.array_equal(rendered(calm), caustic)
 
 
 def test_first_looks_draw_what_is_displaced(context, library, mapper):
