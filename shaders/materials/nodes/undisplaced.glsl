@@ -26,8 +26,8 @@ Surface undisplaced_beside(Surface surface, vec3 way, float stretch, uint layer)
     return there;
 }
 
-// That of the mesh, which is the one before, however it lies to triangle and viewer now; layer: of those that flat faces
-// share at their vertices, where there are any.
+// That of the mesh, which is the one before, however it lies to triangle and viewer now; layer: of those that flat
+// faces share at their vertices, where there are any.
 vec3 undisplaced_normal(Surface surface, uint layer) {
     vec3 n = attribute_place(surface, layer).y < 3u ? triangle_normal(surface.triangle, surface.barycentrics)
              : normal_to_world(surface, attribute_value(surface, layer).xyz);
