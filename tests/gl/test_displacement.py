@@ -253,6 +253,32 @@ def test_caustics_of_displaced_water_are_those_of_a_mesh_with_its_waves(mapper, 
     assert not np.array_equal(rendered(calm), caustic)
 
 
+def test_an_update_equals_a_build(mapper, other_mapper):
+    scene = scene_of(waves(), plain(), meshes=[grid(16), grid(4)])
+    scene.instances = [Instance(0, np.eye(4), [0]), Instance(1, placed(0.3, 0.0, 0.1), [1])]
+
+    def red(height):
+        made = waves(height=height)
+        made.graph.nodes[made.graph.surface.node].inputs["color"] = (0.9, 0.1, 0.1)
+        return made
+
+    mapper.build(scene)
+    for changed in (
+        dataclasses.replace(scene, materials=[red(HEIGHT), scene.materials[1]]),
+        dataclasses.replace(scene, materials=[red(2.0 * HEIGHT), scene.materials[1]]),
+        dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, matrix=placed(0.2, 0.0, 2.5))),
+        dataclasses.replace(scene, materials=[plain(), scene.materials[1]]),
+    ):
+        mapper.update(changed)
+        other_mapper.build(changed)
+        for each in (mapper, other_mapper):
+            each.iterate()
+        np.testing.assert_array_equal(mapper.film.read_radiance(), other_mapper.film.read_radiance())
+    placements = mapper.device_scene.geometry.placements
+    mapper.update(dataclasses.replace(changed, camera=scene.camera))
+    assert mapper.device_scene.geometry.placements is placements  # nothing was built for a camera
+
+
 def test_first_looks_draw_what_is_displaced(context, library, mapper):
     """They share the device's triangles with what renders, and leave them as they are."""
     scene = scene_of(waves(), raised((0.0, 0.0, 0.25)), meshes=[grid(8), grid(4)])
