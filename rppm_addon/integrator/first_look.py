@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A first look at a scene, before its programs are compiled: plain surfaces under a light at the viewer's head."""
 
+from collections.abc import Callable
+
 import moderngl
 import numpy as np
 
@@ -38,11 +40,19 @@ _DARKEST_SKY, _BRIGHTEST_SKY = 0.05, 0.6
 class FirstLook:
     """Draws scenes with one small program."""
 
-    def __init__(self, context: Context, library: ProgramLibrary, geometry: Geometry) -> None:
-        """geometry: of the mapper that renders the scenes later, which then has it on the device already."""
+    def __init__(
+        self,
+        context: Context,
+        library: ProgramLibrary,
+        geometry: Geometry,
+        displaced: Callable[[Scene], Scene] = lambda scene: scene,
+    ) -> None:
+        """geometry: of the mapper that renders the scenes later, which then has it on the device already; displaced:
+        gives a scene with the meshes that the mapper has in place of its own, as far as that is known."""
         self._context = context
         self._draw = library.draw("first_look/first_look.vert", "first_look/first_look.frag")
         self._geometry = geometry
+        self._displaced = displaced
         self._surfaces = GrowingBuffer(context, "plain surfaces")
         self._opacities = GrowingBuffer(context, "opacities of instances")
         self._camera = GrowingBuffer(context, "camera of the first look")
@@ -130,7 +140,7 @@ class FirstLook:
         """Upload what is not the very object of the scene before."""
         if not self.shows_parts_of(scene):
             self._shown = None
-            self._geometry.build(scene, len(scene.materials))
+            self._geometry.build(self._displaced(scene), len(scene.materials))
             surfaces = [plain_surface(owner.graph, scene.images) for owner in (*scene.materials, default_material())]
             opacities = [_opacity(placement.instance) for placement in self._geometry.placements]
             self._surfaces.upload(_records(surfaces))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..scene.errors import RppmError
+from ..scene.meshes import SMOOTH_NORMALS, UNDISPLACED
 from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ..scene.passes import PassKind, RenderPass
 from .dispersion import disperses
@@ -41,6 +42,8 @@ class Resource:
     what: str
     """table, image or attribute."""
     node: int
+    name: str = ""
+    """Of an attribute that is not the node's own."""
 
 
 @dataclass
@@ -108,14 +111,23 @@ class _Compiler:
         if self._graph.surface is not None:
             self._add_shaders(scope, self._graph.surface)
         aovs = self._aov_function()
-        text += "".join(f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources))
-        text += "".join(self._functions)
+        text += "".join([*self._includes(), *self._functions])
         text += (
             "void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {\n"
             + "".join(f"    {line}\n" for line in in_pieces(scope.lines))
             + "}\n"
         )
         return CompiledGraph(text + aovs, self._constants)
+
+    def compile_displacement(self) -> CompiledGraph:
+        assert self._graph.displacement is not None
+        scope = _Scope()
+        value = self._converted(scope, self._graph.displacement, SocketType.VECTOR)
+        function = _function("vec3", "material_displacement", scope.lines, value)
+        return CompiledGraph("".join([*self._includes(), *self._functions, function]), self._constants)
+
+    def _includes(self) -> list[str]:
+        return [f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources)]
 
     def _aov_function(self) -> str:
         """The function that writes the passes of AOV Output nodes, and what it needs; nothing of a graph that has
@@ -315,20 +327,38 @@ class _Compiler:
             height = self._input(inner, index, "height", *kind.inputs["height"])
             self._functions.append(_function("float", function, inner.lines, height))
             self._heights[index, scope.depth] = function
-        others = [self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")]
+        strength, distance, normal = (
+            self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")
+        )
         width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
+        there, before, ways, after, along = "surface_beside(surface, way)", [], [], [], "along"
+        if self._graph.nodes[index].attribute == UNDISPLACED:  # as Cycles: where the surface was, in object space
+            layer, normals = (
+                f"constant_index(first + {self._place((index, f'<{name}>'), [Resource('attribute', index, name)])}u)"
+                for name in (UNDISPLACED, SMOOTH_NORMALS)
+            )
+            self._sources["undisplaced.glsl"] = None
+            before = [f"surface.normal = undisplaced_normal(surface, {normals});"]
+            ways = [f"  vec3 way_{axis} = undisplaced_way(surface, along_{axis}, {layer});" for axis in "xy"]
+            ways += ["  float stretch = undisplaced_stretch(surface, along_x, way_x, way_y);"]
+            there, along = f"undisplaced_beside(surface, way, stretch, {layer})", "way"
+            normal = f"unit_to_object(surface, {normal})"
+            after = [f"{value} = unit_to_world(surface, {value});"]
         scope.lines += [
+            *before,
             f"vec3 {value};",
             f"{{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, {width}, along_x, along_y);",
+            *ways,
             # A loop, so that drivers need not compile the height three times.
             "  for (int k = 0; k < 3; ++k) {",
             "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",
-            f"    float height = {function}(surface_beside(surface, way), first);",
+            f"    float height = {function}({there}, first);",
             "    if (k == 0) heights.x = height; else if (k == 1) heights.y = height; else heights.z = height;",
             "  }",
-            f"  node_bump(surface, {invert}, {', '.join(others)}, along_x, along_y, heights.y - heights.x,",
-            f"            heights.z - heights.x, {value}); }}",
+            f"  node_bump(surface, {invert}, {strength}, {distance}, {normal}, {along}_x, {along}_y,",
+            f"            heights.y - heights.x, heights.z - heights.x, {value}); }}",
+            *after,
         ]
 
 
@@ -350,12 +380,15 @@ def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:
         raise GraphError(f'node "{node.name}" ({node.kind}) {error}') from error
 
 
-def compile_graph(
-    graph: NodeGraph, aovs: Sequence[RenderPass] = (), abbe_number: float | None = None
-) -> CompiledGraph:
+def compile_graph(graph: NodeGraph, aovs: Sequence[RenderPass] = (), abbe_number: float | None = None) -> CompiledGraph:
     """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
     ``abbe_number``: by which its glass disperses light, None where it does not.
 
     Raises GraphError when nodes, options or links are unknown.
     """
     return _Compiler(graph, aovs, abbe_number).compile()
+
+
+def compile_displacement(graph: NodeGraph) -> CompiledGraph:
+    """The GLSL of what moves vertices, ``material_displacement``, and its constants. Raises as compile_graph does."""
+    return _Compiler(graph, (), None).compile_displacement()

@@ -2,6 +2,7 @@
 """Materials and images in GPU buffers, as shaders/materials/ reads them."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from ..scene.passes import RenderPass, aov_passes
 from ..scene.scene import Scene
 from ..scene.sharing import same_members
 from . import albedo_tables, dispersion
-from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_graph
+from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_displacement, compile_graph
 from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LightSurface
 from .records import IMAGE_ENTRY, MATERIAL, MOST_MEDIA, TexelFormat
@@ -47,6 +48,18 @@ def _texels(image: Image) -> tuple[np.ndarray, TexelFormat]:
     return halves.reshape(-1, 4).view(np.uint32).ravel(), TexelFormat.SRGB_HALF if srgb else TexelFormat.HALF
 
 
+@dataclass(frozen=True)
+class DisplacingGraph:
+    """What moves the vertices of a material's faces."""
+
+    text: str
+    """GLSL."""
+    first_constant: int
+    """In the buffer MaterialData."""
+    keeps_normals: bool
+    """Whether they stay what they were before, as the same nodes turn them by bump."""
+
+
 class MaterialTables(BufferSet):
     """The buffers Materials, MaterialData, Images, Texels and AlbedoTables, and the GLSL of the graphs.
 
@@ -71,6 +84,8 @@ class MaterialTables(BufferSet):
         self.emits: list[Emits] = []
         self.any_depends_on_view = False
         """Whether what a material scatters depends on where it is seen from."""
+        self.displacing: dict[int, DisplacingGraph] = {}
+        """By index, those materials that move vertices."""
         self.users: dict[str, list[str]] = {}
         """By text, the names of the materials that it belongs to."""
         self._others: dict[int, tuple[str, int, str]] = {}
@@ -110,6 +125,7 @@ class MaterialTables(BufferSet):
             record["pass_index"] = material.pass_index
             record["depends_on_view"] = depends_on_view(material.graph)
         self.any_depends_on_view = bool(records["depends_on_view"].any())
+        self.displacing = self._compile_displacements(scene.materials, layout)
         interiors = [material.interior for material in materials]
         others = [("The world", scene.world.graph)]
         others += [(f'Light "{light.name}"', light.graph) for light in scene.lights]
@@ -146,6 +162,20 @@ class MaterialTables(BufferSet):
         self._buffers["Images"].upload(entries)
         self._buffers["Texels"].upload(texels)
         self._images = images
+
+    def _compile_displacements(self, materials: list[Material], layout: "_Layout") -> dict[int, DisplacingGraph]:
+        found = {}
+        for index, material in enumerate(materials):
+            if material.graph.displacement is None:
+                continue
+            try:
+                compiled = compile_displacement(material.graph)
+            except GraphError as error:
+                self._scene.warn(f'Material "{material.name}": {error}; it displaces nothing')
+                continue
+            first = layout.add(material.graph, compiled)
+            found[index] = DisplacingGraph(compiled.text, first, material.graph.normal is not None)
+        return found
 
     def _compile(
         self,
@@ -209,7 +239,7 @@ class _Layout:
         if resource.what == "image":
             return float(self._image(node.image))
         if resource.what == "attribute":
-            return float(self.attributes.setdefault(node.attribute, len(self.attributes)))
+            return float(self.attributes.setdefault(resource.name or node.attribute, len(self.attributes)))
         table = np.zeros(4, np.float32) if node.table is None else np.asarray(node.table, np.float32)
         if node.kind == "tex_image_tiles":
             table = np.array([-1.0 if image < 0 else self._image(int(image)) for image in table.ravel()], np.float32)

@@ -305,7 +305,12 @@ def _check_mesh(mesh: Mesh, label: str) -> None:
 def _check_graph(graph: NodeGraph, label: str) -> None:
     for place, node in enumerate(graph.nodes):
         _check_links(node.inputs.values(), place, f'{label}: nodes[{place}] "{_escaped(node.name or node.kind)}"')
-    ends = [graph.surface, graph.normal, *(value for aov in graph.aovs for value in (aov.color, aov.value))]
+    ends = [
+        graph.surface,
+        graph.normal,
+        graph.displacement,
+        *(value for aov in graph.aovs for value in (aov.color, aov.value)),
+    ]
     _check_links(ends, len(graph.nodes), label)
 
 

@@ -9,6 +9,12 @@ import numpy as np
 from .declared import declared
 from .light_linking import LightLinking
 
+SMOOTH_NORMALS = ".smooth_normals"
+"""Name of the attribute by which meshes that are displaced tell of faces that are not smooth: of corners, the normal
+along which vertices move, and 1 where the face is smooth, 0 where it is flat. Without it all faces are smooth."""
+UNDISPLACED = ".undisplaced"
+"""Name of the attribute that has the positions of vertices before they were displaced, object space."""
+
 
 class AttributeDomain(enum.Enum):
     """What an attribute has a value for."""
@@ -25,6 +31,17 @@ class MeshAttribute:
     domain: AttributeDomain
     values: np.ndarray = field(metadata=declared("elements", "channels", types="float32", finite=False))
     """(elements of the domain, 1 to 4) float32; colors are linear Rec.709."""
+
+
+@dataclass(frozen=True)
+class Dicing:
+    """How finely a mesh is divided where it is displaced (Adaptive Subdivision)."""
+
+    edge_length: float = field(metadata=declared(minimum=1e-6))
+    """How long edges may be: in pixels, of which Scene.dicing_rate is the unit, or in meters, object space."""
+    in_pixels: bool
+    is_curved: bool
+    """Whether faces bend by their normals as they are divided; else they stay flat."""
 
 
 @dataclass
@@ -52,6 +69,8 @@ class Mesh:
     """Middle and half extent of the box in which generated coordinates run from 0 to 1, object space."""
     attributes: dict[str, MeshAttribute] = field(default_factory=dict)
     """By name, those that the materials in use ask for."""
+    dicing: Dicing | None = None
+    """None: it is displaced as it is."""
 
     @property
     def triangle_count(self) -> int:

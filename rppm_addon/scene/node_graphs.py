@@ -58,6 +58,8 @@ class NodeGraph:
     """The shader of the surface (of a world: of its background); None scatters and emits nothing."""
     normal: Link | None = None
     """The shading normal that all shaders start from; None is that of the mesh."""
+    displacement: Link | None = None
+    """How far the mesh's vertices are moved, in world space, meters; None: not."""
     aovs: list[AovOutput] = field(default_factory=list)
 
     def add(

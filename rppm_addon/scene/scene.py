@@ -32,6 +32,8 @@ class Scene:
     settings: RenderSettings = field(default_factory=RenderSettings)
     exposure: float = field(default=1.0, metadata=declared(minimum=0.0, maximum=1e12))
     """Factor on every radiance of the film (Cycles' film exposure)."""
+    dicing_rate: float = field(default=1.0, metadata=declared(minimum=1e-6))
+    """Pixels that are the unit of Dicing.edge_length."""
     cubemap_center: np.ndarray | None = field(default=None, metadata=declared(3))
     """(3,) meters where the deep cubemap's center goes; None is automatic."""
     shutter: Shutter | None = None

@@ -48,7 +48,7 @@ caustics_reflective caustics_refractive blur_glossy sample_clamp_direct sample_c
 fast_gi_method ao_bounces ao_bounces_render diffuse_bounces glossy_bounces transmission_bounces transparent_max_bounces
 """
 _OF_WHAT_IS_NAMED = """
-dicing_rate preview_dicing_rate max_subdivisions dicing_camera offscreen_dicing_scale film_transparent_roughness
+max_subdivisions dicing_camera offscreen_dicing_scale film_transparent_roughness
 rolling_shutter_duration volume_bounces volume_step_rate
 volume_preview_step_rate volume_max_steps volume_biased
 """

@@ -20,6 +20,7 @@ from rppm_addon.blender.export.nodes.graphs import HANDLERS, _own_properties, ki
 from rppm_addon.materials.compiler import compile_graph
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene import Link
+from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED
 
 RED = (1.0, 0.0, 0.0, 1.0)
 OCHRE = (0.5, 0.25, 0.125, 1.0)
@@ -384,17 +385,59 @@ def test_volume_alone_lets_light_in(scene):
     assert shader.kind == "bsdf_transparent" and any('"Fog" (VOLUME_SCATTER)' in text for text in warnings)
 
 
-def test_displacement_turns_normals(scene):
+def test_displacement_turns_normals_and_moves_vertices(scene):
     material, diffuse = surface("ShaderNodeBsdfDiffuse", "Bumpy")
     tree = material.node_tree
     link(tree, add_node(tree, "ShaderNodeBump").outputs[0], diffuse.inputs["Normal"])
     link(tree, add_node(tree, "ShaderNodeDisplacement").outputs[0], tree.nodes["Output"].inputs["Displacement"])
     graph, warnings = export_graph(scene, material)
     assert warnings == [] and graph.nodes[graph.normal.node].kind == "bump"
+    assert graph.displacement is None and graph.nodes[graph.normal.node].attribute == ""
+    for method in ("DISPLACEMENT", "BOTH"):
+        material.displacement_method = method
+        bpy.data.objects.remove(bpy.data.objects["Mesh"])
+        graph, warnings = export_graph(scene, material)
+        assert warnings == [] and graph.nodes[graph.displacement.node].kind == "displacement"
+        assert (graph.normal is None) == (method == "DISPLACEMENT")
+    assert graph.nodes[graph.normal.node].attribute == UNDISPLACED
+
+
+def test_a_color_displaces_as_it_is(scene):
+    material, _ = surface("ShaderNodeBsdfDiffuse")
+    tree = material.node_tree
+    color = add_node(tree, "ShaderNodeRGB")
+    color.outputs[0].default_value = (0.25, 0.5, 1.0, 1.0)
+    link(tree, color.outputs[0], tree.nodes["Output"].inputs["Displacement"])
     material.displacement_method = "DISPLACEMENT"
-    bpy.data.objects.remove(bpy.data.objects["Mesh"])
-    _, warnings = export_graph(scene, material)
-    assert any('"Material"' in text and "bump" in text for text in warnings)
+    graph, warnings = export_graph(scene, material)
+    node = graph.nodes[graph.displacement.node]
+    assert warnings == [] and node.inputs["vector"] == (0.25, 0.5, 1.0) and node.options["space"] == "WORLD"
+
+
+@pytest.mark.parametrize("domain", ["POINT", "FACE", "CORNER"])
+def test_meshes_tell_of_flat_faces_where_they_are_displaced(scene, domain):
+    material, _ = surface("ShaderNodeBsdfDiffuse")
+    tree = material.node_tree
+    link(tree, add_node(tree, "ShaderNodeDisplacement").outputs[0], tree.nodes["Output"].inputs["Displacement"])
+    bpy.ops.mesh.primitive_cube_add()
+    mesh = bpy.context.object.data
+    mesh.materials.append(material)
+    others = [domain != "FACE"] * 5
+    mesh.polygons.foreach_set("use_smooth", [domain == "POINT", *others])
+    (exported,) = export(scene).meshes
+    assert SMOOTH_NORMALS not in exported.attributes
+    material.displacement_method = "DISPLACEMENT"
+    (exported,) = export(scene).meshes
+    if domain == "POINT":
+        assert SMOOTH_NORMALS not in exported.attributes
+        return
+    values = exported.attributes[SMOOTH_NORMALS].values
+    smooth = values[:, 3].reshape(-1, 4)
+    assert (smooth == smooth[:, :1]).all() and smooth[:, 0].sum() == (0 if domain == "FACE" else 5)
+    if domain == "FACE":  # of a cube's vertices all normals are alike
+        np.testing.assert_allclose(np.abs(values[:, :3]), 1.0 / np.sqrt(3.0), rtol=1e-5)
+    else:
+        np.testing.assert_array_equal(values[:, :3], exported.corner_normals)
 
 
 def test_no_surface_is_black(scene):

@@ -138,9 +138,6 @@ def test_material_and_world_panels_edit_the_output_that_is_exported(scene):
         "pass_index", "displacement_method", "use_transparent_shadow", "use_dispersion", "abbe_number",
     ]  # fmt: skip
     assert records["RPPM_PT_material_displacement"].labels == []
-    material.displacement_method = "DISPLACEMENT"
-    record = drawn(panels.shading.RPPM_PT_material_displacement, context_of(scene, material=material))
-    assert "bump" in record.labels[0]
     tree.nodes.clear()
     record = drawn(panels.shading.RPPM_PT_material_surface, context_of(scene, material=material))
     assert record.labels == ["No output node"]

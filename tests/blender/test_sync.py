@@ -107,6 +107,20 @@ def ask_for_generated():
     tree.links.new(texture.outputs[0], tree.nodes["Principled BSDF"].inputs["Base Color"])
 
 
+def displace():
+    material = bpy.data.materials["Red"]
+    tree = material.node_tree
+    height = tree.nodes.new("ShaderNodeDisplacement")
+    tree.links.new(height.outputs[0], tree.nodes["Material Output"].inputs["Displacement"])
+    material.displacement_method = "BOTH"
+
+
+def subdivide_adaptively():
+    modifier = bpy.data.objects["Cube"].modifiers.new("Subdivision", "SUBSURF")
+    if hasattr(modifier, "use_adaptive_subdivision"):  # Blender 5
+        modifier.use_adaptive_subdivision = True
+
+
 def brighten():
     bpy.data.lights["Light"].energy += 50.0
 
@@ -195,7 +209,7 @@ def same(a: Scene, b: Scene) -> bool:
     return equal(told(a), told(b))
 
 
-@pytest.mark.parametrize("edit", EDITS)
+@pytest.mark.parametrize("edit", [*EDITS, displace, subdivide_adaptively])
 def test_each_edit_is_followed(synced, edit):
     before = synced.scene
     edit()

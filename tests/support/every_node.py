@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from rppm_addon.materials.compiler import ADD_SHADER, MIX_SHADER, compile_graph
+from rppm_addon.materials.compiler import ADD_SHADER, MIX_SHADER, compile_displacement, compile_graph
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene.node_graphs import NodeGraph
 
@@ -27,7 +27,7 @@ def graph_of(names: list[str]) -> NodeGraph:
                 shaders.append(made)
             else:
                 value = made
-    graph.surface = graph.add("emission", "emission", color=value)
+    graph.surface, graph.displacement = graph.add("emission", "emission", color=value), value
     for shader in shaders:
         if graph.nodes[shader.node].kind not in (MIX_SHADER, ADD_SHADER):
             both = graph.add(ADD_SHADER, "shader", shader=graph.surface, shader_001=shader)
@@ -42,3 +42,11 @@ def programs() -> dict[str, str]:
         for source in SOURCES
     }
     return texts | {"dispersion": compile_graph(graph_of(["bsdf_glass", "bsdf_refraction"]), abbe_number=64.0).text}
+
+
+def displacements() -> dict[str, str]:
+    """The text of what displaces a surface for each file of kinds."""
+    return {
+        source: compile_displacement(graph_of([name for name, kind in KINDS.items() if kind.source == source])).text
+        for source in SOURCES
+    }

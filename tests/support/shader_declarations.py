@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import rppm_addon
 from rppm_addon.gl.sources import SHADER_FOLDER, Source, expand
 
-from .every_node import programs
+from .every_node import displacements, programs
 
 STAGES = (".comp", ".vert", ".frag", ".geom")
 GENERATED = "materials/generated.glsl"
@@ -41,6 +41,13 @@ class Variant:
         return expand(self.name, self.defines, inserts, reads_texels, large)
 
 
+def _graphs_of(text: str) -> list[str]:
+    """What the compiler of node graphs writes for a stage file with this text."""
+    if GENERATED not in text:
+        return [""]
+    return list((displacements() if "material_displacement" in text else programs()).values())
+
+
 def variants() -> list[Variant]:
     """Of every stage file those that its lint lines name; of those that run node graphs, with every kind of node."""
     import_declarations()
@@ -51,6 +58,6 @@ def variants() -> list[Variant]:
             name = path.relative_to(SHADER_FOLDER).as_posix()
             for line in _LINT.findall(text) or [""]:
                 defines: dict[str, object] = dict(item.partition("=")[::2] for item in line.split())
-                graphs = programs().values() if GENERATED in text else [""]
+                graphs = _graphs_of(text)
                 found += [Variant(name, defines, graph) for graph in graphs]
     return found

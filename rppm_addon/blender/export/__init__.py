@@ -26,7 +26,7 @@ from .objects.object_pass import Placed
 from .objects.objects import ObjectExporter
 from .omissions import OmissionList, objects_of
 from .report import ExportStopped, Report
-from .settings import export_cubemap_center, export_exposure, export_settings, preview_settings
+from .settings import export_cubemap_center, export_dicing_rate, export_exposure, export_settings, preview_settings
 from .stamps import export_stamps
 from .sync import ExportProgress, SceneSync
 
@@ -144,6 +144,7 @@ def _fill(
     source = depsgraph.scene_eval
     scene.cubemap_center = export_cubemap_center(depsgraph)
     scene.exposure = export_exposure(source)
+    scene.dicing_rate = export_dicing_rate(source, context.viewport)
     scene.meshes, scene.instances, scene.materials = (
         objects.meshes.meshes,
         placed.instances,

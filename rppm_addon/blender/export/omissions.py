@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import bpy
 
+from .meshes.dicing import subdivides_adaptively
 from .report import Report, listed
 from .slices import Slices
 
@@ -41,13 +42,6 @@ def _has_hair(source: bpy.types.Object) -> bool:
     )
 
 
-def _subdivides_adaptively(source: bpy.types.Object) -> bool:
-    modifiers = (modifier for modifier in source.modifiers if modifier.type == "SUBSURF")
-    return bool(_cycles(source, "use_adaptive_subdivision", False)) or any(
-        getattr(modifier, "use_adaptive_subdivision", False) for modifier in modifiers
-    )
-
-
 OF_OBJECTS = (
     Omission(
         "Hair of particle systems",
@@ -57,9 +51,10 @@ OF_OBJECTS = (
     ),
     Omission(
         "Adaptive Subdivision",
-        "the surface is subdivided as often as its modifier says for renders; raise that",
+        "what is displaced is divided evenly, into a million triangles at most; other surfaces are as their modifiers "
+        "have them for renders",
         ("cycles.use_adaptive_subdivision", "modifiers"),
-        _subdivides_adaptively,
+        subdivides_adaptively,
     ),
 )
 """By what an evaluated object uses."""

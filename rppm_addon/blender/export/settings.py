@@ -83,6 +83,12 @@ def export_cubemap_center(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
     return None if chosen is None else np.array(chosen.evaluated_get(depsgraph).matrix_world.translation, float)
 
 
+def export_dicing_rate(scene: bpy.types.Scene, viewport: bool) -> float:
+    """Pixels by which Adaptive Subdivision measures edges; Cycles' defaults where it is not enabled."""
+    name, default = ("preview_dicing_rate", 8.0) if viewport else ("dicing_rate", 1.0)
+    return getattr(getattr(scene, "cycles", None), name, default)
+
+
 def export_exposure(scene: bpy.types.Scene) -> float:
     """The film's, a factor; 1 where the extension is not registered."""
     return scene.rppm.film_exposure if hasattr(scene, "rppm") else 1.0

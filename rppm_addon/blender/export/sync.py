@@ -24,7 +24,7 @@ from .objects.object_pass import ObjectPass, Placed
 from .objects.objects import ObjectExporter
 from .omissions import OmissionList
 from .report import Report
-from .settings import export_cubemap_center, export_exposure, export_settings
+from .settings import export_cubemap_center, export_dicing_rate, export_exposure, export_settings
 from .slices import Unfinished
 
 _MOST_UNUSED = 64
@@ -279,6 +279,7 @@ class SceneSync:
             images=list(self._images.images),
             settings=settings,
             exposure=export_exposure(source),
+            dicing_rate=export_dicing_rate(source, self._viewport),
             cubemap_center=export_cubemap_center(depsgraph),
             asset_names=export_asset_names(depsgraph, settings),
             warnings=self._report.warnings,

@@ -31,11 +31,6 @@ class RPPM_PT_material_displacement(RppmMaterialPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
     input_name = "Displacement"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        super().draw(context)
-        if getattr(context.material, "displacement_method", "BUMP") != "BUMP":
-            self.layout.label(text="Surfaces are not moved: it is rendered as bump", icon="INFO")
-
 
 class RPPM_PT_material_settings(RppmMaterialPanel, bpy.types.Panel):
     bl_label = "Settings"

@@ -18,6 +18,7 @@ from ..common.known import known
 from ..deep_cubemap.deep_cubemap import DeepCubemap
 from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..lights.lights import Lights
+from ..surfaces.displacement import Displacement
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .changes import Changes, changes_between, snapshot
@@ -36,12 +37,13 @@ class DeviceScene:
         self._pacing = library.pacing
         self.geometry = Geometry(context, library)
         self.materials = MaterialTables(context, library)
+        self.displacement = Displacement(context, library)
         self.lights = Lights(context, library)
         # Where no unit rasterizes that takes two to three times as long, and trying it most of the first build.
         self.deep_cubemap = DeepCubemap(context, library, rasterize=False if context.is_software else None)
         self.resolve = Resolve(context, library)
         self.scene: Scene | None = None
-        """With a shutter, as it is at the iteration's moment."""
+        """Displaced; with a shutter, as it is at the iteration's moment."""
         self.center = np.full(3, np.nan)
         """Of the deep cubemap, (3,) meters."""
         self._source_scene: Scene | None = None
@@ -84,10 +86,18 @@ class DeviceScene:
         center_tolerance: how far from where the deep cubemap's center should be it may stay, in radii of the scene,
         which changes no picture. Raises SceneError or DeviceError; what is built then is built anew the next time.
         """
-        changes = changes_between(self._uploaded_scene, scene)
+        before = self._uploaded_scene
+        changes = changes_between(before, scene)
+        self._take(scene)
+        self._build_materials(changes)
+        with self._collect_warnings("displacement") if changes.materials else contextlib.nullcontext():
+            displaced = self.displacement.displaced(scene, self.materials, changes.materials)
+        if displaced is not scene:
+            scene = displaced
+            changes = changes_between(before, scene)
+            self._take(scene)
         if changes.geometry or changes.materials:
             self._pacing.forget()
-        self._take(scene)
         self._moving = MovingScene(scene) if scene.shutter is not None else None
         swept = swept_bounds(scene)
         changes.geometry |= not np.array_equal(swept, self._swept)
@@ -105,6 +115,8 @@ class DeviceScene:
         """Take a scene and build what rays need, to be looked at: nothing can be rendered. Raises as update does."""
         self._take(scene)
         self.materials.build(scene)
+        scene = self.displacement.displaced(scene, self.materials, True)
+        self._take(scene)
         self.geometry.build(scene, self.materials.default_material)
         self._build_deep_cubemap()
 
@@ -118,6 +130,7 @@ class DeviceScene:
         changes = changes_between(self._uploaded_scene, self.scene)
         self._uploaded_scene = None
         with self._timers.stage("motion"):
+            self._build_materials(changes)
             self._build_parts(changes, iteration.photon_count, keep_learned=True)
         if changes.geometry:
             self._build_deep_cubemap()
@@ -127,16 +140,19 @@ class DeviceScene:
         self._uploaded_scene = None
         self.scene = self._source_scene = scene
 
-    def _build_parts(self, changes: Changes, photons: int, keep_learned: bool = False) -> None:
-        """What rests on the scene's members that have changed, but for the deep cubemap.
-
-        photons: of the iteration. keep_learned: go on with what was learned of the lights.
-        """
+    def _build_materials(self, changes: Changes) -> None:
         scene = known(self.scene)
         self.materials.follow(scene)
         if changes.materials:
             with self._collect_warnings("materials"):
                 self.materials.build(scene)
+
+    def _build_parts(self, changes: Changes, photons: int, keep_learned: bool = False) -> None:
+        """What rests on the scene's members that have changed, but for materials, displacement and the deep cubemap.
+
+        photons: of the iteration. keep_learned: go on with what was learned of the lights.
+        """
+        scene = known(self.scene)
         if changes.geometry:
             self.geometry.build(scene, self.materials.default_material, self._swept)
         if changes.geometry or changes.materials:

@@ -89,25 +89,27 @@ class SurfaceAttributes(BufferSet):
             self.has_terminators = bool(records["terminator_flags"].any())
             records["first_triangle"] = [placement.first_triangle for placement in geometry.placements]
         self._instances.upload(records)
-        self._upload_values(scene.meshes, instances, names)
+        self._upload_values(scene.meshes, instances, mirrored(geometry.matrices) if names else [], names)
 
-    def _upload_values(self, meshes: list[Mesh], instances: list[Instance], names: list[str]) -> None:
+    def _upload_values(
+        self, meshes: list[Mesh], instances: list[Instance], turned: list[bool], names: list[str]
+    ) -> None:
         table = np.zeros((len(instances), self.count, 2), np.uint32)
         places: dict[tuple, tuple[int, int]] = {}
-        values: dict[int, tuple[MeshAttribute, Mesh]] = {}
+        values: dict[int, tuple[MeshAttribute, Mesh, bool]] = {}
         end = table.size
         for number, name in enumerate(names if instances else ()):
             column = []
-            for instance in instances:
+            for instance, is_turned in zip(instances, turned, strict=True):
                 own = instance.attributes.get(name) if instance.attributes else None
-                key = (instance.mesh, name) if own is None else (name, *own)
+                key = (instance.mesh, name, is_turned) if own is None else (name, *own)
                 if key not in places:
                     mesh = meshes[instance.mesh]
                     attribute = mesh.attributes.get(name) if own is None else _constant(own, mesh)
                     places[key] = (0, 0)
                     if attribute is not None and mesh.triangle_count:
                         places[key] = (end, attribute.values.shape[1])
-                        values[end] = attribute, mesh
+                        values[end] = attribute, mesh, is_turned
                         end += 3 * mesh.triangle_count * attribute.values.shape[1]
                 column.append(places[key])
             table[:, number] = column
@@ -116,10 +118,10 @@ class SurfaceAttributes(BufferSet):
             before = {}
         self._values.write(table)
         sources = {}
-        for place, (attribute, mesh) in values.items():
-            sources[place] = attribute.domain, attribute.values, mesh.triangle_corners, mesh.corner_vertices
+        for place, (attribute, mesh, is_turned) in values.items():
+            sources[place] = attribute.domain, attribute.values, mesh.triangle_corners, mesh.corner_vertices, is_turned
             if not same_members(sources[place], before.get(place, ())):
-                self._values.write(_per_corner(attribute, mesh), 4 * place)
+                self._values.write(_per_corner(attribute, mesh, is_turned), 4 * place)
         self._sources = sources
 
 
@@ -186,9 +188,15 @@ def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:
     return MeshAttribute(AttributeDomain.TRIANGLE, values)
 
 
-def _per_corner(attribute: MeshAttribute, mesh: Mesh) -> np.ndarray:
-    """(3 * triangles, components) float32 values at the triangles' corners."""
-    corners = mesh.triangle_corners.reshape(-1)
+def mirrored(matrices: np.ndarray) -> list[bool]:
+    """Whether affine matrices (n, 4, 4) mirror, so that triangles are turned round (shaders/geometry/gather.comp)."""
+    x, y, z = (matrices[:, :3, column] for column in range(3))
+    return ((x * np.cross(y, z)).sum(axis=1) < 0.0).tolist()
+
+
+def _per_corner(attribute: MeshAttribute, mesh: Mesh, is_turned: bool) -> np.ndarray:
+    """(3 * triangles, components) float32 values at the triangles' corners, as their world triangles have these."""
+    corners = (mesh.triangle_corners[:, [0, 2, 1]] if is_turned else mesh.triangle_corners).reshape(-1)
     values = np.ascontiguousarray(attribute.values, np.float32)
     if attribute.domain is AttributeDomain.CORNER:
         return values.take(corners, axis=0)

@@ -109,6 +109,7 @@ KINDS = {
         inputs={"vector": (VECTOR, 0.0), "midlevel": (FLOAT, 0.0), "scale": (FLOAT, 1.0)},
         outputs={"displacement": VECTOR},
         options={"space": _VECTOR_DISPLACEMENT_SPACES},
+        resources=("attribute",),
         surface=True,
     ),
     "displacement_height": NodeKind(

@@ -267,10 +267,8 @@ class Viewing:
     def _picture(self, scene: Scene, last: bool) -> np.ndarray:
         """The picture so far as a viewport shows it."""
         mapper = self._mapper
-        if self._first_look is None:
-            self._first_look = FirstLook(self._context, self._library, mapper.device_scene.geometry)
         if self._viewport_pictures is None:
-            self._viewport_pictures = ViewportPictures(self._context, self._library, self._first_look)
+            self._viewport_pictures = ViewportPictures(self._context, self._library, self._look())
         combined = self._viewport_pictures.show(scene, mapper.film, mapper.iteration, last)
         return shown_picture(mapper.film, scene) if combined is None else combined
 
@@ -330,15 +328,19 @@ class Viewing:
         if scene.camera.panorama is not None or len(scene.settings.passes) == 1:
             return
         try:
-            if self._first_look is None:
-                self._first_look = FirstLook(self._context, self._library, self._mapper.device_scene.geometry)
-            combined = self._first_look.draw(scene)
+            combined = self._look().draw(scene)
         except DeviceLostError:
             raise
         except (RppmError, ShaderError):
             log.info("there is no first look", exc_info=True)
             return
         self._send_frame(combined, generation, 0.0)
+
+    def _look(self) -> FirstLook:
+        if self._first_look is None:
+            built = self._mapper.device_scene
+            self._first_look = FirstLook(self._context, self._library, built.geometry, built.displacement.as_known)
+        return self._first_look
 
     def _while_compiling(self, name: str) -> None:
         """Between two programs of the first frame: follow the view, and say how far it is."""

@@ -85,13 +85,18 @@ void node_displacement(Surface surface, int space, float height, float midlevel,
     } else displacement = normal_in * amount;
 }
 
-void node_vector_displacement(Surface surface, int space, vec3 vector, float midlevel, float scale,
+void node_vector_displacement(Surface surface, int space, uint layer, vec3 vector, float midlevel, float scale,
                               out vec3 displacement) {
-    vec3 offset = (vector - midlevel) * scale;
+    displacement = (vector - midlevel) * scale;
     if (space == VECTOR_DISPLACEMENT_TANGENT) {
-        vec3 n = surface.normal, t = default_tangent(surface);
-        displacement = offset.x * t + offset.y * n + offset.z * cross(n, t);
-    } else displacement = space == VECTOR_DISPLACEMENT_OBJECT ? direction_to_world(surface, offset) : offset;
+        vec3 n = normalize(normal_to_object(surface, surface.normal));
+        vec4 tangent = attribute_value(surface, layer);
+        vec3 across = cross(n, tangent.xyz);
+        float size = length(across);
+        across *= size > 1e-20 ? tangent.w / size : 0.0;
+        displacement = displacement.x * tangent.xyz + displacement.y * n + displacement.z * across;
+    }
+    if (space != VECTOR_DISPLACEMENT_WORLD) displacement = direction_to_world(surface, displacement);
 }
 
 void node_displacement_height(Surface surface, vec3 displacement, out float height) {

@@ -239,12 +239,6 @@ def _colors():
     attribute_values("FLOAT_COLOR", "POINT", *ATTRIBUTES["FLOAT_COLOR"])()
 
 
-def _displaced(net):
-    height = net.out("Displacement", 0, {"Height": _noise(net), "Scale": 0.08})
-    net.output(Displacement=height)
-    return net.out("BsdfDiffuse", 0, COLOR)
-
-
 def mixed(first, second, factor=0.4):
     def give(net):
         fed = factor(net) if callable(factor) else factor

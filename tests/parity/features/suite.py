@@ -4,6 +4,7 @@
 from . import (  # noqa: F401
     cameras,
     coordinates,
+    displacement,
     image_textures,
     light_limits,
     light_linking,

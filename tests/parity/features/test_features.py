@@ -9,16 +9,17 @@ and all but the first of those kinds of nodes whose values have tests of their o
 import numpy as np
 import pytest
 
+from . import displacement, zones_and_closures
 from .flip import flip
 from .measure import measure, shortcomings
 from .suite import ROWS
-from .zones_and_closures import GROUP
 
 PART = 0.5
 """Of the iterations that `make parity` takes: as many as the limits ask for."""
 DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", "Driven: Normal by a bump")
 
 
+MODULES_OF_THEIR_OWN = {displacement.GROUP, zones_and_closures.GROUP}
 VALUES_ELSEWHERE = {
     "Textures", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range", "Vector Transform",
 }  # fmt: skip
@@ -33,7 +34,7 @@ def takes_long(row, first_of_group: bool) -> bool:
 
 def parameters():
     groups = set()
-    for row in (row for row in ROWS if row.group != GROUP):  # those have a module of their own
+    for row in (row for row in ROWS if row.group not in MODULES_OF_THEIR_OWN):
         long = takes_long(row, row.group not in groups)
         groups.add(row.group)
         yield pytest.param(row, id=row.id, marks=[pytest.mark.long] if long else [])

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from ....scene import AttributeDomain, Mesh, MeshAttribute
+from ....scene.meshes import SMOOTH_NORMALS
 from ..slices import Slices
 from .meshes import read_uv
 from .pointiness import pointiness
@@ -94,6 +95,8 @@ def _computed(
 def _read(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
     if name == GENERATED:
         return MeshAttribute(AttributeDomain.POINT, _generated(mesh))
+    if name == SMOOTH_NORMALS:
+        return _smooth_normals(exported, mesh)
     attribute = _rendered_color(mesh) if name == ACTIVE_COLOR else mesh.attributes.get(name)
     if attribute is None or attribute.data_type not in _FIELDS:
         return None
@@ -141,6 +144,23 @@ def _generated(mesh: bpy.types.Mesh) -> np.ndarray:
     location, size = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
     half = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)
     return ((places.reshape(-1, 3) - location) * half + 0.5).astype(np.float32)
+
+
+def _smooth_normals(exported: Mesh, mesh: bpy.types.Mesh) -> MeshAttribute | None:
+    """None where Blender has a normal for each vertex and no other."""
+    if mesh.normals_domain == "POINT":
+        return None
+    values = np.zeros((len(mesh.loops), 4), np.float32)
+    if mesh.normals_domain == "FACE":
+        _, normals = _vertices(mesh)
+        values[:, :3] = normals[exported.corner_vertices]
+        return MeshAttribute(AttributeDomain.CORNER, values)
+    values[:, :3] = exported.corner_normals
+    sharp = np.zeros(len(mesh.polygons), bool)
+    if "sharp_face" in mesh.attributes:
+        mesh.attributes["sharp_face"].data.foreach_get("value", sharp)
+    values[:, 3] = np.repeat(~sharp, _lengths(mesh))
+    return MeshAttribute(AttributeDomain.CORNER, values)
 
 
 def _mean_of_edges(mesh: bpy.types.Mesh, values: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from ....scene.sharing import equal
 from ..report import Report
 from ..slices import Slices
 from .attributes import export_attribute
+from .dicing import export_dicing
 from .meshes import NO_MESH, export_mesh
 
 
@@ -135,6 +136,7 @@ class MeshTable:
             self._places[key] = None
             return
         place = self._places[key] = heapq.heappop(self._free) if self._free else len(self.meshes)
+        exported.dicing = export_dicing(source)
         self.meshes[place : place + 1] = [exported]
         self._tried[place] = set()
         self._keys[place] = key

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 
 import bpy
 
-from ....scene import AovOutput, Material, NodeGraph
+from ....scene import AovOutput, Link, Material, NodeGraph
 from ....scene.cryptomatte import DEFAULT_MATERIAL
+from ....scene.meshes import SMOOTH_NORMALS, UNDISPLACED
 from ..context import ExportContext
 from ..meshes.attributes import NO_ATTRIBUTE
 from . import surface_nodes, value_nodes  # noqa: F401  register their handlers
@@ -61,7 +62,8 @@ class MaterialTable:
 
 def _attributes_of(material: Material) -> dict[str, str]:
     nodes = material.graph.nodes
-    return {node.attribute: node.name for node in nodes if node.attribute not in {"", NO_ATTRIBUTE}}
+    asked = {node.attribute: node.name for node in nodes if node.attribute not in {"", NO_ATTRIBUTE, UNDISPLACED}}
+    return asked if material.graph.displacement is None else {**asked, SMOOTH_NORMALS: ""}
 
 
 def default_surface() -> NodeGraph:
@@ -91,7 +93,7 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
     exporter = GraphExporter(owner, context, tree, material.pass_index)
     graph = exporter.graph
     if exporter.is_linked(output.inputs["Displacement"], ()):
-        _bump(exporter, material, output)
+        _displace(exporter, material, output)
     graph.surface = exporter.surface()
     graph.aovs = [
         AovOutput(name, *(exporter.value(node.inputs[socket], path) for socket in ("Color", "Value")))
@@ -120,14 +122,21 @@ def _aov_outputs(tree: bpy.types.NodeTree, path: Path) -> Iterator[tuple[bpy.typ
             yield from _aov_outputs(node.node_tree, (*path, node))
 
 
-def _bump(exporter: GraphExporter, material: bpy.types.Material, output: bpy.types.Node) -> None:
-    """Displacement moves no vertices here: its height turns the normals."""
-    if getattr(material, "displacement_method", "BUMP") != "BUMP":
-        exporter.warn(output, "has a displacement that moves the surface, which is rendered as bump only")
+def _displace(exporter: GraphExporter, material: bpy.types.Material, output: bpy.types.Node) -> None:
+    """What moves vertices, and the bump by its height."""
     graph = exporter.graph
     displacement = exporter.value(output.inputs["Displacement"], ())
-    height = graph.add("displacement_height", "height", displacement=displacement)
-    graph.normal = graph.add("bump", "normal", name=output.name, height=height)
+    if material.displacement_method != "BUMP":
+        if not isinstance(displacement, Link):  # the same everywhere
+            options = {"space": "WORLD"}
+            displacement = graph.add(
+                "vector_displacement", "displacement", options=options, attribute=NO_ATTRIBUTE, vector=displacement
+            )
+        graph.displacement = displacement
+    if material.displacement_method != "DISPLACEMENT":
+        height = graph.add("displacement_height", "height", displacement=displacement)
+        attribute = UNDISPLACED if material.displacement_method == "BOTH" else ""
+        graph.normal = graph.add("bump", "normal", name=output.name, attribute=attribute, height=height)
 
 
 def _interior(owner: str, context: ExportContext, tree: ReadableTree) -> NodeGraph:

@@ -109,6 +109,14 @@ def _normal_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types
     return exporter.add("normal_map", node, path, "normal", attribute=TANGENT + node.uv_map)
 
 
+@handles("VECTOR_DISPLACEMENT")
+def _vector_displacement(
+    exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path
+) -> object:
+    attribute = TANGENT if node.space == "TANGENT" else NO_ATTRIBUTE
+    return exporter.add("vector_displacement", node, path, "displacement", attribute=attribute)
+
+
 @handles("BEVEL", "AMBIENT_OCCLUSION")
 def _environment(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     exporter.warn(node, "would need rays of its own, which are not traced; it is left out")

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from ....scene import Instance, Light
+from ....scene.meshes import SMOOTH_NORMALS
 from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
 from ..omissions import objects_of
 from ..visibility import visibility_of
@@ -327,7 +328,7 @@ class ObjectPass:
         key = instance.mesh, len(mesh.attributes), tuple(instance.materials), tuple(instance.attributes)
         if key in self._lacks_nothing:
             return
-        known = {GENERATED, ISLAND, POINTINESS, TANGENT, *mesh.attributes, *instance.attributes}
+        known = {GENERATED, ISLAND, POINTINESS, SMOOTH_NORMALS, TANGENT, *mesh.attributes, *instance.attributes}
         asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
         if all(attributes.keys() <= known for _, attributes in asked):
             self._lacks_nothing.add(key)
