@@ -12,7 +12,7 @@ struct Principled {
     float diffuse_roughness, subsurface;
     vec3 subsurface_radius;
     float subsurface_ior, subsurface_anisotropy;
-    int subsurface_method;
+    uint subsurface_method;
     float specular_level;
     vec3 specular_tint;
     float anisotropic, anisotropic_rotation;

@@ -3,7 +3,6 @@
 
 #include "materials/builder.glsl"
 #include "common/bsdf/subsurface.glsl"
-#include <SubsurfaceMethods>
 #define MATERIAL_SUBSURFACE
 
 // What nodes have added so far, and what the closure gets when all have.
@@ -26,17 +25,18 @@ vec3 dipole_albedo(vec3 reflected, float a) {
     return mix(found, vec3(0.999999), greaterThanEqual(reflected, vec3(0.995)));
 }
 
-// Mean free paths, as in Cycles: of skin those by which a dipole has the radius, else such as look like the radii of
+// Mean free paths, as in Cycles: the radius, or of skin that by which a dipole has it, else such as look like those of
 // older models.
-vec3 mean_free_path(vec3 radius, vec3 albedo, float ior, bool skin) {
-    if (!skin) return radius * (0.25 / PI);
+vec3 mean_free_path(vec3 radius, vec3 albedo, float ior, uint method) {
+    if (method == SUBSURFACE_RANDOM_WALK) return radius;
+    if (method != SUBSURFACE_RANDOM_WALK_SKIN) return radius * (0.25 / PI);
     float eta = 1.0 / ior, reflected = eta * (0.710 - 1.440 * eta) + 0.668 + 0.0636 * ior;
     return radius * sqrt(3.0 * (1.0 - dipole_albedo(albedo, 4.0 / 3.0 * (1.0 + reflected) / (1.0 - reflected))));
 }
 
 // Of several, one is chosen by its albedo and stands for all.
 void add_subsurface(inout ClosureBuilder builder, vec3 weight, vec3 albedo, vec3 radius, float ior, float alpha,
-                    float anisotropy, int method, vec3 normal) {
+                    float anisotropy, uint method, vec3 normal) {
     vec3 scattered = weight * albedo;
     bvec3 is_short = lessThan(radius, vec3(SHORTEST_RADIUS));
     add_diffuse_parts(builder, mix(vec3(0.0), scattered, is_short), vec3(0.0), normal, 0u);
@@ -49,9 +49,10 @@ void add_subsurface(inout ClosureBuilder builder, vec3 weight, vec3 albedo, vec3
         return;
     }
     ior = clamp(ior, 1.01, 3.8);
-    bool skin = method == SUBSURFACE_RANDOM_WALK_SKIN;
-    material_subsurface = Subsurface(scattered / probability, albedo, mean_free_path(radius, albedo, ior, skin),
-                                     clamp(anisotropy, -0.99, skin ? 0.9 : 0.99), ior, skin ? 1.0 : alpha, skin,
+    bool is_rough = method == SUBSURFACE_RANDOM_WALK_SKIN || method == SUBSURFACE_BURLEY;
+    material_subsurface = Subsurface(scattered / probability, albedo, mean_free_path(radius, albedo, ior, method),
+                                     clamp(anisotropy, -0.99, method == SUBSURFACE_RANDOM_WALK ? 0.99 : 0.9), ior,
+                                     is_rough ? 1.0 : alpha, method,
                                      pack_unit_vector(reflecting_normal(builder, normal)));
 }
 

@@ -25,7 +25,7 @@ float polynomial(float x, vec4 low, vec4 high) {
 // Tracing, 2016) as Wrenninge, Villemin and Hery extended it to anisotropies from 0 on (Path Traced Subsurface
 // Scattering using Anisotropic Phase Functions and Non-Exponential Free Flights, 2017). The radius is that of reduced
 // extinction.
-void skin_medium(vec3 reflected, vec3 radius, float g, out vec3 albedo, out vec3 extinction) {
+void fitted_medium(vec3 reflected, vec3 radius, float g, out vec3 albedo, out vec3 extinction) {
     float a = polynomial(g, vec4(1.8260523782, -1.28451056436, -1.79904629312, 9.19393289202),
                          vec4(-22.8215585862, 32.0234874259, -23.6264803333, 7.21067002658)),
           b = 4.98511194385 + 0.127355959438
@@ -52,7 +52,7 @@ bool enters(Subsurface part, vec3 normal, vec3 geometric, vec3 viewer, vec3 u, o
     MicrofacetFrame frame = microfacet_frame(normal, part.alpha, ISOTROPIC);
     vec3 h = from_frame(frame, sample_visible_normal(to_frame(frame, viewer), frame.alpha, disk));
     float eta = 1.0 / part.ior, cosine = dot(h, viewer);
-    bool evenly = part.skin && u.z < 0.5;
+    bool evenly = part.method == SUBSURFACE_RANDOM_WALK_SKIN && u.z < 0.5;
     direction = evenly ? cosine_hemisphere(-normal, disk)
               : (eta * cosine - sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0))) * h - eta * viewer;
     direction = normalize(direction);
@@ -62,9 +62,9 @@ bool enters(Subsurface part, vec3 normal, vec3 geometric, vec3 viewer, vec3 u, o
 // throughput: of light that comes out, the albedo in it; the largest is about 1.
 void begin_walk(uint index, Closure closure, Subsurface part, vec3 viewer, vec3 throughput, vec3 u) {
     vec3 albedo, extinction, direction;
-    if (part.skin && part.anisotropy >= 0.0)
-        skin_medium(part.albedo, part.radius, part.anisotropy, albedo, extinction);
-    else similar_medium(part.albedo, part.radius, part.anisotropy, albedo, extinction);
+    if (part.method == SUBSURFACE_RANDOM_WALK || part.anisotropy < 0.0)
+        similar_medium(part.albedo, part.radius, part.anisotropy, albedo, extinction);
+    else fitted_medium(part.albedo, part.radius, part.anisotropy, albedo, extinction);
     albedo = clamp(albedo, 0.0, 0.999999);
     // Light that hardly scatters once would take all steps to the surface: it scatters more, with less weight.
     const float least = 0.2;

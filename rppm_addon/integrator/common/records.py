@@ -177,9 +177,9 @@ SUBSURFACE_WALK = Record(
     albedo="vec3",
     normal="uint",
 )
-"""A random walk below a surface of an instance: where it went in, the ``normal`` there (packed), and how far behind that
-the surface is met again, meters, less than 0 where it is not near; ``extinction``, 1/m, and ``albedo`` are those of
-single scattering."""
+"""A random walk below a surface of an instance: where it went in, the ``normal`` there (packed), and how far behind
+that the surface is met again, meters, less than 0 where it is not near; ``extinction``, 1/m, and ``albedo`` are those
+of single scattering."""
 StorageBlock("SubsurfaceWalks", "SubsurfaceWalk subsurface_walks[];")
 StorageBlock("WalkRays", "Ray walk_rays[];")
 StorageBlock("ExitHits", "Hit exit_hits[];")

@@ -20,7 +20,8 @@ _TANGENT = {"tangent": (VECTOR, "tangent")}
 _ANISOTROPY = {"anisotropy": (FLOAT, 0.0), "rotation": (FLOAT, 0.0)} | _NORMAL | _TANGENT
 _FILM = {"thin_film_thickness": (FLOAT, 0.0), "thin_film_ior": (FLOAT, 1.33)}
 _GRAY, _WHITE = {"color": (COLOR, 0.8)}, {"color": (COLOR, 1.0)}
-SUBSURFACE_METHODS = ("RANDOM_WALK", "RANDOM_WALK_SKIN", "BURLEY")
+SUBSURFACE_METHODS = ("RANDOM_WALK", "RANDOM_WALK_SKIN", "RANDOM_WALK_LEGACY", "BURLEY")
+"""As in Blender 5.2; what is RANDOM_WALK before that is RANDOM_WALK_LEGACY there."""
 
 KINDS = {
     # Both share out weights and have no GLSL; their shaders are the inputs "shader" and "shader_001".

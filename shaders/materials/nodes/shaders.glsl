@@ -80,7 +80,7 @@ void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distributio
 void node_subsurface_scattering(inout ClosureBuilder builder, float weight, int falloff, vec3 color, float scale,
                                 vec3 radius, float ior, float roughness, float anisotropy, vec3 normal) {
     add_subsurface(builder, vec3(weight), clamp(color, 0.0, 1.0), max(radius * scale, 0.0), ior, unit(roughness),
-                   anisotropy, falloff, normal);
+                   anisotropy, uint(falloff), normal);
 }
 #endif
 
@@ -148,7 +148,7 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
         max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal,
         unit(diffuse_roughness),
         unit(subsurface_weight), max(subsurface_radius * subsurface_scale, 0.0), subsurface_ior, subsurface_anisotropy,
-        subsurface_method, max(specular_ior_level, 0.0), max(specular_tint, 0.0),
+        uint(subsurface_method), max(specular_ior_level, 0.0), max(specular_tint, 0.0),
         unit(anisotropic), anisotropic_rotation, tangent,
         unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0),
         coat_normal,
