@@ -161,9 +161,7 @@ for _name, _inputs in PRINCIPLED.items():
     lit(
         "Principled",
         _name,
-        shader(
-            "BsdfPrincipled", BASE | _inputs, **({"subsurface_method": "RANDOM_WALK_SKIN"} if "skin" in _name else {})
-        ),
+        shader("BsdfPrincipled", BASE | _inputs, **METHODS.get(_name, {})),
         **({"settings": LONG, "effort": 2} if "transmission" in _name else KNOWN.get(_name, {})),
     )
 lit(
