@@ -80,6 +80,17 @@ def test_what_lies_within_another_object_is_not_in_the_way(mapper):
     np.testing.assert_array_less(abs(mean - 1.0), 4 * error + 0.005)
 
 
+def test_passes_show_what_the_camera_sees_first(mapper):
+    """The same as of a diffuse surface."""
+    found = []
+    for material in (wax((0.8, 0.5, 0.2), 0.3), scenes.diffuse(0.8, 0.5, 0.2)):
+        mapper.build(ball(material, passes=("Position", "Normal", "Depth", "Diffuse Color")))
+        mapper.iterate()
+        found.append(mapper.film.read_passes())
+    for name, seen in found[1].items():
+        np.testing.assert_allclose(found[0][name], seen, rtol=1e-6, err_msg=name)
+
+
 def test_photons_leave_where_they_come_out(mapper):
     """Of a sun's photons that have come to a ball, the albedo goes on. Free paths are short against the ball, so that
     it is that of a half space: the fit of it is within 2 %."""
