@@ -8,6 +8,7 @@ import scenes
 from rppm_addon.integrator.common.records import PhotonFlag
 from rppm_addon.scene import (
     Camera,
+    DensityEstimation,
     DirectLight,
     Instance,
     Light,
@@ -89,6 +90,20 @@ def test_passes_show_what_the_camera_sees_first(mapper):
         found.append(mapper.film.read_passes())
     for name, seen in found[1].items():
         np.testing.assert_allclose(found[0][name], seen, rtol=1e-6, err_msg=name)
+
+
+@pytest.mark.long
+def test_splats_meet_importons_where_paths_come_out(mapper):
+    """They do not lie where the camera sees the surface; the grid of photons has no use for that."""
+    found = []
+    for route in (DensityEstimation.GRID, DensityEstimation.RASTERIZED):
+        scene = ball(
+            wax((0.8, 0.5, 0.2), 0.3), photons=4096, direct_light=DirectLight.PHOTONS, density_estimation=route
+        )
+        scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0, -9, 0), (0, 0, 0)), np.full(3, 1.0))]
+        found.append(estimate(mapper, scene, 1)[0])
+    assert found[0].min() > 0.0
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-4)
 
 
 def test_photons_leave_where_they_come_out(mapper):
