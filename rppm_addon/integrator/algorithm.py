@@ -8,7 +8,6 @@ from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
 from .learning import Learning
 from .stages.gbuffer import jittered_view
-from .stages.photons import Photons
 from .stages.stage_set import StageSet
 
 
@@ -16,7 +15,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
     photons, importons, camera_hits = stages.photons, stages.importons, stages.camera_hits
     estimator, film, light, groups = stages.density_estimator, stages.film, stages.light_passes, stages.light_groups
-    yield from trace_photons(context, photons, iteration)
+    yield from trace_photons(context, stages, iteration)
     radii = store_photons(context, stages, learning, iteration)
     photons_taken = []
     yield
@@ -29,6 +28,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             if segment > 0 and not importons.trace(context):
                 break
             importons.resolve(context, iteration, segment)
+            stages.subsurface.walk_camera_paths(context, importons, band, iteration, segment)
             yield
             stages.shadow_catcher.cast(context, importons, band, iteration, segment)
             blocks = stages.direct_light_blocks(band)
@@ -41,7 +41,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.scatter(context, stages.scatter_blocks(band), band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
             groups.add_seen_light(context, importons, iteration)
-            raster = camera_hits.raster(band) if segment == 0 else None
+            raster = camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield
         if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
@@ -62,14 +62,15 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     yield
 
 
-def trace_photons(context: StageContext, photons: Photons, iteration: Iteration) -> Iterator[None]:
+def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration) -> Iterator[None]:
     """DirectPhotonHits and TracePhotons, in steps."""
+    photons = stages.photons
     photons.emit(context, iteration)
     for segment in range(photons.segments):
         if segment > 0 and not photons.trace(context):
             break
         photons.resolve(context, iteration, segment)
-        photons.scatter(context, iteration, segment)
+        photons.scatter(context, stages.subsurface, iteration, segment)
         yield
 
 

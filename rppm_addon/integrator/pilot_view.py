@@ -77,6 +77,7 @@ def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> P
             band = Band(columns, 0, int(view["height"][0]))
             stages.camera_hits.find(context, importons, view, band, iteration)
             importons.resolve(context, iteration, 0)
+            stages.subsurface.walk_camera_paths(context, importons, band, iteration, 0)
             importons.scatter(context, stages.scatter_blocks(band), band, iteration, 0, unlimited)
             footprints.append(importons.footprints(band.pixel_count))
             if follows_rays:

@@ -213,7 +213,7 @@ class ProgressivePhotonMapper:
     def lengthen_lists(self) -> None:
         """Give the lists of photons to splat the length that the first iteration needs, which build cannot know."""
         context, iteration = self.device_scene.context, Iteration(1, self.scene.settings.seed, self.scene.photon_count)
-        for _ in trace_photons(context, self.stages.photons, iteration):
+        for _ in trace_photons(context, self.stages, iteration):
             pass
         store_photons(context, self.stages, self.learning, iteration)
         self.stages.density_estimator.prepare()

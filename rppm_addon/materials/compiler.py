@@ -19,6 +19,7 @@ from .dispersion import disperses
 from .node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
 from .nodes import KINDS
 from .pieces import in_pieces
+from .subsurface import has_subsurface
 
 LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
 """Rec.709: how a color becomes a number, measured in Cycles."""
@@ -100,6 +101,8 @@ class _Compiler:
             text = '#include "materials/dispersion.glsl"\n'
             place = self._place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
             scope.lines.append(f"inverse_abbe_number = constant_float(first + {place}u);")
+        if has_subsurface(self._graph):
+            text += '#include "materials/subsurface.glsl"\n'
         if self._graph.normal is not None:
             self._sources[KINDS[BUMP].source] = None
             # Apart: what nodes ask of the surface may be another with the new normal.

@@ -4,8 +4,9 @@
 from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 from .emitted import is_positive, reachable
 
-_SHADERS = {"bsdf_principled", "bsdf_sheen"}
-"""Layers hide what lies below them by the viewer's angle, and sheen is a fit for one."""
+_SHADERS = {"bsdf_principled", "bsdf_sheen", "subsurface_scattering"}
+"""Layers hide what lies below them by the viewer's angle, and sheen is a fit for one. What goes below a surface is seen
+where it comes out."""
 
 _OUTPUTS = {
     ("fresnel", "fac"),

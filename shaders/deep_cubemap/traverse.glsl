@@ -49,10 +49,16 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
 #ifdef DEEP_CUBEMAP_COUNT
     ++walk_counts.y;
 #endif
+#ifdef WALKS_WITHIN_INSTANCE
+    Hit before = best;
+#endif
     intersect_triangle(
         walk.test, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz,
         triangle_vertex(3u * triangle + 2u).xyz,
         best);
+#ifdef WALKS_WITHIN_INSTANCE
+    if (best.triangle == triangle && attributes[triangle].instance != walk_instance) best = before;
+#endif
 }
 
 // Tests what a cell holds between two depths; cells with depth bins in the ray's order.

@@ -9,7 +9,11 @@ struct Principled {
     vec3 base_color;
     float metallic, roughness, ior, alpha;
     vec3 normal;
-    float diffuse_roughness, subsurface, subsurface_anisotropy, specular_level;
+    float diffuse_roughness, subsurface;
+    vec3 subsurface_radius;
+    float subsurface_ior, subsurface_anisotropy;
+    uint subsurface_method;
+    float specular_level;
     vec3 specular_tint;
     float anisotropic, anisotropic_rotation;
     vec3 tangent;
@@ -94,12 +98,24 @@ MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, fl
     return lobe;
 }
 
-void add_base(inout ClosureBuilder builder, Principled p, vec3 weight) {
+// ior: of the surface of the base.
+void add_base(inout ClosureBuilder builder, Principled p, float ior, vec3 weight) {
     if (p.thin_wall && p.subsurface > 0.0) {
         vec3 scattered = weight * p.subsurface * min(p.base_color, 1.0);
         add_thin_subsurface(builder, scattered, weight * (1.0 - p.subsurface) * p.base_color, p.subsurface_anisotropy,
                             p.normal, pack_diffuse_roughness(p.base_color, p.diffuse_roughness));
-    } else add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
+        return;
+    }
+#ifdef MATERIAL_SUBSURFACE
+    if (p.subsurface > 0.0) {
+        bool skin = p.subsurface_method == SUBSURFACE_RANDOM_WALK_SKIN;
+        add_subsurface(builder, weight * p.subsurface, min(p.base_color, 1.0), p.subsurface_radius,
+                       skin ? p.subsurface_ior : ior, p.roughness * p.roughness, p.subsurface_anisotropy,
+                       p.subsurface_method, p.normal);
+        weight *= 1.0 - p.subsurface;
+    }
+#endif
+    add_diffuse(builder, weight, p.base_color, p.diffuse_roughness, p.normal);
 }
 
 #ifdef READS_TEXELS
@@ -164,5 +180,5 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         if (lobe.kind != LOBE_NONE) add_lobe(builder, lobe);
     }
 #endif
-    if (reaches_base) add_base(builder, p, weight);
+    if (reaches_base) add_base(builder, p, ior, weight);
 }

@@ -182,6 +182,9 @@ void main() {
     bool unseen = parameters.path_kind == PATH_OF_CAMERA
         && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
+#ifdef MATERIAL_SUBSURFACE
+    hold_subsurface(builder);
+#endif
 #ifdef MATERIAL_AOVS
     // As in Cycles: of what is seen up to the first surface that the passes are of.
     bool seen_first = parameters.path_kind == PATH_OF_CAMERA

@@ -323,10 +323,13 @@ def test_unknown_shaders_become_diffuse(scene, node):
     [
         ("ShaderNodeBsdfToon", {"component": "GLOSSY"}, {}, ""),
         ("ShaderNodeBsdfHair", {"component": "Transmission"}, {}, "a translucent surface"),
-        ("ShaderNodeSubsurfaceScattering", {}, {}, "a diffuse surface"),
+        ("ShaderNodeSubsurfaceScattering", {}, {}, ""),
+        ("ShaderNodeSubsurfaceScattering", {"falloff": "BURLEY"}, {}, "a random walk"),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "ASHIKHMIN_SHIRLEY"}, {}, "GGX"),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "BECKMANN"}, {}, ""),
-        ("ShaderNodeBsdfPrincipled", {}, {"Subsurface Weight": 0.3}, "diffuse reflection"),
+        ("ShaderNodeBsdfPrincipled", {}, {"Subsurface Weight": 0.3}, ""),
+        ("ShaderNodeBsdfPrincipled", {"subsurface_method": "BURLEY"}, {"Subsurface Weight": 0.3}, "a random walk"),
+        ("ShaderNodeBsdfPrincipled", {"subsurface_method": "BURLEY"}, {}, ""),
         ("ShaderNodeBsdfPrincipled", {}, {}, ""),
     ],
 )
@@ -338,6 +341,17 @@ def test_each_fallback_is_named(scene, node, options, inputs, standing_in):
     assert len(warnings) == bool(standing_in)
     assert all(f'Material "Material": node "Odd" ({shader.type})' in text for text in warnings)
     assert all(standing_in in text and text.endswith("stands in") for text in warnings)
+
+
+@pytest.mark.parametrize(
+    ("node", "name"),
+    [("ShaderNodeSubsurfaceScattering", "falloff"), ("ShaderNodeBsdfPrincipled", "subsurface_method")],
+)
+def test_older_versions_random_walk_is_the_legacy_of_later_ones(scene, node, name):
+    material, shader = surface(node)
+    exported, _ = single_shader(scene, material)
+    has_legacy = "RANDOM_WALK_LEGACY" in shader.bl_rna.properties[name].enum_items
+    assert exported.options[name] == ("RANDOM_WALK" if has_legacy else "RANDOM_WALK_LEGACY")
 
 
 def test_an_unknown_value_leaves_that_of_the_socket(scene):

@@ -31,6 +31,7 @@ _SHADER = """#version 430 core
 layout(local_size_x = 64) in;
 #include <ClosureTestParameters>
 #include "common/invocation.glsl"
+#include "materials/subsurface.glsl"
 #include "materials/nodes/shaders.glsl"
 layout(std140, binding = 0) uniform Parameters { ClosureTestParameters parameters; };
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };

@@ -31,6 +31,8 @@ class RandomStage(enum.IntEnum):
     CAMERA = 8
     SHADOW_CATCHER = 9
     WAVELENGTH = 10
+    SUBSURFACE = 11
+    SUBSURFACE_PHOTONS = 12
 
 
 Constants("RandomStages", STAGE=RandomStage)
@@ -161,6 +163,27 @@ CLOSURE = Record(
 path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The diffuse roughness comes with
 the albedo that its interreflection takes (common/bsdf/diffuse.glsl)."""
 StorageBlock("Closures", "Closure closures[];")
+StorageBlock("ExitClosures", "Closure exit_closures[];")
+"""Where camera paths that went below a surface have come out of it, and else what they have met."""
+
+SUBSURFACE_WALK = Record(
+    "SubsurfaceWalk",
+    throughput="vec3",
+    instance="uint",
+    entry="vec3",
+    opposite="float",
+    extinction="vec3",
+    anisotropy="float",
+    albedo="vec3",
+    normal="uint",
+)
+"""A random walk below a surface of an instance: where it went in, the ``normal`` there (packed), and how far behind
+that the surface is met again, meters, less than 0 where it is not near; ``extinction``, 1/m, and ``albedo`` are those
+of single scattering."""
+StorageBlock("SubsurfaceWalks", "SubsurfaceWalk subsurface_walks[];")
+StorageBlock("WalkRays", "Ray walk_rays[];")
+StorageBlock("ExitHits", "Hit exit_hits[];")
+"""Where walks have come out; none of those that have not."""
 
 CLOSURE_CURVED = 32
 """Of a closure's flags: shadow rays begin on the surface that the normals tell of."""

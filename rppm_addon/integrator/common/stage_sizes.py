@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 
+from ...materials.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
 from .band import Band, bands_of, rows_of_bands
@@ -33,6 +34,8 @@ class StageSizes:
     """Whether the film keeps what the noise filter of viewports takes."""
     links_lights: bool = False
     """Whether lights may shine on some objects only, or pass through some."""
+    has_subsurface: bool = False
+    """Whether light may go below surfaces."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -53,6 +56,7 @@ class StageSizes:
             scene.settings.use_adaptive_sampling,
             demands.is_filtered,
             _links_lights(scene),
+            any(has_subsurface(material.graph) for material in scene.materials),
         )
 
     @property
@@ -115,6 +119,16 @@ def grouped_photons(sizes: StageSizes) -> int:
 def linked_photons(sizes: StageSizes) -> int:
     """Of an iteration, the most, where they are to tell what their lights shine on; else 0."""
     return sizes.photons if sizes.links_lights else 0
+
+
+def subsurface_walks(sizes: StageSizes) -> int:
+    """Of a band's camera paths or of an iteration's photons, the most, where light may go below surfaces; else 0."""
+    return max(band_pixels(sizes), sizes.photons) if sizes.has_subsurface else 0
+
+
+def exiting_pixels(sizes: StageSizes) -> int:
+    """Of a band, the most, where light may go below surfaces; else 0."""
+    return band_pixels(sizes) if sizes.has_subsurface else 0
 
 
 def photon_paths(sizes: StageSizes) -> int:

@@ -111,7 +111,7 @@ class DirectLight(BufferSet):
         self.living_rays.run(
             self._soften,
             {
-                "Closures": importons.closures.buffer,
+                "Closures": importons.lit_blocks["Closures"],
                 "ShadowRays": self._rays.buffer,
                 "Contributions": self.contributions.buffer,
                 "Triangles": context.geometry.triangles.buffer,
@@ -137,7 +137,7 @@ class DirectLight(BufferSet):
             self._sample,
             {
                 **context.lights.tree_buffers,
-                **importons.path_blocks,
+                **importons.lit_blocks,
                 "ShadowRays": self._rays.buffer,
                 "Contributions": self.contributions.buffer,
                 "LightSplits": self.splits.buffer,

@@ -15,7 +15,7 @@ from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
-from ..common.stage_sizes import StageSizes, aov_channels, band_pixels
+from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, exiting_pixels
 from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..density_estimation.stored_photons import CameraRaster, TakingImportons
 from ..device_scene.stage_context import StageContext
@@ -50,6 +50,9 @@ class Importons(BufferSet):
     hits = StorageBuffer("camera hits", HIT, band_pixels)
     paths = StorageBuffer("camera paths", CAMERA_PATH, band_pixels)
     closures = StorageBuffer("camera closures", CLOSURE, band_pixels)
+    exit_closures = StorageBuffer("exit closures", CLOSURE, exiting_pixels)
+    """Where the paths have come out that went below a surface, else as ``closures``; where no light goes below
+    surfaces there are none."""
     importons = StorageBuffer("importons", IMPORTON, band_pixels)
     radiances = StorageBuffer("band radiance", "vec4", band_pixels)
     aovs = StorageBuffer("band AOVs", "float", _band_aovs)
@@ -59,6 +62,7 @@ class Importons(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._scatter = library.compute("importons/scatter.comp")
+        self._lit_closures = self.exit_closures if sizes.has_subsurface else self.closures
         self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (band_pixels(sizes), 1)).tobytes()
 
     def clear(self) -> None:
@@ -71,6 +75,11 @@ class Importons(BufferSet):
     def path_blocks(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of programs that look at the paths and the surfaces that they have met."""
         return {"Closures": self.closures.buffer, "Rays": self.rays.buffer, "CameraPaths": self.paths.buffer}
+
+    @property
+    def lit_blocks(self) -> dict[str, moderngl.Buffer]:
+        """The same of programs that look at where light comes to the paths, which may be at another place."""
+        return self.path_blocks | {"Closures": self._lit_closures.buffer}
 
     def trace(self, context: StageContext) -> bool:
         """Find what the paths that go on hit; whether any may do so."""
@@ -118,7 +127,7 @@ class Importons(BufferSet):
                 self._scatter,
                 {
                     **lights.tree_buffers,
-                    **self.path_blocks,
+                    **self.lit_blocks,
                     "Importons": self.importons.buffer,
                     "Radiances": self.radiances.buffer,
                     "Materials": context.materials.buffers["Materials"],

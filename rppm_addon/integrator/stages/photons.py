@@ -32,6 +32,7 @@ from .first_hits import FirstHits
 from .photon_emission import PhotonEmission
 from .photon_groups import PhotonGroups
 from .photon_links import PhotonLinks
+from .subsurface import Subsurface
 
 Record(
     "ScatterPhotonsParameters",
@@ -143,7 +144,7 @@ class Photons(BufferSet):
             )
             self._links.link(context, self._closures.buffer, self._paths.buffer, self._living)
 
-    def scatter(self, context: StageContext, iteration: Iteration, segment: int) -> None:
+    def scatter(self, context: StageContext, subsurface: Subsurface, iteration: Iteration, segment: int) -> None:
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
         # Nothing goes on from the last segment's hits.
         has_adjoint_queries = context.materials.any_depends_on_view and segment < self.segments - 1
@@ -170,6 +171,8 @@ class Photons(BufferSet):
                 },
             )
         if has_adjoint_queries:
+            blocks = self._blocks | {"Hits": self._hits.buffer}
+            subsurface.walk_photons(context, self._living, blocks, iteration, segment)
             self.resolve(context, iteration, segment, has_adjoint_queries=True)
             with context.timers.stage("photon scattering"):
                 parameters = {"photon_count": self.photon_count, "segment": segment}

@@ -27,6 +27,7 @@ from .noise_estimate import NoiseEstimate
 from .photons import Photons
 from .primary_rays import PrimaryRays
 from .shadow_catcher import ShadowCatcher
+from .subsurface import Subsurface
 from .texel_hits import TexelHits
 
 GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
@@ -35,6 +36,7 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "direct light": (DirectLight,),
     "final gather": (FinalGather,),
     "shadow catcher": (ShadowCatcher,),
+    "subsurface": (Subsurface,),
     "density estimation": (DensityEstimator,),
     "passes": (Film, LightPasses, LightGroups, CausticRadii, NoiseEstimate),
 }
@@ -57,6 +59,7 @@ class StageSet(BufferSet):
     direct_light = Part(DirectLight)
     final_gather = Part(FinalGather)
     shadow_catcher = Part(ShadowCatcher)
+    subsurface = Part(Subsurface)
     film = Part(Film)
     light_passes = Part(LightPasses)
     light_groups = Part(LightGroups)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes.
 
-Approximations: GGX for the distribution of Ashikhmin and Shirley; diffuse for subsurface scattering; for hair,
-GGX stretched across the fiber and translucency; for the physical conductor of the metallic node, the F82 curve that
+Approximations: GGX for the distribution of Ashikhmin and Shirley; a random walk for Christensen-Burley; for hair, GGX
+stretched across the fiber and translucency; for the physical conductor of the metallic node, the F82 curve that
 meets its own at normal incidence and at 82 degrees.
 """
 
@@ -20,7 +20,8 @@ _TANGENT = {"tangent": (VECTOR, "tangent")}
 _ANISOTROPY = {"anisotropy": (FLOAT, 0.0), "rotation": (FLOAT, 0.0)} | _NORMAL | _TANGENT
 _FILM = {"thin_film_thickness": (FLOAT, 0.0), "thin_film_ior": (FLOAT, 1.33)}
 _GRAY, _WHITE = {"color": (COLOR, 0.8)}, {"color": (COLOR, 1.0)}
-_SUBSURFACE_METHODS = ("BURLEY", "RANDOM_WALK", "RANDOM_WALK_SKIN")
+SUBSURFACE_METHODS = ("RANDOM_WALK", "RANDOM_WALK_SKIN", "RANDOM_WALK_LEGACY", "BURLEY")
+"""As in Blender 5.2; what is RANDOM_WALK before that is RANDOM_WALK_LEGACY there."""
 
 KINDS = {
     # Both share out weights and have no GLSL; their shaders are the inputs "shader" and "shader_001".
@@ -64,7 +65,8 @@ KINDS = {
             "anisotropy": (FLOAT, 0.0),
         }
         | _NORMAL,
-        fallbacks={"": "a diffuse surface"},
+        {"falloff": SUBSURFACE_METHODS},
+        {"BURLEY": "a random walk of the same mean free path"},
     ),
     "bsdf_metallic": _shader(
         "bsdf",
@@ -123,6 +125,6 @@ KINDS = {
             "emission_strength": (FLOAT, 0.0),
             **_FILM,
         },
-        {"distribution": ("GGX", "MULTI_GGX"), "subsurface_method": _SUBSURFACE_METHODS, "thin_wall": BOOLEAN},
+        {"distribution": ("GGX", "MULTI_GGX"), "subsurface_method": SUBSURFACE_METHODS, "thin_wall": BOOLEAN},
     ),
 }

@@ -76,11 +76,13 @@ void node_bsdf_sheen(inout ClosureBuilder builder, float weight, int distributio
     if (lobe.kind != LOBE_NONE) add_lobe(builder, lobe);
 }
 
-// A diffuse surface of the same color stands in: as if light left where it came in.
-void node_subsurface_scattering(inout ClosureBuilder builder, float weight, vec3 color, float scale, vec3 radius,
-                                float ior, float roughness, float anisotropy, vec3 normal) {
-    add_diffuse(builder, vec3(weight), max(color, 0.0), 0.0, normal);
+#ifdef MATERIAL_SUBSURFACE
+void node_subsurface_scattering(inout ClosureBuilder builder, float weight, int falloff, vec3 color, float scale,
+                                vec3 radius, float ior, float roughness, float anisotropy, vec3 normal) {
+    add_subsurface(builder, vec3(weight), clamp(color, 0.0, 1.0), max(radius * scale, 0.0), ior, unit(roughness),
+                   anisotropy, uint(falloff), normal);
 }
+#endif
 
 vec3 conductor_reflectance(float cosine, vec3 n, vec3 k) {
     float c2 = cosine * cosine, s2 = 1.0 - c2;
@@ -132,7 +134,6 @@ void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, v
     }
 }
 
-// Subsurface scattering adds to the diffuse base, of a thin wall on both sides.
 void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method,
                           int thin_wall,
                           vec3 base_color, float metallic, float roughness, float ior, float alpha, vec3 normal,
@@ -146,7 +147,8 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
     add_principled(builder, weight, Principled(
         max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal,
         unit(diffuse_roughness),
-        unit(subsurface_weight), subsurface_anisotropy, max(specular_ior_level, 0.0), max(specular_tint, 0.0),
+        unit(subsurface_weight), max(subsurface_radius * subsurface_scale, 0.0), subsurface_ior, subsurface_anisotropy,
+        uint(subsurface_method), max(specular_ior_level, 0.0), max(specular_tint, 0.0),
         unit(anisotropic), anisotropic_rotation, tangent,
         unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0),
         coat_normal,

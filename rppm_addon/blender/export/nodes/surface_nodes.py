@@ -18,18 +18,34 @@ from .graphs import GraphExporter, handles, snake_case
 from .links import Path
 
 
+def _subsurface_method(node: bpy.types.Node, name: str) -> dict[str, str]:
+    """The option of that name: before Blender 5.2, Random Walk is what is a legacy there."""
+    methods = node.bl_rna.properties[name].enum_items
+    is_legacy = getattr(node, name) == "RANDOM_WALK" and "RANDOM_WALK_LEGACY" not in methods
+    return {name: "RANDOM_WALK_LEGACY"} if is_legacy else {}
+
+
+@handles("SUBSURFACE_SCATTERING")
+def _subsurface(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    return exporter.add("subsurface_scattering", node, path, "bssrdf", options=_subsurface_method(node, "falloff"))
+
+
 @handles("BSDF_PRINCIPLED")
 def _principled(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     under = next((socket for socket in node.inputs if socket.identifier == "Subsurface Weight"), None)
-    if under is not None and (exporter.is_linked(under, path) or exporter.value(under, path) != 0.0):
-        exporter.warn(node, "has subsurface scattering, for which diffuse reflection stands in")
+    has_subsurface = under is not None and (exporter.is_linked(under, path) or exporter.value(under, path) != 0.0)
+    if has_subsurface and node.subsurface_method == "BURLEY":
+        exporter.warn(node, "has the subsurface method Christensen-Burley, for which a random walk stands in")
+    method = _subsurface_method(node, "subsurface_method")
     wall = next((socket for socket in node.inputs if socket.identifier == "Thin Wall"), None)
     value = False if wall is None else exporter.value(wall, path)  # sockets of Blender 5.2 on
     if not isinstance(value, Link):
-        return exporter.add("bsdf_principled", node, path, "bsdf", options={"thin_wall": bool(np.max(value) > 0.0)})
+        options = {"thin_wall": bool(np.max(value) > 0.0)} | method
+        return exporter.add("bsdf_principled", node, path, "bsdf", options=options)
     # What varies chooses one of two surfaces. As in Cycles it is cut to an integer before it is asked whether it is 0.
     thick, thin = (
-        exporter.append("bsdf_principled", node, path, "bsdf", options={"thin_wall": thin}) for thin in (False, True)
+        exporter.append("bsdf_principled", node, path, "bsdf", options={"thin_wall": thin} | method)
+        for thin in (False, True)
     )
     for operation in ("TRUNC", "ABSOLUTE"):
         value = exporter.graph.add(

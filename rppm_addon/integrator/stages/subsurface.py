@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random walks of camera paths and photons below surfaces with subsurface scattering."""
+
+from collections.abc import Mapping
+
+import moderngl
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.context import Context
+from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.records import Record
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.living_paths import LivingPaths, PathList
+from ..common.records import HIT, RAY, SUBSURFACE_WALK, RandomStage
+from ..common.stage_sizes import StageSizes, subsurface_walks
+from ..device_scene.stage_context import StageContext
+from .importons import Importons
+
+Record("EnterParameters", seed="uint", iteration="uint", segment="uint", first_path="uint", path_count="uint")
+Record(
+    "WalkParameters",
+    seed="uint",
+    iteration="uint",
+    segment="uint",
+    first_path="uint",
+    stage="uint",
+    first_step="uint",
+    end_step="uint",
+)
+
+_LAST_STEPS = (4, 8, 16, 32, 64, 96, 128, 160, 192, 224, 256)
+"""After how many steps walks that have come out are left aside; after the last, those that have not are absorbed, as in
+Cycles. Drivers on the processor end the loops of a thread after 65535 rounds."""
+
+
+class Subsurface(BufferSet):
+    """Paths that go below a surface walk until they come out of the same object, and are then on a diffuse surface.
+
+    Where no material has subsurface scattering there are neither programs nor buffers, and nothing is done.
+    """
+
+    remedy = "lower the resolution or the photons per iteration"
+    _walks = StorageBuffer("subsurface walks", SUBSURFACE_WALK, subsurface_walks)
+    _rays = StorageBuffer("subsurface rays", RAY, subsurface_walks)
+    _hits = StorageBuffer("subsurface hits", HIT, subsurface_walks)
+    _entered = PathList("paths below surfaces")
+    _walking = PathList("walking paths", to_keep=True)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._library = library
+        self.is_used = sizes.has_subsurface
+        if self.is_used:
+            names = ("enter", "leave", "enter_photons", "leave_photons")
+            self._programs = {name: library.compute(f"subsurface/{name}.comp") for name in names}
+
+    def walk_camera_paths(
+        self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int
+    ) -> None:
+        """Fill the exit closures of the living camera paths, whose hits are resolved."""
+        if not self.is_used:
+            return
+        with context.timers.stage("camera subsurface"):
+            blocks = importons.path_blocks | {"ExitClosures": importons.exit_closures.buffer}
+            self._walk(
+                context, importons.living, blocks, ("enter", "leave"), iteration, segment, RandomStage.SUBSURFACE, band
+            )
+
+    def walk_photons(
+        self,
+        context: StageContext,
+        living: LivingPaths,
+        blocks: Mapping[str, moderngl.Buffer],
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
+        """Send living photons that a surface scatters diffusely on from where they come out of it.
+
+        blocks: what they are, where they are and go, and the AdjointQueries that are still to be asked.
+        """
+        if not self.is_used:
+            return
+        with context.timers.stage("photon subsurface"):
+            programs = ("enter_photons", "leave_photons")
+            self._walk(context, living, blocks, programs, iteration, segment, RandomStage.SUBSURFACE_PHOTONS)
+
+    def _walk(
+        self,
+        context: StageContext,
+        living: LivingPaths,
+        blocks: Mapping[str, moderngl.Buffer],
+        programs: tuple[str, str],
+        iteration: Iteration,
+        segment: int,
+        stage: RandomStage,
+        band: Band | None = None,
+    ) -> None:
+        buffers = {
+            **blocks,
+            **context.deep_cubemap.traversal_buffers,
+            "Triangles": context.geometry.triangles.buffer,
+            "Attributes": context.geometry.attributes.buffer,
+            "SubsurfaceWalks": self._walks.buffer,
+            "WalkRays": self._rays.buffer,
+            "ExitHits": self._hits.buffer,
+        }
+        parameters = {
+            "seed": iteration.seed,
+            "iteration": iteration.number,
+            "segment": segment,
+            "first_path": band.first_pixel if band else 0,
+        }
+        enter, leave = (self._programs[name] for name in programs)
+        walk = self._library.compute("subsurface/walk.comp", context.deep_cubemap.traversal_defines)
+        whole = parameters | {"path_count": iteration.photon_count}
+
+        def of(program: ComputeProgram) -> dict[str, moderngl.Buffer]:
+            return {name: buffers[name] for name in program.blocks - {"LivingPaths"}}
+
+        living.run(enter, of(enter), whole)
+        self._entered.take(living, self._rays.buffer)
+        walking = self._walking
+        walking.require(living.most, to_keep=True)
+        walking.take(self._entered, self._rays.buffer)
+        first = 0
+        for end in _LAST_STEPS:
+            if walking.known_empty:
+                break
+            steps = {"stage": stage, "first_step": first, "end_step": end}
+            walking.run(walk, of(walk), parameters | steps)
+            walking.keep(self._rays.buffer)
+            first = end
+        self._entered.run(leave, of(leave), whole)

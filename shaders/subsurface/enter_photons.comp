@@ -1,0 +1,38 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Photons that a surface has sent on by its diffuse part: some of them go below before they leave.
+
+layout(local_size_x = 64) in;
+
+#include <EnterParameters>
+#include "common/living_paths.glsl"
+layout(std140, binding = 0) uniform Parameters { EnterParameters parameters; };
+layout(std430, binding = 0) readonly buffer Closures;
+#include "photons/parts.glsl"
+layout(std430, binding = 1) buffer PhotonPaths;
+layout(std430, binding = 2) readonly buffer AdjointQueries;
+#include "subsurface/entry.glsl"
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    walk_rays[index].maximum_distance = 0.0;
+    vec3 flux = photon_paths[index].flux;
+    Closure closure = closures[index];
+    if (!(largest(flux) > 0.0) || !has_subsurface(closure) || adjoint_queries[index].part != PART_DIFFUSE) return;
+    Subsurface part = unpacked_subsurface(closure.lobes[CLOSURE_LOBES - 1]);
+    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SUBSURFACE_PHOTONS,
+                                            parameters.segment, index);
+    vec3 beside = diffuse_beside(closure, part);
+    float below = largest(part.weight), probability = below / (below + largest(beside));
+    vec3 share = 1.0 / max(closure.diffuse, vec3(1e-20));
+    bool walks = next_random(random) < probability;
+    share *= walks ? part.weight / probability : beside / (1.0 - probability);
+    photon_paths[index].flux = flux * share;
+    if (!walks) return;
+    // Camera paths go in by how they are seen and come out evenly. Photons go the other way; but how far, and how much
+    // of them, is the same the same way round, as if seen from anywhere.
+    vec3 u = vec3(next_random2(random), next_random(random));
+    vec3 viewer = sample_cosine_hemisphere(unpack_unit_vector(part.normal), next_random2(random));
+    begin_walk(index, closure, part, viewer, share * flux / largest(share * flux), u);
+}
