@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui soak lock lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -62,6 +62,9 @@ PYTEST_GUI = timeout --kill-after=10 2400 .venv/bin/python -m pytest -m 'not lon
 test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot (once: 3 minutes, 1.4 GB in ~/.cache/rppm-gui)
 	$(PYTEST_GUI) $(WINDOW_ALONE)
 	$(PYTEST_GUI) --numprocesses=3 --dist=worksteal tests/gui $(WINDOW_ALONE:%=--ignore=%)
+
+test-wheels: setup ## Install the zip in each Blender that it claims and use it (once: 5 x 1 GB in ~/.cache/rppm-wheels)
+	timeout --kill-after=10 3600 .venv/bin/python -m pytest tests/versions
 
 HOURS ?= 2
 soak: setup ## Use a real Blender window for long (HOURS=2), and tell what grew, or was another picture: out/soak/
