@@ -92,7 +92,7 @@ docs: docs-tools ## Build the documents as a site, build/site/index.html, and ch
 
 VERSION ?= $(shell awk -F '"' '/^version/ { print $$2 }' blender_manifest.toml)
 docs-version: docs-tools ## Keep the site of this version beside those of others, on the branch gh-pages (VERSION=0.1.0)
-	NO_MKDOCS_2_WARNING=1 .venv/bin/mike deploy --quiet --config-file tools/site/mkdocs.yml --update-aliases $(VERSION) latest
+	NO_MKDOCS_2_WARNING=1 .venv/bin/mike --quiet deploy --config-file tools/site/mkdocs.yml --update-aliases $(VERSION) latest
 	.venv/bin/mike set-default --config-file tools/site/mkdocs.yml latest
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the pictures of docs/how_it_works.md, to docs/images/*.svg: ``python tools/drawings.py``.
+"""Draw the pictures of docs/how_it_works.md and the icon, to docs/images/: ``python tools/drawings.py``.
 
 What is drawn is computed: rays are refracted by Snell's law, and radii shrink by Eq. 2.
 """
@@ -8,6 +8,8 @@ import math
 import random
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+
+from PIL import Image, ImageDraw
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 Point = tuple[float, float]
@@ -237,7 +239,26 @@ def _inside(corners: Sequence[Point], steps: int = 60) -> Iterable[Point]:
             yield u * x0 + v * x1 + w * x2, u * y0 + v * y1 + w * y2
 
 
+def draw_icon(size: int = 256, finer: int = 4) -> None:
+    """Rays through a ball of glass that meet on the floor, for extensions.blender.org."""
+    side = size * finer
+    light, ball, radius, floor = (0.5 * side, -0.35 * side), (0.5 * side, 0.4 * side), 0.29 * side, 0.86 * side
+    icon = Image.new("RGB", (side, side), "#1f2a33")
+    pen = ImageDraw.Draw(icon, "RGBA")
+    pen.rectangle([0, floor, side, side], fill="#37474f")
+    for step in range(-16, 17):
+        angle = math.radians(1.35 * step)
+        path = through_ball(light, (math.sin(angle), math.cos(angle)), ball, radius)
+        if len(path) > 1:
+            pen.line(_to_floor(path, floor), fill=(255, 190, 60, 200), width=2 * finer)
+    pen.ellipse([0.36 * side, 0.845 * side, 0.64 * side, 0.885 * side], fill=(255, 240, 200, 255))
+    box = [ball[0] - radius, ball[1] - radius, ball[0] + radius, ball[1] + radius]
+    pen.ellipse(box, fill=(150, 205, 255, 50), outline="#a5d8ff", width=2 * finer)
+    icon.resize((size, size), Image.Resampling.LANCZOS).save(FOLDER / "icon.png", optimize=True)
+
+
 if __name__ == "__main__":
+    draw_icon()
     draw_photons()
     draw_radii()
     draw_deep_cubemap()
