@@ -60,7 +60,9 @@ class Drawing:
         width, height = self._size
         size = f'width="{width}" height="{height}" viewBox="0 0 {width} {height}"'
         head = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>'
-        license_line = "<!-- SPDX-License-Identifier: GPL-3.0-or-later, made by tools/drawings.py -->"
+        # REUSE-IgnoreStart
+        license_line = "<!-- SPDX-License-Identifier: GPL-3.0-or-later -->"
+        # REUSE-IgnoreEnd
         text = "\n".join([head, license_line, *self._shapes, "</svg>"])
         (FOLDER / f"{name}.svg").write_text(text + "\n", encoding="utf-8")
 
@@ -144,7 +146,7 @@ def draw_photons() -> None:
 def draw_radii() -> None:
     """The disk in which photons count shrinks from sample to sample, by Eq. 2."""
     drawing = Drawing(680, 230)
-    numbers = random.Random(4)
+    numbers = random.Random(4)  # nosec B311
     alpha = 0.7
     for place, samples in enumerate((1, 8, 64)):
         center, side = (115.0 + 225.0 * place, 105.0), 95.0

@@ -262,7 +262,9 @@ def pages() -> dict[Path, str]:
     for name, found in sections().items():
         path = FOLDER / f"{name}.md"
         title = TABS.get(name) or name.replace("_", " ").title()
+        # REUSE-IgnoreStart
         empty = f"<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n# {title}\n\n{BEGIN}\n{END}\n"
+        # REUSE-IgnoreEnd
         texts[path] = page(path.read_text(encoding="utf-8") if path.exists() else empty, found)
     return texts
 
