@@ -63,7 +63,7 @@ test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot 
 	$(PYTEST_GUI) $(WINDOW_ALONE)
 	$(PYTEST_GUI) --numprocesses=3 --dist=worksteal tests/gui $(WINDOW_ALONE:%=--ignore=%)
 
-test-wheels: setup ## Install the zip in each Blender that it claims and use it (once: 5 x 1 GB in ~/.cache/rppm-wheels)
+test-wheels: setup ## Install the zip in each Blender that it claims and use it (once: 5 GB in ~/.cache/rppm-wheels)
 	timeout --kill-after=10 3600 .venv/bin/python -m pytest tests/versions
 
 HOURS ?= 2
