@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui soak lock lint docs pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -63,6 +63,9 @@ test-gui: setup ## Run the tests in a real Blender window, Debian's in a chroot 
 	$(PYTEST_GUI) $(WINDOW_ALONE)
 	$(PYTEST_GUI) --numprocesses=3 --dist=worksteal tests/gui $(WINDOW_ALONE:%=--ignore=%)
 
+test-wheels: setup ## Install the zip in each Blender that it claims and use it (once: 5 GB in ~/.cache/rppm-wheels)
+	timeout --kill-after=10 3600 .venv/bin/python -m pytest tests/versions
+
 HOURS ?= 2
 soak: setup ## Use a real Blender window for long (HOURS=2), and tell what grew, or was another picture: out/soak/
 	.venv/bin/python tools/soak.py $$(awk 'BEGIN { print 60 * $(HOURS) }')
@@ -79,11 +82,18 @@ lint: setup ## Check Python, types, imports, license lines, shaders, pinned pack
 	.venv/bin/python tools/lock.py --check
 	.venv/bin/bandit --quiet --recursive --configfile pyproject.toml rppm_addon extension tools .ci setup.py
 
-docs: setup ## Build the documents as a site, build/site/index.html, and check their links
-	@.venv/bin/python -c 'import material' 2>/dev/null || .venv/bin/python -m pip install --quiet \
+docs-tools: setup
+	@.venv/bin/python -c 'import material, mike' 2>/dev/null || .venv/bin/python -m pip install --quiet \
 		--disable-pip-version-check --root-user-action=ignore -e '.[docs]'
+
+docs: docs-tools ## Build the documents as a site, build/site/index.html, and check their links
 	NO_MKDOCS_2_WARNING=1 .venv/bin/python -m mkdocs build --quiet --config-file tools/site/mkdocs.yml
 	@echo build/site/index.html
+
+VERSION ?= $(shell awk -F '"' '/^version/ { print $$2 }' blender_manifest.toml)
+docs-version: docs-tools ## Keep the site of this version beside those of others, on the branch gh-pages (VERSION=0.1.0)
+	NO_MKDOCS_2_WARNING=1 .venv/bin/mike --quiet deploy --config-file tools/site/mkdocs.yml --update-aliases $(VERSION) latest
+	.venv/bin/mike set-default --config-file tools/site/mkdocs.yml latest
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)

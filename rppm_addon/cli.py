@@ -4,6 +4,7 @@
 import argparse
 import dataclasses
 import importlib.metadata
+import io
 import logging
 import os
 import sys
@@ -34,6 +35,8 @@ def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECO
 
     line_seconds: between lines of progress, where standard error is no terminal.
     """
+    if isinstance(sys.stdout, io.TextIOWrapper):  # names of files may have letters that a pipe's encoding has not
+        sys.stdout.reconfigure(errors="backslashreplace")
     options = parser().parse_args(arguments)
     bar = ProgressBar(sys.stderr, line_seconds)
     handler = BarLogHandler(bar, sys.stderr)

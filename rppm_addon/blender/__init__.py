@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RPPM inside Blender: the only floor that imports bpy."""
 
+import sys
+
+from ..wheel_libraries import add_wheel_libraries
 from . import (
     background,
     broken_frames,
@@ -21,6 +24,7 @@ from .export.images import kept_images
 
 def register() -> None:
     """Add the properties, the engine, the operators, the panels and the preferences to Blender."""
+    add_wheel_libraries(sys.path)
     background.register()
     properties.register()
     engine.register()

@@ -43,18 +43,22 @@ class RPPM_OT_self_test(bpy.types.Operator):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.unlink(missing_ok=True)
-            _running = subprocess.Popen(
-                [
-                    renderer_process.python_program(),
-                    *bpy.app.python_args,
-                    str(_SCRIPT),
-                    str(path),
-                    *(folder for folder in sys.path if folder and Path(folder).is_dir()),
-                ],
-                stdin=subprocess.DEVNULL,
-                creationflags=_FLAGS,
-                env={**os.environ, **renderer_process.environment()},
-            )
+            # A Blender without a console, as Windows starts it, has nowhere to print to.
+            with path.with_suffix(".log").open("wb") as log:
+                _running = subprocess.Popen(
+                    [
+                        renderer_process.python_program(),
+                        *bpy.app.python_args,
+                        str(_SCRIPT),
+                        str(path),
+                        *(folder for folder in sys.path if folder and Path(folder).is_dir()),
+                    ],
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=log,
+                    creationflags=_FLAGS,
+                    env={**os.environ, **renderer_process.environment()},
+                )
         except OSError as error:
             self.report({"ERROR"}, f"The self-test cannot be started: {error}")
             return {"CANCELLED"}
@@ -83,7 +87,8 @@ def draw(layout: bpy.types.UILayout) -> None:
     if is_running():
         row.label(text="The self-test runs for a minute or two")
     elif _running is not None and not report_path().is_file():
-        row.label(text=f"The self-test ended with code {_running.returncode}, without a report", icon="ERROR")
+        log = report_path().with_suffix(".log")
+        row.label(text=f"The self-test ended with code {_running.returncode}, without a report: {log}", icon="ERROR")
     elif _running is not None:
         row.label(text=f"Report: {report_path()}", icon="NONE" if _running.returncode == 0 else "ERROR")
     else:

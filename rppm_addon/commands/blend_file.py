@@ -349,7 +349,7 @@ def _quiet_output(show: bool) -> Iterator[TextIO]:
     os.dup2(nothing, 1)
     os.close(nothing)
     try:
-        with os.fdopen(os.dup(saved), "w", encoding=sys.stdout.encoding) as output:
+        with os.fdopen(os.dup(saved), "w", encoding=sys.stdout.encoding, errors="backslashreplace") as output:
             yield output
     finally:
         sys.stdout.flush()

@@ -12,6 +12,8 @@ from typing import Any
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it, where nothing else is known."""
+_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name))
+"""SIGBREAK is Windows' only one that a program can be sent by others, as render managers do."""
 GRACE_SECONDS = 1.0
 """For a program that has nothing to keep, or was told twice, to end by itself."""
 
@@ -37,7 +39,7 @@ class Interruption:
         self._telling.setblocking(False)
         self._previous_file = signal.set_wakeup_fd(self._telling.fileno(), warn_on_full_buffer=False)
         threading.Thread(target=self._listen, name="RPPM signals", daemon=True).start()
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in _SIGNALS:
             self._previous[number] = signal.signal(number, self._handle)
         return self
 

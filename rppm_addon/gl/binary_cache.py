@@ -140,11 +140,14 @@ class BinaryCache:
 def _write(path: Path, entry: bytes) -> None:
     """Whole or not at all, for no other user to change."""
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-        try:
+    temporary = None
+    try:
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+            temporary = Path(file.name)
             file.write(entry)
-            file.close()  # with what a full disk has to say of the rest
-            Path(file.name).replace(path)
-        except BaseException:
-            Path(file.name).unlink(missing_ok=True)
-            raise
+        # Closed, with what a full disk has to say of the rest: Windows renames and removes nothing that is open.
+        temporary.replace(path)
+    except BaseException:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        raise

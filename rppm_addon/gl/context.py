@@ -44,6 +44,16 @@ _AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87
 _DEDICATED_KIBIBYTES = 0x9047
 """Of GL_NVX_gpu_memory_info."""
 _VARIABLE = "RPPM_DEVICE"
+_NO_ADDRESSES = frozenset((1, 2, 3, ctypes.c_void_p(-1).value))
+"""That some of Windows' drivers return in place of 0 (khronos.org/opengl/wiki/Load_OpenGL_Functions)."""
+_REMEDY = (
+    "install a driver with EGL (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri libgl1), let this user open /dev/dri, or "
+    "choose another device"
+)
+_REMEDY_ON_WINDOWS = (
+    "install the driver of the graphics card's maker, as Windows' own ends at OpenGL 1.1; over Remote Desktop start "
+    "Blender at the machine itself"
+)
 _SHARING = frozenset((DeviceKind.INTEGRATED, DeviceKind.SOFTWARE))
 """Kinds whose memory is the processor's."""
 
@@ -151,10 +161,8 @@ class Context:
             gl = moderngl.create_context(standalone=True, require=REQUIRED_VERSION, **options)
         except Exception as error:  # moderngl raises bare Exception
             of = f" on {device.label}" if device is not None else ""
-            raise DeviceError(
-                f"no OpenGL 4.3 context could be opened{of} ({error}); install a driver with EGL (Debian: libegl1 "
-                f"libegl-mesa0 libgl1-mesa-dri libgl1), let this user open /dev/dri, or choose another device"
-            ) from error
+            remedy = _REMEDY_ON_WINDOWS if sys.platform == "win32" else _REMEDY
+            raise DeviceError(f"no OpenGL 4.3 context could be opened{of} ({error}); {remedy}") from error
         info = gl.info
         information = DeviceInformation(
             name=info["GL_RENDERER"],
@@ -220,7 +228,7 @@ class Context:
         resolve.restype = ctypes.c_void_p
         resolve.argtypes = [ctypes.c_char_p]
         address = resolve(name.encode())
-        if address:
+        if address and address not in _NO_ADDRESSES:
             return prototype(result, *arguments)(address)
         if sys.platform.startswith("linux") or not hasattr(library, name):
             return None

@@ -6,6 +6,7 @@ import importlib.util
 import logging
 import os
 import platform
+import re
 import sys
 import time
 import tomllib
@@ -113,7 +114,12 @@ def report_text(found: SelfTest) -> str:
         "",
         f"{'All is well' if found.passed else 'Not all is well'}, after {found.seconds:.0f} s",
     ]
-    return "\n".join(lines).replace(str(Path.home()), "~") + "\n"
+    return _without_home("\n".join(lines)) + "\n"
+
+
+def _without_home(text: str) -> str:
+    """The text without the user's name in paths, which Windows writes in letters of either case."""
+    return re.sub(re.escape(str(Path.home())), "~", text, flags=re.IGNORECASE if sys.platform == "win32" else 0)
 
 
 def _finding_line(finding: Finding) -> str:

@@ -15,7 +15,7 @@ class RecordingLayout:
         self.record = record or SimpleNamespace(properties=[], labels=[], operators=[], templates=[], popovers=[])
 
     def _part(self, **_):
-        return RecordingLayout(self.record)
+        return type(self)(self.record)
 
     row = column = box = split = grid_flow = _part
 

@@ -4,7 +4,6 @@
 import ast
 import fcntl
 import hashlib
-import importlib.util
 import json
 import os
 import re
@@ -19,6 +18,7 @@ import numpy as np
 import OpenEXR
 import pytest
 from install_extension import render_default_scene
+from support import extension_zip
 
 ROOT = Path(__file__).resolve().parents[2]
 MANIFEST = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
@@ -31,10 +31,7 @@ BLENDERS = {"bl_operators", "bl_ui", "bpy_extras", "gpu_extras"}
 
 @pytest.fixture(scope="module")
 def builder():
-    specification = importlib.util.spec_from_file_location("extension_build", ROOT / "extension" / "build.py")
-    module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
-    return module
+    return extension_zip.builder()
 
 
 def built(builder, folder, **options):

@@ -78,7 +78,7 @@ def test_panels_are_named_and_shown_for_this_engine_only(scene):
     scene.render.engine = "RPPM"
     names = [cls.__name__ for cls in panels.CLASSES]
     assert all(name.startswith(("RPPM_PT_", "RPPM_OT_")) for name in names) and len(set(names)) == len(names)
-    parents = {cls.bl_parent_id for cls in PANELS if hasattr(cls, "bl_parent_id")}
+    parents = {cls.bl_parent_id for cls in PANELS if getattr(cls, "bl_parent_id", "")}
     assert all(hasattr(bpy.types, parent) for parent in parents)
     assert len(drawn_panels(PANELS, context_of(scene, **contexts))) >= 20
 

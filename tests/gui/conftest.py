@@ -4,7 +4,6 @@
 import contextlib
 import fcntl
 import hashlib
-import importlib.util
 import json
 import shutil
 import subprocess
@@ -13,6 +12,7 @@ from pathlib import Path
 import pytest
 from blender_window import BlenderWindow, blender_in_background
 from chroot_machine import ChrootMachine, chroot_folder
+from support.extension_zip import built_zip
 from viewport_window import from_camera
 
 HERE = Path(__file__).resolve().parent
@@ -39,14 +39,7 @@ def chroot() -> Path:
 @pytest.fixture(scope="session")
 def archive(tmp_path_factory) -> Path:
     """The zip that `make extension` builds."""
-    specification = importlib.util.spec_from_file_location("extension_build", ROOT / "extension" / "build.py")
-    builder = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(builder)
-    try:
-        (file,) = builder.build(tmp_path_factory.mktemp("extension"))
-    except builder.DownloadError as error:
-        pytest.skip(str(error))
-    return file
+    return built_zip(tmp_path_factory.mktemp("extension"))
 
 
 @contextlib.contextmanager

@@ -16,7 +16,7 @@ from support.floor import floor_scene
 
 from rppm_addon.cli import main
 from rppm_addon.pictures import PictureError, make_folder, read_exr, write_exr
-from rppm_addon.scene import Image, load_scene, save_scene
+from rppm_addon.scene import Image, load_scene, save_scene, whole_files
 from rppm_addon.scene.whole_files import renamed_when_whole
 
 
@@ -97,6 +97,7 @@ def test_export_says_in_a_line_that_the_disk_is_full(tmp_path, monkeypatch, caps
 
 KILLED = """
 import os, signal, sys
+from rppm_addon.scene import whole_files
 from rppm_addon.scene.whole_files import renamed_when_whole
 with renamed_when_whole(sys.argv[1]) as temporary:
     open(temporary, "w").write("half")
@@ -126,3 +127,25 @@ def test_long_names(tmp_path, stem):
     with renamed_when_whole(path) as temporary:
         Path(temporary).write_text("whole")
     assert path.read_text() == "whole" and list(tmp_path.iterdir()) == [path]
+
+
+def test_windows_waits_for_who_has_the_file_open(tmp_path, monkeypatch):
+    made, path, tried = tmp_path / "made", tmp_path / "picture.png", []
+    made.write_bytes(b"new")
+    path.write_bytes(b"old")
+    replace = Path.replace
+
+    def refused_twice(self, target):
+        tried.append(target)
+        if len(tried) < 3:
+            raise PermissionError(13, "The process cannot access the file")
+        return replace(self, target)
+
+    monkeypatch.setattr(Path, "replace", refused_twice)
+    with pytest.raises(PermissionError):
+        whole_files.replace(made, path)
+    tried.clear()
+    monkeypatch.setattr(whole_files.sys, "platform", "win32")
+    monkeypatch.setattr(whole_files, "_BETWEEN_TRIES_SECONDS", 0.0)
+    whole_files.replace(made, path)
+    assert path.read_bytes() == b"new" and len(tried) == 3 and not made.exists()

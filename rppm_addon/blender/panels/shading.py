@@ -92,7 +92,7 @@ class RPPM_PT_shadow_terminator(RppmPanel, bpy.types.Panel):
     bl_label = "Shadow Terminator"
     bl_options = {"DEFAULT_CLOSED"}
     bl_context = "object"
-    bl_parent_id = "OBJECT_PT_shading"
+    bl_parent_id = "OBJECT_PT_shading" if hasattr(bpy.types, "OBJECT_PT_shading") else ""  # none before Blender 4.3
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

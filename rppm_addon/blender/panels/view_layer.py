@@ -2,15 +2,16 @@
 """Panels of the view layer tab."""
 
 import bpy
-from bl_ui.properties_view_layer import (
-    ViewLayerAOVPanelHelper,
-    ViewLayerCryptomattePanelHelper,
-    ViewLayerLightgroupsPanelHelper,
-)
+from bl_ui import properties_view_layer
 
 from ...scene.passes import PASSES, Accumulation
 from ..export.passes import switch_of
 from .base import RppmPanel
+
+
+def _blenders(name: str) -> type:
+    """What Blender's own panels of passes share, which before Blender 4.3 were panels themselves."""
+    return getattr(properties_view_layer, f"{name}Helper", None) or getattr(properties_view_layer, name)
 
 
 class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
@@ -25,19 +26,19 @@ class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
             column.prop(*switch)
 
 
-class RPPM_PT_passes_cryptomatte(RppmPanel, ViewLayerCryptomattePanelHelper, bpy.types.Panel):
+class RPPM_PT_passes_cryptomatte(RppmPanel, _blenders("ViewLayerCryptomattePanel"), bpy.types.Panel):
     bl_label = "Cryptomatte"
     bl_context = "view_layer"
     bl_parent_id = "RPPM_PT_passes"
 
 
-class RPPM_PT_passes_aov(RppmPanel, ViewLayerAOVPanelHelper, bpy.types.Panel):
+class RPPM_PT_passes_aov(RppmPanel, _blenders("ViewLayerAOVPanel"), bpy.types.Panel):
     bl_label = "Shader AOV"
     bl_context = "view_layer"
     bl_parent_id = "RPPM_PT_passes"
 
 
-class RPPM_PT_passes_light_groups(RppmPanel, ViewLayerLightgroupsPanelHelper, bpy.types.Panel):
+class RPPM_PT_passes_light_groups(RppmPanel, _blenders("ViewLayerLightgroupsPanel"), bpy.types.Panel):
     bl_label = "Light Groups"
     bl_context = "view_layer"
     bl_parent_id = "RPPM_PT_passes"

@@ -30,6 +30,10 @@ TOPIC = "rppm-farm"
 """Of the events that tell how far a task is: task, where, fraction, frames."""
 _POLL_SECONDS = 0.2
 _LAST_LINES = 20
+_FLAGS = 0
+"""Of processes; elsewhere than on Windows there are none."""
+if sys.platform == "win32":
+    _FLAGS = subprocess.CREATE_NEW_PROCESS_GROUP
 _at_work = 0
 _lock = threading.Lock()
 _PROGRESS = re.compile(r"\s*(\d+)% ")
@@ -136,7 +140,9 @@ class _Program:
             text=True,
             errors="replace",
             env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
-            start_new_session=True,  # Ctrl-C at the farm's terminal is for the farm
+            # Ctrl-C at the farm's terminal is for the farm.
+            start_new_session=True,
+            creationflags=_FLAGS,
         )
         self._lines: deque[str] = deque(maxlen=_LAST_LINES)
         self._on_progress = on_progress

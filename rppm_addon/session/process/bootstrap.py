@@ -49,6 +49,9 @@ def main() -> int:
         return 0
     sys.path += [folder for folder in hello["path"] if folder not in sys.path]
     from rppm_addon.session.process.worker import work
+    from rppm_addon.wheel_libraries import add_wheel_libraries
+
+    add_wheel_libraries(sys.path)
 
     return work(hello, reader, writer)
 

@@ -14,6 +14,7 @@ from typing import BinaryIO
 from ...denoising.places import LibraryPlace
 from ...scene.scene import Scene
 from .arrays import pack
+from .job_object import end_with_this_process
 from .protocol import VERSION, frame_message, read_message
 from .shared_memory import SharedBlock
 from .transfer import Part, SceneSender
@@ -51,6 +52,7 @@ class ChildProcess:
                 creationflags=_FLAGS,
                 env={**os.environ, **(environment or {})},
             )
+        end_with_this_process(self._process)
         self.pid = self._process.pid
         self._folders = list(folders)
         self._denoisers = [(place.source.name, str(place.path)) for place in denoisers]

@@ -21,13 +21,16 @@ if sys.platform != "win32":
 
 _LABEL = "rppm"
 _NAME = re.compile(r"(/proc/\d+/fd/\d+):(\d+)")
+_NAME_ON_WINDOWS = re.compile(rf"{_LABEL}-[0-9a-f]{{32}}")
+_FILE_MAP_READ = 4
 
 
 class SharedBlock:
     """Bytes in ``memory`` that the other process sees as well once it has opened the block by its ``name``.
 
     On Linux the block is a file without a path, which the other process opens by the creator's number for it; the
-    memory goes with the last process or array that has it. On Windows the system keeps the names.
+    memory goes with the last process or array that has it. On Windows the system keeps names, as long as any process
+    has the block open: there it can be opened until it is closed, withdrawn or not.
     """
 
     def __init__(self, name: str, memory: mmap.mmap, file: int | None = None) -> None:
@@ -59,7 +62,7 @@ class SharedBlock:
         if type(size) is not int or size <= 0:  # a mapping of 0 bytes is one of all there are
             raise ValueError(f"a block of {size!r} bytes")
         if sys.platform == "win32":
-            return cls(name, mmap.mmap(-1, size, tagname=name))
+            return cls(name, _opened_on_windows(name, size))
         match = _NAME.fullmatch(name)
         if match is None:
             raise ValueError(f"{name} names no shared memory")
@@ -104,3 +107,17 @@ class SharedBlock:
         self.withdraw()
         with contextlib.suppress(BufferError):
             self.memory.close()
+
+
+if sys.platform == "win32":
+    import _winapi
+
+    def _opened_on_windows(name: str, size: int) -> mmap.mmap:
+        """The block of a name, which mmap alone would make where there is none. Raises as SharedBlock.open does."""
+        if _NAME_ON_WINDOWS.fullmatch(name) is None:
+            raise ValueError(f"{name} names no shared memory")
+        block = _winapi.OpenFileMapping(_FILE_MAP_READ, False, name)  # FileNotFoundError where it is no more
+        try:
+            return mmap.mmap(-1, size, tagname=name)  # PermissionError where it has less bytes
+        finally:
+            _winapi.CloseHandle(block)

@@ -25,7 +25,7 @@ class ReadableTree:
     """A tree whose nodes can be followed one by one."""
 
     tree: bpy.types.NodeTree
-    owner: bpy.types.InlineShaderNodes | None = None
+    owner: "bpy.types.InlineShaderNodes | None" = None
     """Of a tree that Blender made, which lives as long as this."""
     nodes: dict[tuple[str, str], bpy.types.Node] = field(default_factory=dict)
     """By bl_idname and name, the user's nodes of which Blender made that tree, those in groups included."""
