@@ -15,10 +15,10 @@ def build(scene):
     pool.build_pool()
     pool.build_ball()
     pool.build_water()
-    sun((-0.35, 0.28, -0.9), 4.0)
-    color_world(scene, (0.30, 0.48, 0.75), 0.7)
-    camera((-1.55, -1.10, -0.75), (0.75, 0.45, -0.62), 18.0)
-    set_up(scene, bounces=8)
+    sun((-0.35, 0.28, -0.9), 3.2)
+    color_world(scene, (0.24, 0.46, 0.80), 0.32)
+    camera((-1.62, -1.12, -0.72), (0.55, 0.40, -0.60), 17.0)
+    set_up(scene, bounces=8, look="AgX - Punchy")
 
 
 if __name__ == "__main__":
