@@ -97,7 +97,7 @@ docs-version: docs-tools ## Keep the site of this version beside those of others
 
 docs-images: setup ## Render the pictures of docs/gallery.md, SECONDS_EACH of the processor for each engine (GALLERY="--only prism --again")
 	.venv/bin/python tools/gallery/render.py --seconds $(SECONDS_EACH) $(GALLERY)
-	.venv/bin/python tools/gallery/render.py --films --seconds $$(( ($(SECONDS_EACH) + 5) / 6 )) $(GALLERY)
+	.venv/bin/python tools/gallery/render.py --films $(GALLERY)
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)

@@ -122,7 +122,7 @@ def build(scene):
         "Wall",
         [(-1.5, 0.7, -0.1), (1.5, 0.7, -0.1), (1.5, 0.7, 1.4), (-1.5, 0.7, 1.4)],
         [(3, 2, 1, 0)],
-        diffuse("Wall", (0.10, 0.17, 0.21)),
+        diffuse("Wall", (0.13, 0.30, 0.36)),
     )
     clear = glass("Glass", (0.98, 1.0, 0.99), 1.5)
     block("Front", (-a - WALL, -b - WALL, 0), (a + WALL, -b, DEPTH), clear)
@@ -159,14 +159,25 @@ def build(scene):
         "Lamp",
         (0.14, -0.04, 1.10),
         (0.0, 0.0, 0.0),
-        26.0,
+        36.0,
         (1.0, 0.95, 0.85),
         shadow_soft_size=0.008,
         spot_size=math.radians(48),
         spot_blend=0.5,
     )
-    color_world(scene, (0.5, 0.6, 0.8), 0.07)
-    camera((-0.16, -1.04, 0.33), (-0.005, 0.0, 0.135), 41.0)
+    light(
+        "AREA",
+        "Wall Light",
+        (-0.1, 0.45, 0.75),
+        (-0.1, 0.7, 0.25),
+        3.0,
+        (0.55, 0.85, 1.0),
+        shape="RECTANGLE",
+        size=0.9,
+        size_y=0.05,
+    )
+    color_world(scene, (0.5, 0.65, 0.8), 0.16)
+    camera((-0.16, -1.03, 0.37), (-0.005, 0.0, 0.128), 41.0)
     set_up(scene, bounces=12)
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
 

@@ -44,7 +44,7 @@ def hang(scene, shared, radius, count, height, shift=0.0):
 
 
 def build(scene):
-    wall = diffuse("Plaster", (0.20, 0.255, 0.26))
+    wall = diffuse("Plaster", (0.30, 0.24, 0.20))
     a, b, top = REACH, BACK, TOP
     for name, corners in (
         ("Back", [(-a, b, 0), (a, b, 0), (a, b, top), (-a, b, top)]),
@@ -54,7 +54,6 @@ def build(scene):
     ):
         add_faces(name, corners, [(3, 2, 1, 0)], wall)
     crystal, gold = glass("Crystal", (1.0, 1.0, 1.0), 1.6), metal("Gold", (1.0, 0.74, 0.36), 0.1)
-    crystal.rppm.use_dispersion, crystal.rppm.abbe_number = True, 36.0
     long, short = drop("Long Crystal", 0.12, crystal), drop("Short Crystal", 0.075, crystal)
     for radius, count, height in ((0.36, 30, 1.86), (0.28, 24, 1.76), (0.20, 18, 1.67), (0.12, 11, 1.59)):
         hoop = torus("Hoop", radius, 0.006, gold, 96, 12)
@@ -77,11 +76,11 @@ def build(scene):
             f"Bulb {k}",
             (0.10 * math.cos(angle), 0.10 * math.sin(angle), 1.86),
             (0, 0, 0),
-            15.0,
-            (1.0, 0.78, 0.50),
+            13.0,
+            (1.0, 0.87, 0.68),
             shadow_soft_size=0.005,
         )
-    color_world(scene, (0.3, 0.45, 0.8), 0.03)
+    color_world(scene, (0.3, 0.45, 0.9), 0.10)
     camera((0.30, -1.75, 1.52), (0.02, 0.0, 1.90), 30.0)
     set_up(scene, bounces=12)
 

@@ -57,7 +57,7 @@ def build(scene):
     saucer = ((0.0, -0.003), (0.045, -0.003), (0.075, 0.010), (0.0745, 0.0115), (0.044, -0.0012), (0.0, -0.0012))
     lathe("Saucer", smooth_line(saucer), china).location.z = 0.0035
     rest = spoon(steel)
-    rest.location, rest.rotation_euler = (-0.058, -0.036, 0.0072), (0, math.radians(-3), math.radians(-26))
+    rest.location, rest.rotation_euler = (-0.043, -0.042, 0.0062), (0, math.radians(-3), math.radians(-26))
     sun((0.62, 0.20, -0.60), 3.4, (1.0, 0.88, 0.72))
     color_world(scene, (0.50, 0.64, 0.90), 0.16)
     camera((-0.035, -0.27, 0.255), (0.018, -0.006, 0.030), 43.0)

@@ -61,7 +61,7 @@ def build(scene):
         bottle = lathe(f"Bottle {number}", smooth_line(BOTTLE), varnished(f"Bottle {number}", DRINKS[number], 0.06), 48)
         bottle.location, bottle.scale.z = (x, 1.6 - 0.06 * (number % 2), 1.05), 1.0 + 0.12 * (number % 3)
     for x in (1.45, 2.05):
-        block("Speaker", (x, 1.55, 0.0), (x + 0.46, 1.95, 1.25), diffuse("Speaker", (0.03, 0.03, 0.034)), 0.02)
+        block("Speaker", (x, 1.55, 0.0), (x + 0.46, 1.95, 1.25), diffuse("Speaker", (0.07, 0.07, 0.08)), 0.02)
     place = Vector((0.2, 0.55, 1.98))
     ball = mirrored_ball(metal("Mirror", (0.93, 0.93, 0.93), 0.0))
     ball.location = place
@@ -75,9 +75,9 @@ def build(scene):
         ball.rotation_euler.z = math.tau * turns
         ball.keyframe_insert("rotation_euler", frame=frame)
     spots = (
-        ((-2.3, -1.9, 2.6), (1.0, 0.10, 0.26), 3200.0),
-        ((2.4, -1.6, 2.4), (0.10, 0.34, 1.0), 3200.0),
-        ((0.5, -2.4, 0.5), (1.0, 0.74, 0.36), 2200.0),
+        ((-2.3, -1.9, 2.6), (1.0, 0.10, 0.26), 11000.0),
+        ((2.4, -1.6, 2.4), (0.10, 0.34, 1.0), 11000.0),
+        ((0.5, -2.4, 0.5), (1.0, 0.74, 0.36), 8000.0),
     )
     for number, (source, color, watts) in enumerate(spots):
         # Within the ball, so that no light goes past it.
@@ -93,9 +93,31 @@ def build(scene):
             spot_size=angle,
             spot_blend=0.15,
         )
-    color_world(scene, (0.4, 0.4, 0.8), 0.04)
-    camera((0.05, -2.6, 1.22), (0.02, 0.9, 1.50), 24.0)
-    set_up(scene, look="AgX - Punchy")
+    light(
+        "AREA",
+        "Bar Light",
+        (-1.5, 1.75, 2.3),
+        (-1.5, 1.6, 0.0),
+        9.0,
+        (1.0, 0.55, 0.25),
+        shape="RECTANGLE",
+        size=1.4,
+        size_y=0.1,
+    )
+    light(
+        "AREA",
+        "Blue Light",
+        (0.0, -2.5, 2.7),
+        (0.0, 2.2, 0.8),
+        42.0,
+        (0.32, 0.22, 1.0),
+        shape="RECTANGLE",
+        size=3.0,
+        size_y=0.4,
+    )
+    color_world(scene, (0.4, 0.3, 0.8), 0.10)
+    camera((0.05, -2.6, 1.22), (0.02, 0.9, 1.50), 26.0)
+    set_up(scene, look="AgX - Punchy", exposure=0.6)
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
     scene.render.use_motion_blur = True
 

@@ -8,13 +8,13 @@ from stage import add_faces, ball, block, camera, color_world, diffuse, glass, l
 
 SIDE, LENGTH = 0.05, 0.30
 COLORS = (
-    (0.98, 0.10, 0.14),
-    (0.08, 0.34, 0.98),
-    (1.00, 0.78, 0.06),
-    (0.08, 0.82, 0.36),
-    (0.72, 0.14, 0.92),
-    (1.00, 0.46, 0.08),
-    (0.10, 0.82, 0.92),
+    (1.00, 0.24, 0.28),
+    (0.20, 0.48, 1.00),
+    (1.00, 0.84, 0.20),
+    (0.22, 0.90, 0.50),
+    (0.80, 0.32, 0.98),
+    (1.00, 0.58, 0.22),
+    (0.24, 0.90, 0.98),
 )
 
 
@@ -46,8 +46,8 @@ def build(scene):
         else:
             ball(f"Bead {number}", place, rng.uniform(0.0045, 0.008), surface, 24)
     for name, place, watts, color in (
-        ("Lamp", (0.13, 0.22, 0.15), 1.5, (1.0, 0.93, 0.82)),
-        ("Second Lamp", (-0.17, 0.24, 0.05), 0.9, (0.80, 0.90, 1.0)),
+        ("Lamp", (0.13, 0.22, 0.15), 3.0, (1.0, 0.93, 0.82)),
+        ("Second Lamp", (-0.17, 0.24, 0.05), 1.8, (0.80, 0.90, 1.0)),
     ):
         light(
             "SPOT",
@@ -60,9 +60,9 @@ def build(scene):
             spot_size=math.radians(46),
             spot_blend=0.6,
         )
-    color_world(scene, (0.75, 0.85, 1.0), 0.07)
+    color_world(scene, (0.75, 0.85, 1.0), 0.14)
     camera((0.0, -0.02, 0.0), (0.0, 0.34, 0.0), 26.0)
-    set_up(scene, width=640, height=640, bounces=16, look="AgX - Punchy")
+    set_up(scene, width=640, height=640, bounces=16, look="AgX - Punchy", exposure=1.2)
 
 
 if __name__ == "__main__":

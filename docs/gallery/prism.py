@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes prism.blend: a flat beam of white light goes through a prism of flint glass and ends on a card."""
+"""Makes prism.blend: a flat beam of white light goes through a prism of flint glass."""
 
 import math
 
 from stage import Vector, add_faces, block, camera, color_world, diffuse, glass, light, save, set_up, slit, varnished
 
-INDEX, ABBE, SIDE, HEIGHT = 1.785, 26.0, 0.075, 0.045
+INDEX, ABBE, SIDE, HEIGHT = 1.785, 26.0, 0.085, 0.042
 INCIDENCE = math.asin(INDEX * math.sin(math.radians(30)))
 TURNS_BY = 2 * INCIDENCE - math.radians(60)
 """What the prism turns yellow light by, the least that it can: then light crosses it parallel to its base."""
@@ -38,27 +38,25 @@ def build(scene):
     upward = Vector((math.cos(half), math.sin(half), 0.0))
     entry = Vector((-SIDE / 4, crossing, 0.0))
     lamp = entry - upward * 0.26
-    slit("Slit Lamp", lamp.xy, upward.xy, 1.2, (1.0, 1.0, 1.0), 0.0035, 0.036, 0.85, 0.35)
+    slit("Slit Lamp", lamp.xy, upward.xy, 1.1, (1.0, 1.0, 1.0), 0.0035, 0.036, 0.80, 0.35)
     turn = math.atan2(upward.y, upward.x)
     housing = block(
         "Housing", (-0.10, -0.022, 0.0), (-0.002, 0.022, 0.055), varnished("Black", (0.02, 0.02, 0.022), 0.3), 0.002
     )
     housing.location, housing.rotation_euler.z = lamp, turn
-    middle = Vector((SIDE / 4, crossing, 0.0)) + Vector((math.cos(half), -math.sin(half), 0.0)) * 0.30
-    card = block("Card", (-0.0008, -0.075, 0.0), (0.0008, 0.075, 0.065), diffuse("Card", (0.85, 0.85, 0.84)))
-    card.location, card.rotation_euler.z = middle, math.radians(14)
+    # Where the upper side mirrors it to the camera.
     light(
         "AREA",
         "Window",
-        (-0.5, 0.8, 0.7),
-        (0.0, 0.0, 0.0),
-        4.0,
-        (0.55, 0.70, 1.0),
+        (0.03, 0.60, 0.56),
+        (0.0, 0.0, 0.04),
+        2.2,
+        (0.62, 0.78, 1.0),
         shape="RECTANGLE",
         size=0.5,
-        size_y=0.5,
+        size_y=0.3,
     )
-    color_world(scene, (0.45, 0.6, 1.0), 0.09)
+    color_world(scene, (0.45, 0.6, 1.0), 0.05)
     camera((0.03, -0.52, 0.42), (0.035, -0.035, 0.0), 36.0)
     set_up(scene, bounces=10, look="AgX - Punchy")
 

@@ -34,9 +34,9 @@ def brilliant(name, width, surface, place, turn, tilt=0.0, sides=16):
 
 
 def build(scene):
-    plate("Table", 0.0, 0.0, 0.6, 0.5, 0.0, varnished("Porcelain", (0.36, 0.31, 0.275), 0.5))
+    plate("Table", 0.0, 0.0, 0.6, 0.5, 0.0, varnished("Porcelain", (0.40, 0.35, 0.31), 0.5))
     # Straight inside, where it is to focus.
-    band = [(0.0096, 0.0), (0.0103, 0.0004), (0.0107, 0.0026), (0.0103, 0.0050), (0.0096, 0.0054)]
+    band = [(0.0096, 0.0), (0.0101, 0.0003), (0.0104, 0.0018), (0.0101, 0.0033), (0.0096, 0.0036)]
     ring = lathe("Ring", band, metal("Gold", (1.0, 0.70, 0.30), 0.0), 192)
     ring.location = (0.005, 0.003, 0.0001)
     rest = math.radians(41)
@@ -54,9 +54,9 @@ def build(scene):
     light(
         "SPOT",
         "Left Lamp",
-        (-0.17, 0.16, 0.19),
+        (-0.21, -0.03, 0.17),
         (0.0, -0.002, 0.0),
-        2.9,
+        2.6,
         (1.0, 0.90, 0.76),
         shadow_soft_size=0.0025,
         spot_size=math.radians(25),
@@ -85,7 +85,7 @@ def build(scene):
         size_y=0.06,
     )
     color_world(scene, (0.6, 0.65, 0.75), 0.05)
-    camera((0.002, -0.098, 0.070), (-0.0005, -0.0035, 0.0022), 72.0)
+    camera((0.002, -0.092, 0.086), (-0.0005, -0.0030, 0.0012), 74.0)
     set_up(scene, bounces=12)
 
 

@@ -27,7 +27,7 @@ BEAMS = (
     ("Green", (0.05, 1.0, 0.08), ((-2.65, 0.15), (2.05, 1.30), (2.05, -1.00), DRUM)),
     ("Blue", (0.03, 0.12, 1.0), ((-2.60, 0.85), (0.95, -1.40), (0.75, 1.60), DRUM)),
 )
-BEAM_HEIGHT, REACH = 0.22, 10.0
+BEAM_HEIGHT, REACH = 0.12, 10.0
 
 
 def mirror(name, place, before, after, silver, back):
@@ -55,33 +55,36 @@ def curtain(surface, folds=26, columns=624):
 
 
 def build(scene):
-    plate("Stage", 0.0, 0.0, 9.0, 9.0, 0.0, varnished("Boards", (0.21, 0.20, 0.20), 0.55))
+    plate("Stage", 0.0, 0.0, 9.0, 9.0, 0.0, varnished("Boards", (0.30, 0.29, 0.29), 0.5))
     curtain(diffuse("Velvet", (0.26, 0.012, 0.022)))
     silver, black = metal("Mirror", (0.95, 0.95, 0.96), 0.0), varnished("Black", (0.02, 0.02, 0.022), 0.3)
     for name, color, path in BEAMS:
         for number in range(1, len(path) - 1):
             mirror(f"{name} Mirror {number}", path[number], path[number - 1], path[number + 1], silver, black)
         start, along = Vector(path[0]), (Vector(path[1]) - Vector(path[0])).normalized()
-        slit(f"{name} Lamp", start, along, 60.0, color, 0.05, BEAM_HEIGHT, REACH, 0.5)
+        slit(f"{name} Lamp", start, along, 75.0, color, 0.05, BEAM_HEIGHT, REACH, 0.8)
         housing = block(f"{name} Housing", (-0.45, -0.10, 0.0), (-0.01, 0.10, 0.30), black, 0.015)
         housing.location, housing.rotation_euler.z = (*start, 0.0), math.atan2(along.y, along.x)
     drum = lathe("Drum", [(0.0, 0.001), (DRUM_RADIUS, 0.001), (DRUM_RADIUS, 0.40), (0.0, 0.40)], glass("Drum"), 256)
     drum.data.set_sharp_from_angle(angle=math.radians(40))
     drum.location = (*DRUM, 0.0)
-    light(
+    above = light(
         "SPOT",
         "Above",
         (0.0, 0.2, 5.5),
-        (0.0, 2.2, 0.9),
-        260.0,
+        (0.0, 1.0, 0.3),
+        800.0,
         (1.0, 0.86, 0.72),
         shadow_soft_size=0.3,
         spot_size=math.radians(75),
         spot_blend=1.0,
     )
-    color_world(scene, (0.5, 0.5, 0.8), 0.02)
+    above.data.rppm.photon_weight = 0.7
+    color_world(scene, (0.4, 0.45, 0.9), 0.05)
     camera((-0.15, -4.7, 3.1), (0.0, 0.12, 0.16), 33.0)
     set_up(scene, bounces=12, look="AgX - Punchy")
+    # A point under a flat beam sees but a sliver of its lamp: photons find that, random points of the lamp seldom.
+    scene.rppm.direct_light = "PHOTONS"
 
 
 if __name__ == "__main__":

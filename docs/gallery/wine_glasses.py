@@ -31,7 +31,7 @@ def wine_glass(place, wine_color):
 
 
 def build(scene):
-    oak = wood("Oak", (0.20, 0.115, 0.06), (0.42, 0.29, 0.17), 0.4, 24.0)
+    oak = wood("Oak", (0.20, 0.115, 0.06), (0.42, 0.29, 0.17), 0.4, 24.0, 2.5)
     plate("Table", 0.0, 0.6, 6.0, 4.0, 0.0, oak)
     wine_glass(Vector((-0.085, 0.0, 0.0002)), (0.88, 0.10, 0.13))
     wine_glass(Vector((0.060, 0.085, 0.0002)), (1.0, 0.88, 0.42))
@@ -58,8 +58,8 @@ def build(scene):
         size_y=1.0,
     )
     color_world(scene, (0.45, 0.58, 0.85), 0.06)
-    camera((0.06, -0.66, 0.35), (0.055, -0.045, 0.055), 42.0)
-    set_up(scene, bounces=12)
+    camera((0.06, -0.66, 0.35), (0.035, -0.050, 0.058), 42.0)
+    set_up(scene, bounces=12, exposure=-0.35)
 
 
 if __name__ == "__main__":

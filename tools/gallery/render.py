@@ -41,7 +41,7 @@ SCENES = (
 )
 FRAMES = {"aquarium": 1, "disco_ball": 12}
 """Of the scenes that move, the one that is shown."""
-FILM_FRAMES, FILM_WIDTH, FILM_SPEED = range(1, 49, 4), 320, 6
+FILM_FRAMES, FILM_SIZE, FILM_SPEED = "1..48..4", (320, 180), 6
 """Which are rendered, how large, and how many are shown a second."""
 SHARED = (SCRIPTS / "stage.py", SAMPLES / "sample_scene.py", SAMPLES / "pool.py")
 
@@ -109,34 +109,39 @@ def render_scene(name: str, options: argparse.Namespace) -> None:
     PICTURES.mkdir(parents=True, exist_ok=True)
     pairs = (ours, PICTURES / f"{name}.jpg", theirs, PICTURES / f"{name}_cycles.jpg")
     call(ROOT / "tools/gallery/develop.py", blend, *pairs, label=f"showing {name}")
-    RECORD.write_text(json.dumps({**read_record(), name: entry}, indent=1) + "\n", encoding="utf-8")
+    write_record(name, entry)
     print(f"{name}: RPPM {entry['rppm']}, Cycles {entry['cycles']}", flush=True)
 
 
 def render_film(name: str, options: argparse.Namespace) -> None:
     """A short film of a scene that moves, by RPPM."""
     film = PICTURES / f"{name}.webp"
-    if film.exists() and not options.again:
+    wanted = {"script": script_digest(name), "samples": options.film_samples}
+    if not options.again and read_record().get(film.name) == wanted:
         print(f"{film.name}: is there", flush=True)
         return
-    blend, width = build(name), read_record()[name]["rppm"]["resolution"][0]
-    percent = options.percent * FILM_WIDTH / width
-    names = []
-    for frame in FILM_FRAMES:
-        picture = BETWEEN / f"{name}_{frame:04}.exr"
-        render_ours(blend, picture, options.seconds, percent, frame)
-        names += [picture, picture.with_suffix(".png")]
-    call(ROOT / "tools/gallery/develop.py", blend, *names, label=f"showing {name}")
-    images = [PIL.Image.open(path) for path in names[1::2]]
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    blend, pattern = build(name), BETWEEN / f"{name}_####.png"
+    shape = f"{FILM_SIZE[0]}x{FILM_SIZE[1]}"
+    limits = ["--frames", FILM_FRAMES, "--samples", options.film_samples, "--resolution", shape]
+    call("-m", "rppm_addon", "render", blend, "-o", pattern, *limits, label=f"RPPM on {blend.name}")
+    names = sorted(BETWEEN.glob(f"{name}_[0-9][0-9][0-9][0-9].png"))
+    images = [PIL.Image.open(path) for path in names]
     images[0].save(
         film, save_all=True, append_images=images[1:], duration=round(1000 / FILM_SPEED), loop=0, quality=80, method=6
     )
+    write_record(film.name, wanted)
     print(f"{film.name}: {film.stat().st_size // 1024} KiB", flush=True)
 
 
 def read_record() -> dict:
-    """What the pictures took, by scene."""
+    """What the pictures took, by scene or film."""
     return json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
+
+
+def write_record(name: str, entry: dict) -> None:
+    """Keep what one took."""
+    RECORD.write_text(json.dumps({**read_record(), name: entry}, indent=1) + "\n", encoding="utf-8")
 
 
 def write_table() -> None:
@@ -150,8 +155,8 @@ def write_table() -> None:
         ours, theirs = record[name]["rppm"], record[name]["cycles"]
         photons = f"{ours['photons'] / 1e6:.1f} million"
         lines.append(
-            f"| [{name}](#{name.replace('_', '-')}) | {ours['resolution'][0]} x {ours['resolution'][1]} "
-            f"| {ours['triangles'] / 1000:.0f} k | {ours['samples']}, {photons}, {ours['seconds']:.0f} s "
+            f"| {name.replace('_', ' ')} | {ours['resolution'][0]} x {ours['resolution'][1]} "
+            f"| {ours['triangles']} | {ours['samples']}, {photons}, {ours['seconds']:.0f} s "
             f"| {theirs['samples']}, {theirs['seconds']:.0f} s |"
         )
     text = PAGE.read_text(encoding="utf-8")
@@ -166,7 +171,8 @@ def main() -> None:
     parser.add_argument("--percent", type=float, default=100.0, help="of the pictures' width and height (100)")
     parser.add_argument("--only", nargs="+", choices=SCENES, default=SCENES, metavar="NAME", help="these scenes")
     parser.add_argument("--again", action="store_true", help="also what is there already")
-    parser.add_argument("--films", action="store_true", help="the short films instead, so many seconds a frame")
+    parser.add_argument("--films", action="store_true", help="the short films instead")
+    parser.add_argument("--film-samples", type=int, default=16, metavar="N", help="of each of their frames (16)")
     parser.add_argument("--draft", action="store_true", help="RPPM alone, to out/gallery/NAME.png")
     options = parser.parse_args()
     BETWEEN.mkdir(parents=True, exist_ok=True)
