@@ -35,8 +35,9 @@ def brilliant(name, width, surface, place, turn, tilt=0.0, sides=16):
 
 def build(scene):
     plate("Table", 0.0, 0.0, 0.6, 0.5, 0.0, varnished("Porcelain", (0.40, 0.35, 0.31), 0.5))
-    # Straight inside, where it is to focus.
-    band = [(0.0096, 0.0), (0.0101, 0.0003), (0.0104, 0.0018), (0.0101, 0.0033), (0.0096, 0.0036)]
+    # Straight inside, where it is to focus; edges of their own keep it so where normals are smooth.
+    outside = ((0.0098, 0.0), (0.0102, 0.0004), (0.0105, 0.0022), (0.0102, 0.0040), (0.0098, 0.0044))
+    band = [*outside, (0.0096, 0.0042), (0.0096, 0.0040), (0.0096, 0.0004), (0.0096, 0.0002)]
     ring = lathe("Ring", band, metal("Gold", (1.0, 0.70, 0.30), 0.0), 192)
     ring.location = (0.005, 0.003, 0.0001)
     rest = math.radians(41)
