@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version docs-images pairs references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -94,6 +94,10 @@ VERSION ?= $(shell awk -F '"' '/^version/ { print $$2 }' blender_manifest.toml)
 docs-version: docs-tools ## Keep the site of this version beside those of others, on the branch gh-pages (VERSION=0.1.0)
 	NO_MKDOCS_2_WARNING=1 .venv/bin/mike --quiet deploy --config-file tools/site/mkdocs.yml --update-aliases $(VERSION) latest
 	.venv/bin/mike set-default --config-file tools/site/mkdocs.yml latest
+
+docs-images: setup ## Render the pictures of docs/gallery.md, SECONDS_EACH of the processor for each engine (GALLERY="--only prism --again")
+	.venv/bin/python tools/gallery/render.py --seconds $(SECONDS_EACH) $(GALLERY)
+	.venv/bin/python tools/gallery/render.py --films $(GALLERY)
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)

@@ -2,7 +2,7 @@
 """Renders .blend files with RPPM and with Cycles, side by side.
 
 Writes out/pairs/NAME.png (RPPM left, Cycles right), out/pairs/NAME.exr and NAME_cycles.exr, a table
-of mean radiance ratios, and a contact sheet of RPPM's pictures alone to docs/images/.
+of mean radiance ratios, and a contact sheet of RPPM's pictures alone.
 A scene that fails is reported and the others go on.
 """
 
@@ -123,7 +123,7 @@ def main() -> int:
     parser.add_argument("--resolution", type=lambda text: tuple(map(int, text.split("x"))), default=(256, 192))
     parser.add_argument("--seconds", type=float, default=60.0, help="time for each renderer and scene")
     parser.add_argument("--keep-cycles", action="store_true", help="use Cycles' pictures of an earlier run")
-    parser.add_argument("--sheet", type=Path, default=ROOT / "docs/images/contact_sheet.jpg")
+    parser.add_argument("--sheet", type=Path, default=ROOT / "out/pairs/contact_sheet.jpg")
     options = parser.parse_args()
     folder = ROOT / "out" / "pairs"
     folder.mkdir(parents=True, exist_ok=True)

@@ -19,6 +19,7 @@ from stage import (
     save,
     set_up,
     smooth_line,
+    wood,
 )
 
 HALF, DEPTH, LEVEL, WALL, FRAMES = (0.40, 0.17), 0.30, 0.27, 0.006, 48
@@ -101,14 +102,27 @@ def fish(name, color, place, turn, size):
         body.keyframe_insert("location", frame=frame)
 
 
+def weed(place, height, number, surface):
+    """A ribbon that stands in the sand and bends."""
+    points, steps = [], 16
+    for k in range(steps + 1):
+        t = k / steps
+        bend = 0.022 * t * math.sin(4.5 * t + 1.3 * number)
+        half = 0.0055 * (1.0 - 0.85 * t * t)
+        points += [(bend - half, 0.3 * bend, height * t), (bend + half, -0.4 * bend, height * t)]
+    made = add_faces("Weed", points, [(2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2) for k in range(steps)], surface)
+    made.data.shade_smooth()
+    made.location, made.rotation_euler.z = place, 0.9 * number
+
+
 def build(scene):
     a, b = HALF
-    plate("Table", 0.0, 0.0, 3.0, 2.0, -WALL, diffuse("Table", (0.28, 0.20, 0.15)))
+    plate("Table", 0.0, 0.0, 3.0, 2.0, -WALL, wood("Table", (0.05, 0.024, 0.012), (0.17, 0.085, 0.04)))
     add_faces(
         "Wall",
         [(-1.5, 0.7, -0.1), (1.5, 0.7, -0.1), (1.5, 0.7, 1.4), (-1.5, 0.7, 1.4)],
         [(3, 2, 1, 0)],
-        diffuse("Wall", (0.50, 0.55, 0.58)),
+        diffuse("Wall", (0.13, 0.30, 0.36)),
     )
     clear = glass("Glass", (0.98, 1.0, 0.99), 1.5)
     block("Front", (-a - WALL, -b - WALL, 0), (a + WALL, -b, DEPTH), clear)
@@ -129,24 +143,41 @@ def build(scene):
         for k in range(j * (columns + 1), j * (columns + 1) + columns)
     ]
     add_faces("Sand", sand, faces, diffuse("Sand", (0.76, 0.66, 0.48))).data.shade_smooth()
-    for number, (x, y, radius) in enumerate(((-0.25, 0.07, 0.05), (-0.18, 0.02, 0.03), (0.28, 0.08, 0.045))):
-        ball(f"Stone {number}", (x, y, 0.03), radius, diffuse(f"Stone {number}", (0.30, 0.30, 0.33)), 16)
-    fish("Goldfish", (0.92, 0.30, 0.05), (-0.06, -0.03, 0.14), 0.25, 0.11)
-    fish("Second Goldfish", (0.95, 0.52, 0.10), (0.15, 0.05, 0.19), -0.2, 0.08)
-    fish("Blue Fish", (0.10, 0.30, 0.75), (0.20, -0.06, 0.10), 2.9, 0.07)
+    stones = ((-0.27, 0.08, 0.055), (-0.19, 0.03, 0.03), (0.29, 0.09, 0.05), (0.33, 0.0, 0.025))
+    for number, (x, y, radius) in enumerate(stones):
+        ball(f"Stone {number}", (x, y, 0.02), radius, diffuse(f"Stone {number}", (0.24, 0.23, 0.24)), 16).scale.z = 0.8
+    green = diffuse("Weed", (0.07, 0.26, 0.05))
+    for number in range(9):
+        side, along = (-0.31, 0.24)[number % 2], 0.035 * (number // 2)
+        weed((side + along, 0.115 - 0.02 * (number % 3), 0.02), 0.11 + 0.055 * ((number * 5) % 4) / 3, number, green)
+    fish("Goldfish", (0.92, 0.26, 0.03), (-0.07, -0.04, 0.135), 0.25, 0.13)
+    fish("Second Goldfish", (0.95, 0.50, 0.06), (0.14, 0.05, 0.19), -0.2, 0.09)
+    fish("Blue Fish", (0.06, 0.26, 0.80), (0.21, -0.05, 0.095), 2.9, 0.085)
+    fish("Small Fish", (0.85, 0.80, 0.70), (-0.22, 0.0, 0.20), 3.3, 0.06)
     light(
         "SPOT",
         "Lamp",
-        (0.12, -0.05, 1.10),
+        (0.14, -0.04, 1.10),
         (0.0, 0.0, 0.0),
-        30.0,
+        36.0,
         (1.0, 0.95, 0.85),
-        shadow_soft_size=0.01,
-        spot_size=math.radians(52),
-        spot_blend=0.3,
+        shadow_soft_size=0.008,
+        spot_size=math.radians(48),
+        spot_blend=0.5,
     )
-    color_world(scene, (0.5, 0.6, 0.8), 0.25)
-    camera((-0.22, -1.10, 0.52), (0.0, 0.0, 0.115), 44.0)
+    light(
+        "AREA",
+        "Wall Light",
+        (-0.1, 0.45, 0.75),
+        (-0.1, 0.7, 0.25),
+        3.0,
+        (0.55, 0.85, 1.0),
+        shape="RECTANGLE",
+        size=0.9,
+        size_y=0.05,
+    )
+    color_world(scene, (0.5, 0.65, 0.8), 0.16)
+    camera((-0.16, -1.03, 0.37), (-0.005, 0.0, 0.128), 41.0)
     set_up(scene, bounces=12)
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
 

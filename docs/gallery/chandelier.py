@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes chandelier.blend: crystals round five bulbs scatter their light over the walls of a small hall."""
+"""Makes chandelier.blend: crystals round three bulbs scatter their light over the walls of a hall."""
 
 import math
 
-from stage import add_faces, ball, camera, color_world, diffuse, glass, lathe, light, metal, plate, save, set_up, torus
+from stage import add_faces, camera, color_world, diffuse, glass, lathe, light, metal, save, set_up, torus
 
-TOP = 2.75
+TOP, BACK, REACH = 2.45, 0.85, 1.25
+"""The ceiling's height, where the wall is, and how far the hall goes to the sides."""
 
 
 def drop(name, length, surface, sides=6):
@@ -33,45 +34,55 @@ def drop(name, length, surface, sides=6):
     return add_faces(name, points, faces, surface)
 
 
+def hang(scene, shared, radius, count, height, shift=0.0):
+    """Crystals in a ring."""
+    for k in range(count):
+        made = shared.copy()
+        scene.collection.objects.link(made)
+        angle = math.tau * (k + shift) / count
+        made.location, made.rotation_euler.z = (radius * math.cos(angle), radius * math.sin(angle), height), angle
+
+
 def build(scene):
-    wall = diffuse("Plaster", (0.76, 0.71, 0.62))
-    plate("Floor", 0.0, 0.0, 3.6, 3.6, 0.0, diffuse("Floor", (0.35, 0.22, 0.14)))
-    for name, a, b in (
-        ("Back", (-1.8, 1.8), (1.8, 1.8)),
-        ("Left", (-1.8, -1.8), (-1.8, 1.8)),
-        ("Right", (1.8, 1.8), (1.8, -1.8)),
+    wall = diffuse("Plaster", (0.30, 0.24, 0.20))
+    a, b, top = REACH, BACK, TOP
+    for name, corners in (
+        ("Back", [(-a, b, 0), (a, b, 0), (a, b, top), (-a, b, top)]),
+        ("Left", [(-a, -3, 0), (-a, b, 0), (-a, b, top), (-a, -3, top)]),
+        ("Right", [(a, b, 0), (a, -3, 0), (a, -3, top), (a, b, top)]),
+        ("Ceiling", [(-a, b, top), (a, b, top), (a, -3, top), (-a, -3, top)]),
     ):
-        add_faces(name, [(*a, 0), (*b, 0), (*b, TOP), (*a, TOP)], [(3, 2, 1, 0)], wall)
-    add_faces("Ceiling", [(-1.8, -1.8, TOP), (1.8, -1.8, TOP), (1.8, 1.8, TOP), (-1.8, 1.8, TOP)], [(3, 2, 1, 0)], wall)
-    crystal, gold = glass("Crystal", (1.0, 1.0, 1.0), 1.6), metal("Gold", (1.0, 0.76, 0.38), 0.1)
-    shared = drop("Crystal", 0.13, crystal)
-    hung = [(0.42, 16, 1.90), (0.30, 12, 1.74), (0.18, 8, 1.62)]
-    for radius, count, height in hung:
-        hoop = torus("Hoop", radius, 0.008, gold, 96, 12)
-        hoop.location.z = height + 0.008
-        for k in range(count):
-            made = shared.copy()
-            scene.collection.objects.link(made)
-            angle = math.tau * k / count
-            made.location, made.rotation_euler.z = (radius * math.cos(angle), radius * math.sin(angle), height), angle
-    shared.location = (0.0, 0.0, 1.60)
-    rod = lathe("Rod", [(0.0, 1.6), (0.012, 1.6), (0.012, TOP), (0.0, TOP)], gold, 24)
-    rod.location.z = 0.0
-    ball("Knob", (0.0, 0.0, 1.64), 0.03, gold, 24)
-    for k in range(5):
-        angle = math.tau * k / 5
+        add_faces(name, corners, [(3, 2, 1, 0)], wall)
+    crystal, gold = glass("Crystal", (1.0, 1.0, 1.0), 1.6), metal("Gold", (1.0, 0.74, 0.36), 0.1)
+    long, short = drop("Long Crystal", 0.12, crystal), drop("Short Crystal", 0.075, crystal)
+    for radius, count, height in ((0.36, 30, 1.86), (0.28, 24, 1.76), (0.20, 18, 1.67), (0.12, 11, 1.59)):
+        hoop = torus("Hoop", radius, 0.006, gold, 96, 12)
+        hoop.location.z = height + 0.006
+        hang(scene, long, radius, count, height)
+    long.location = (0.0, 0.0, 1.53)
+    # Strings of small ones from the top to the widest hoop.
+    for step, (radius, count, height) in enumerate(
+        ((0.30, 22, 1.98), (0.225, 18, 2.06), (0.15, 13, 2.13), (0.085, 8, 2.19))
+    ):
+        hang(scene, short, radius, count, height, 0.5 * (step % 2))
+    short.location = (0.0, 0.0, 1.44)
+    lathe("Rod", [(0.0, 2.08), (0.010, 2.08), (0.010, TOP), (0.0, TOP)], gold, 24)
+    crown = torus("Crown", 0.06, 0.010, gold, 64, 16)
+    crown.location.z = 2.22
+    for k in range(3):
+        angle = math.tau * (k + 0.2) / 3
         light(
             "POINT",
             f"Bulb {k}",
-            (0.24 * math.cos(angle), 0.24 * math.sin(angle), 1.98),
+            (0.10 * math.cos(angle), 0.10 * math.sin(angle), 1.86),
             (0, 0, 0),
-            14.0,
-            (1.0, 0.80, 0.52),
-            shadow_soft_size=0.006,
+            13.0,
+            (1.0, 0.87, 0.68),
+            shadow_soft_size=0.005,
         )
-    color_world(scene, (0.3, 0.4, 0.7), 0.02)
-    camera((0.25, -2.6, 1.20), (0.0, 0.3, 1.78), 27.0)
-    set_up(scene, bounces=10)
+    color_world(scene, (0.3, 0.45, 0.9), 0.10)
+    camera((0.30, -1.75, 1.52), (0.02, 0.0, 1.90), 30.0)
+    set_up(scene, bounces=12)
 
 
 if __name__ == "__main__":

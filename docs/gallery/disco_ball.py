@@ -3,12 +3,31 @@
 
 import math
 
-from stage import Vector, add_faces, block, camera, color_world, diffuse, light, metal, plate, save, set_up, varnished
+from stage import (
+    Vector,
+    add_faces,
+    block,
+    camera,
+    color_world,
+    diffuse,
+    lathe,
+    light,
+    metal,
+    plate,
+    save,
+    set_up,
+    smooth_line,
+    varnished,
+)
 
-RADIUS, FRAMES = 0.24, 48
+RADIUS, FRAMES = 0.33, 48
 
 
-def mirrored_ball(surface, rows=22):
+BOTTLE = ((0.0, 0.0), (0.036, 0.0), (0.038, 0.01), (0.038, 0.17), (0.014, 0.22), (0.013, 0.29), (0.0, 0.29))
+DRINKS = ((0.05, 0.22, 0.10), (0.45, 0.20, 0.04), (0.40, 0.03, 0.05), (0.06, 0.12, 0.30), (0.40, 0.34, 0.14))
+
+
+def mirrored_ball(surface, rows=24):
     """Flat mirrors in rows round a ball."""
     points, faces = [], []
     for row in range(rows):
@@ -27,51 +46,78 @@ def mirrored_ball(surface, rows=22):
 
 
 def build(scene):
-    plate("Floor", 0.0, 0.0, 5.0, 4.4, 0.0, varnished("Parquet", (0.28, 0.16, 0.09), 0.25))
-    wall = diffuse("Wall", (0.55, 0.50, 0.55))
+    plate("Floor", 0.0, 0.0, 6.0, 5.4, 0.0, varnished("Parquet", (0.16, 0.085, 0.05), 0.22))
+    wall = diffuse("Wall", (0.34, 0.31, 0.36))
     for name, a, b in (
-        ("Back", (-2.5, 2.2), (2.5, 2.2)),
-        ("Left", (-2.5, -2.2), (-2.5, 2.2)),
-        ("Right", (2.5, 2.2), (2.5, -2.2)),
+        ("Back", (-2.6, 2.2), (2.6, 2.2)),
+        ("Left", (-2.6, -2.7), (-2.6, 2.2)),
+        ("Right", (2.6, 2.2), (2.6, -2.7)),
     ):
-        add_faces(name, [(*a, 0), (*b, 0), (*b, 2.7), (*a, 2.7)], [(3, 2, 1, 0)], wall)
-    add_faces("Ceiling", [(-2.5, -2.2, 2.7), (2.5, -2.2, 2.7), (2.5, 2.2, 2.7), (-2.5, 2.2, 2.7)], [(3, 2, 1, 0)], wall)
-    block("Bar", (-2.1, 1.3, 0.0), (-0.5, 1.8, 1.05), varnished("Bar", (0.16, 0.05, 0.03), 0.1), 0.02)
-    block("Speaker", (1.5, 1.5, 0.0), (2.1, 2.0, 1.3), diffuse("Speaker", (0.04, 0.04, 0.045)), 0.02)
-    place = Vector((0.25, 0.45, 2.05))
+        add_faces(name, [(*a, 0), (*b, 0), (*b, 2.9), (*a, 2.9)], [(3, 2, 1, 0)], wall)
+    add_faces("Ceiling", [(-2.6, -2.7, 2.9), (2.6, -2.7, 2.9), (2.6, 2.2, 2.9), (-2.6, 2.2, 2.9)], [(3, 2, 1, 0)], wall)
+    bar = varnished("Bar", (0.14, 0.045, 0.025), 0.1)
+    block("Bar", (-2.3, 1.35, 0.0), (-0.75, 1.85, 1.05), bar, 0.02)
+    for number, x in enumerate((-2.05, -1.80, -1.50, -1.25, -1.02)):
+        bottle = lathe(f"Bottle {number}", smooth_line(BOTTLE), varnished(f"Bottle {number}", DRINKS[number], 0.06), 48)
+        bottle.location, bottle.scale.z = (x, 1.6 - 0.06 * (number % 2), 1.05), 1.0 + 0.12 * (number % 3)
+    for x in (1.45, 2.05):
+        block("Speaker", (x, 1.55, 0.0), (x + 0.46, 1.95, 1.25), diffuse("Speaker", (0.07, 0.07, 0.08)), 0.02)
+    place = Vector((0.2, 0.55, 1.98))
     ball = mirrored_ball(metal("Mirror", (0.93, 0.93, 0.93), 0.0))
-    core = add_faces("Core", [], [], diffuse("Core", (0.02, 0.02, 0.02)))
-    core.parent, ball.location = ball, place
+    ball.location = place
     block(
         "Rod",
         (place.x - 0.01, place.y - 0.01, place.z + RADIUS - 0.01),
-        (place.x + 0.01, place.y + 0.01, 2.7),
+        (place.x + 0.01, place.y + 0.01, 2.9),
         diffuse("Rod", (0.1, 0.1, 0.1)),
     )
     for frame, turns in ((1, 0.0), (FRAMES + 1, 0.25)):
         ball.rotation_euler.z = math.tau * turns
         ball.keyframe_insert("rotation_euler", frame=frame)
     spots = (
-        ((-1.9, -1.6, 2.5), (1.0, 0.18, 0.30)),
-        ((2.2, -1.2, 2.4), (0.20, 0.45, 1.0)),
-        ((0.4, -2.0, 0.5), (1.0, 0.80, 0.45)),
+        ((-2.3, -1.9, 2.6), (1.0, 0.10, 0.26), 11000.0),
+        ((2.4, -1.6, 2.4), (0.10, 0.34, 1.0), 11000.0),
+        ((0.5, -2.4, 0.5), (1.0, 0.74, 0.36), 8000.0),
     )
-    for number, (source, color) in enumerate(spots):
-        angle = 2.3 * math.asin(RADIUS / (place - Vector(source)).length)
+    for number, (source, color, watts) in enumerate(spots):
+        # Within the ball, so that no light goes past it.
+        angle = 1.86 * math.asin(RADIUS / (place - Vector(source)).length)
         light(
             "SPOT",
             f"Spot {number}",
             source,
             place,
-            6000.0,
+            watts,
             color,
-            shadow_soft_size=0.015,
+            shadow_soft_size=0.012,
             spot_size=angle,
-            spot_blend=0.1,
+            spot_blend=0.15,
         )
-    color_world(scene, (0.4, 0.4, 0.8), 0.05)
-    camera((0.1, -2.15, 1.15), (0.05, 0.9, 1.42), 20.0)
-    set_up(scene)
+    light(
+        "AREA",
+        "Bar Light",
+        (-1.5, 1.75, 2.3),
+        (-1.5, 1.6, 0.0),
+        9.0,
+        (1.0, 0.55, 0.25),
+        shape="RECTANGLE",
+        size=1.4,
+        size_y=0.1,
+    )
+    light(
+        "AREA",
+        "Blue Light",
+        (0.0, -2.5, 2.7),
+        (0.0, 2.2, 0.8),
+        42.0,
+        (0.32, 0.22, 1.0),
+        shape="RECTANGLE",
+        size=3.0,
+        size_y=0.4,
+    )
+    color_world(scene, (0.4, 0.3, 0.8), 0.10)
+    camera((0.05, -2.6, 1.22), (0.02, 0.9, 1.50), 26.0)
+    set_up(scene, look="AgX - Punchy", exposure=0.6)
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
     scene.render.use_motion_blur = True
 

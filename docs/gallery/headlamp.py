@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes headlamp.blend: a car's headlamp, whose mirror and ribbed glass throw the bulb's light on a garage wall."""
+"""Makes headlamp.blend: a car's headlamp, whose mirror and ribbed glass throw the light of a filament on the floor."""
 
 import math
 
 from stage import (
+    Vector,
     add_faces,
-    aim,
     block,
     camera,
     color_world,
@@ -18,10 +18,15 @@ from stage import (
     plate,
     save,
     set_up,
+    smooth_line,
+    torus,
+    varnished,
 )
 
-FOCUS, RADIUS = 0.032, 0.085
-HEIGHT = 0.45
+FOCUS, RADIUS, HEIGHT = 0.032, 0.085, 0.13
+DIP = math.radians(13)
+"""How far the lamp looks down."""
+FILAMENT = 40000.0
 
 
 def ribbed_pane(surface, columns=192):
@@ -44,27 +49,52 @@ def ribbed_pane(surface, columns=192):
 
 
 def build(scene):
-    wall = diffuse("Plaster", (0.72, 0.70, 0.66))
-    plate("Floor", 0.0, 0.6, 3.0, 3.2, 0.0, diffuse("Concrete", (0.42, 0.42, 0.42)))
-    add_faces("Wall", [(-1.5, 1.7, 0), (1.5, 1.7, 0), (1.5, 1.7, 1.6), (-1.5, 1.7, 1.6)], [(3, 2, 1, 0)], wall)
-    mirror = metal("Mirror", (0.92, 0.92, 0.93), 0.0)
+    plate("Floor", 0.0, 1.0, 6.0, 6.0, 0.0, diffuse("Concrete", (0.24, 0.24, 0.25)))
+    black = varnished("Black", (0.012, 0.012, 0.014), 0.25)
     inside = [(RADIUS * k / 48, (RADIUS * k / 48) ** 2 / (4 * FOCUS)) for k in range(49)]
     outside = [
         (RADIUS + 0.003, inside[-1][1]),
         *[(r + 0.003, z - 0.003) for r, z in reversed(inside[1:])],
         (0.0, -0.003),
     ]
-    reflector = lathe("Reflector", [*inside, *outside], mirror, 128)
-    reflector.location, reflector.rotation_euler = (0.0, 0.0, HEIGHT), (math.radians(-90), 0, 0)
+    depth = inside[-1][1]
+    parts = [lathe("Reflector", [*inside, *outside], metal("Mirror", (0.92, 0.92, 0.93), 0.0), 128)]
+    shell = (
+        (0.0, -0.022),
+        (0.045, -0.018),
+        (0.078, 0.020),
+        (0.096, 0.055),
+        (0.0975, 0.074),
+        (0.089, 0.074),
+        (0.0885, 0.05),
+    )
+    parts.append(lathe("Shell", [*smooth_line(shell), (0.0, -0.010)], black, 128))
+    rim = torus("Rim", RADIUS + 0.0075, 0.0055, metal("Chrome", (0.85, 0.85, 0.86), 0.04))
+    rim.location.z = depth + 0.006
     pane = ribbed_pane(glass("Pane", (0.99, 1.0, 1.0), 1.5))
-    pane.location = (0.0, inside[-1][1] + 0.004, HEIGHT)
-    filament, _ = material("Filament", "ShaderNodeEmission", Color=(1.0, 0.80, 0.52, 1), Strength=60000.0)
-    block("Filament", (-0.0025, FOCUS - 0.0008, HEIGHT - 0.0008), (0.0025, FOCUS + 0.0008, HEIGHT + 0.0008), filament)
-    block("Stand", (-0.05, -0.03, 0.0), (0.05, 0.02, HEIGHT - 0.095), diffuse("Stand", (0.10, 0.10, 0.12)), 0.004)
-    fill = light("AREA", "Window", (-1.2, -0.6, 1.4), (0.0, 0.8, 0.3), 2.5, (0.6, 0.75, 1.0), size=0.8)
-    aim(fill, (0.0, 0.8, 0.3))
-    color_world(scene, (0.3, 0.4, 0.6), 0.02)
-    camera((0.80, -0.72, 0.86), (-0.12, 0.85, 0.40), 28.0)
+    pane.location, pane.rotation_euler = (0.0, 0.0, depth + 0.003), (math.radians(90), 0, math.radians(180))
+    filament, _ = material("Filament", "ShaderNodeEmission", Color=(1.0, 0.78, 0.50, 1), Strength=FILAMENT)
+    half = 0.0008
+    parts += [rim, pane, block("Filament", (-0.0025, -half, FOCUS - half), (0.0025, half, FOCUS + half), filament)]
+    seat = add_faces("Seat", [], [], black)
+    seat.location = (0.0, 0.0, HEIGHT)
+    seat.rotation_euler = Vector((0.0, -math.cos(DIP), -math.sin(DIP))).to_track_quat("Z", "Y").to_euler()
+    for part in parts:
+        part.parent = seat
+    block("Stand", (-0.03, 0.01, 0.0), (0.03, 0.05, HEIGHT - 0.05), black, 0.004)
+    light(
+        "AREA",
+        "Window",
+        (-1.0, 0.9, 1.0),
+        (0.0, 0.0, 0.1),
+        6.0,
+        (0.45, 0.65, 1.0),
+        shape="RECTANGLE",
+        size=0.5,
+        size_y=1.0,
+    )
+    color_world(scene, (0.3, 0.4, 0.6), 0.03)
+    camera((0.42, -0.86, 0.40), (0.03, -0.20, 0.065), 40.0)
     set_up(scene, bounces=12)
 
 

@@ -7,6 +7,15 @@ import random
 from stage import add_faces, ball, block, camera, color_world, diffuse, glass, light, metal, save, set_up
 
 SIDE, LENGTH = 0.05, 0.30
+COLORS = (
+    (1.00, 0.24, 0.28),
+    (0.20, 0.48, 1.00),
+    (1.00, 0.84, 0.20),
+    (0.22, 0.90, 0.50),
+    (0.80, 0.32, 0.98),
+    (1.00, 0.58, 0.22),
+    (0.24, 0.90, 0.98),
+)
 
 
 def build(scene):
@@ -17,59 +26,43 @@ def build(scene):
     for number in range(3):
         (a, b), (c, d) = corners[number], corners[(number + 1) % 3]
         add_faces(f"Mirror {number}", [(a, 0, b), (c, 0, d), (c, LENGTH, d), (a, LENGTH, b)], [(0, 1, 2, 3)], mirror)
-    screen = diffuse("Screen", (0.85, 0.85, 0.82))
     add_faces(
         "Screen",
-        [(-0.1, 0.345, -0.1), (0.1, 0.345, -0.1), (0.1, 0.345, 0.1), (-0.1, 0.345, 0.1)],
+        [(-0.12, 0.348, -0.12), (0.12, 0.348, -0.12), (0.12, 0.348, 0.12), (-0.12, 0.348, 0.12)],
         [(0, 1, 2, 3)],
-        screen,
+        diffuse("Screen", (0.62, 0.60, 0.56)),
     )
-    rng = random.Random(4)
-    colors = (
-        (0.95, 0.10, 0.12),
-        (0.10, 0.35, 0.95),
-        (0.98, 0.75, 0.08),
-        (0.10, 0.80, 0.30),
-        (0.70, 0.15, 0.85),
-        (0.98, 0.45, 0.10),
-    )
-    for number in range(13):
-        color = colors[number % len(colors)]
-        x, z = rng.uniform(-0.035, 0.035), rng.uniform(-0.03, 0.035)
-        y = rng.uniform(0.312, 0.330)
-        surface = glass(f"Glass {number}", color, 1.5)
-        if number % 3:
-            size = rng.uniform(0.004, 0.008)
-            shard = block(f"Shard {number}", (-size, -0.003, -1.6 * size), (size, 0.003, 1.6 * size), surface, 0.0008)
-            shard.location, shard.rotation_euler = (
-                (x, y, z),
-                (rng.uniform(-0.4, 0.4), rng.uniform(0, 3), rng.uniform(-0.4, 0.4)),
-            )
+    rng = random.Random(11)
+    surfaces = [glass(f"Glass {number}", color, 1.5) for number, color in enumerate(COLORS)]
+    for number in range(30):
+        surface = surfaces[number % len(surfaces)]
+        radius, angle = 0.043 * math.sqrt(rng.uniform(0.0, 1.0)), rng.uniform(0.0, math.tau)
+        place = (radius * math.cos(angle), rng.uniform(0.311, 0.334), radius * math.sin(angle))
+        if number % 4:
+            size = rng.uniform(0.005, 0.0095)
+            shard = block(f"Shard {number}", (-size, -0.0016, -1.7 * size), (size, 0.0016, 1.7 * size), surface, 0.0007)
+            shard.location = place
+            shard.rotation_euler = (rng.uniform(-0.35, 0.35), rng.uniform(0, 3), rng.uniform(-0.35, 0.35))
         else:
-            ball(f"Bead {number}", (x, y, z), rng.uniform(0.005, 0.008), surface, 24)
-    light(
-        "SPOT",
-        "Lamp",
-        (0.10, 0.20, 0.16),
-        (0.0, 0.34, 0.0),
-        3.0,
-        (1.0, 0.95, 0.88),
-        shadow_soft_size=0.003,
-        spot_size=math.radians(40),
-    )
-    light(
-        "SPOT",
-        "Second Lamp",
-        (-0.14, 0.24, 0.10),
-        (0.0, 0.34, 0.0),
-        1.6,
-        (0.85, 0.92, 1.0),
-        shadow_soft_size=0.003,
-        spot_size=math.radians(40),
-    )
-    color_world(scene, (0.8, 0.85, 1.0), 0.12)
-    camera((0.0, -0.02, 0.0), (0.0, 0.34, 0.0), 24.0)
-    set_up(scene, width=480, height=480, bounces=16)
+            ball(f"Bead {number}", place, rng.uniform(0.0045, 0.008), surface, 24)
+    for name, place, watts, color in (
+        ("Lamp", (0.13, 0.22, 0.15), 3.0, (1.0, 0.93, 0.82)),
+        ("Second Lamp", (-0.17, 0.24, 0.05), 1.8, (0.80, 0.90, 1.0)),
+    ):
+        light(
+            "SPOT",
+            name,
+            place,
+            (0.0, 0.34, 0.0),
+            watts,
+            color,
+            shadow_soft_size=0.002,
+            spot_size=math.radians(46),
+            spot_blend=0.6,
+        )
+    color_world(scene, (0.75, 0.85, 1.0), 0.14)
+    camera((0.0, -0.02, 0.0), (0.0, 0.34, 0.0), 26.0)
+    set_up(scene, width=640, height=640, bounces=16, look="AgX - Punchy", exposure=1.2)
 
 
 if __name__ == "__main__":

@@ -34,27 +34,59 @@ def brilliant(name, width, surface, place, turn, tilt=0.0, sides=16):
 
 
 def build(scene):
-    plate("Table", 0.0, 0.0, 0.6, 0.5, 0.0, varnished("Slate", (0.42, 0.40, 0.41), 0.4))
-    gold = metal("Gold", (1.0, 0.74, 0.34), 0.04)
-    band = [(0.0098, 0.0), (0.0105, 0.0004), (0.0109, 0.0025), (0.0105, 0.0046), (0.0098, 0.0050), (0.0094, 0.0025)]
-    ring = lathe("Ring", band, gold, 192)
-    ring.location = (0.006, 0.004, 0.0002)
+    plate("Table", 0.0, 0.0, 0.6, 0.5, 0.0, varnished("Porcelain", (0.40, 0.35, 0.31), 0.5))
+    # Straight inside, where it is to focus; edges of their own keep it so where normals are smooth.
+    outside = ((0.0098, 0.0), (0.0102, 0.0004), (0.0105, 0.0022), (0.0102, 0.0040), (0.0098, 0.0044))
+    band = [*outside, (0.0096, 0.0042), (0.0096, 0.0040), (0.0096, 0.0004), (0.0096, 0.0002)]
+    ring = lathe("Ring", band, metal("Gold", (1.0, 0.70, 0.30), 0.0), 192)
+    ring.location = (0.005, 0.003, 0.0001)
     rest = math.radians(41)
     stones = (
-        ("Diamond", (1.0, 1.0, 1.0), 2.418, 0.0105, (-0.016, -0.006), 0.4),
-        ("Sapphire", (0.25, 0.42, 0.98), 1.768, 0.0080, (0.022, -0.011), 1.3),
-        ("Ruby", (0.98, 0.16, 0.24), 1.766, 0.0070, (-0.004, -0.017), 2.2),
-        ("Emerald", (0.20, 0.88, 0.46), 1.58, 0.0075, (-0.026, 0.011), 2.9),
+        ("Diamond", (1.0, 1.0, 1.0), 2.418, 55.0, 0.0110, (-0.0150, -0.0050), 0.4),
+        ("Sapphire", (0.22, 0.40, 0.98), 1.768, 72.0, 0.0080, (0.0200, -0.0095), 1.3),
+        ("Ruby", (0.98, 0.14, 0.24), 1.766, 72.0, 0.0070, (-0.0020, -0.0155), 2.2),
+        ("Emerald", (0.16, 0.90, 0.44), 1.58, 72.0, 0.0078, (-0.0235, 0.0085), 2.9),
     )
-    for name, color, index, width, (x, y), turn in stones:
+    for name, color, index, abbe, width, (x, y), turn in stones:
         height = 0.5 * width * (0.86 * math.cos(rest) - 0.0) * 0.80
-        brilliant(name, width, glass(name, color, index), (x, y, height), turn, rest)
-    light("SPOT", "Left Lamp", (-0.16, 0.10, 0.20), (0.0, 0.0, 0.0), 0.8, (1.0, 0.93, 0.82), shadow_soft_size=0.004,
-          spot_size=math.radians(24), spot_blend=0.4)  # fmt: skip
-    light("SPOT", "Right Lamp", (0.20, 0.06, 0.16), (0.0, 0.0, 0.0), 0.45, (0.85, 0.92, 1.0), shadow_soft_size=0.004,
-          spot_size=math.radians(24), spot_blend=0.4)  # fmt: skip
-    color_world(scene, (0.6, 0.65, 0.75), 0.10)
-    camera((0.004, -0.088, 0.066), (-0.002, -0.003, 0.003), 66.0)
+        surface = glass(name, color, index)
+        surface.rppm.use_dispersion, surface.rppm.abbe_number = True, abbe
+        brilliant(name, width, surface, (x, y, height), turn, rest)
+    light(
+        "SPOT",
+        "Left Lamp",
+        (-0.21, -0.03, 0.17),
+        (0.0, -0.002, 0.0),
+        2.6,
+        (1.0, 0.90, 0.76),
+        shadow_soft_size=0.0025,
+        spot_size=math.radians(25),
+        spot_blend=1.0,
+    )
+    light(
+        "SPOT",
+        "Right Lamp",
+        (0.20, 0.14, 0.20),
+        (0.0, -0.002, 0.0),
+        0.55,
+        (0.72, 0.85, 1.0),
+        shadow_soft_size=0.0025,
+        spot_size=math.radians(25),
+        spot_blend=1.0,
+    )
+    light(
+        "AREA",
+        "Soft Box",
+        (0.05, 0.10, 0.22),
+        (0.0, 0.0, 0.0),
+        0.06,
+        (1.0, 1.0, 1.0),
+        shape="RECTANGLE",
+        size=0.20,
+        size_y=0.06,
+    )
+    color_world(scene, (0.6, 0.65, 0.75), 0.05)
+    camera((0.002, -0.092, 0.086), (-0.0005, -0.0030, 0.0012), 74.0)
     set_up(scene, bounces=12)
 
 

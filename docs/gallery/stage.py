@@ -30,8 +30,11 @@ __all__ = [
     "plate",
     "save",
     "set_up",
+    "slit",
     "sun",
     "torus",
+    "varnished",
+    "wood",
 ]  # fmt: skip
 
 
@@ -53,6 +56,28 @@ def metal(name, color, roughness=0.05):
 def varnished(name, color, roughness=0.15):
     """A plastic or varnished surface."""
     made, _ = material(name, "ShaderNodeBsdfPrincipled", Base_Color=(*color, 1), Roughness=roughness)
+    return made
+
+
+def wood(name, dark, light, roughness=0.35, turn=0.0, scale=1.0):
+    """Varnished wood whose grain runs along X, or so many degrees beside it; scale: 1 for a table of 2 m."""
+    made, shader = material(name, "ShaderNodeBsdfPrincipled", Roughness=roughness)
+    tree = made.node_tree
+    place, grain, noise, colors = (
+        tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "Mapping", "TexNoise", "ValToRGB")
+    )
+    grain.inputs["Rotation"].default_value[2] = math.radians(turn)
+    grain.inputs["Scale"].default_value = (1.6 * scale, 26.0 * scale, 1.0)
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 1.0, 5.0
+    for stop, position, color in zip(colors.color_ramp.elements, (0.32, 0.68), (dark, light)):
+        stop.position, stop.color = position, (*color, 1)
+    for output, socket in (
+        (place.outputs["Object"], grain.inputs["Vector"]),
+        (grain.outputs["Vector"], noise.inputs["Vector"]),
+        (noise.outputs[0], colors.inputs[0]),
+        (colors.outputs["Color"], shader.inputs["Base Color"]),
+    ):
+        tree.links.new(output, socket)
     return made
 
 
@@ -91,6 +116,14 @@ def light(kind, name, place, target, watts, color=(1.0, 1.0, 1.0), **values):
 def sun(direction, strength, color=(1.0, 0.95, 0.86)):
     """The sun as small as it is, shining in a direction."""
     return light("SUN", "Sun", (0, 0, 5), Vector((0, 0, 5)) + Vector(direction), strength, color, angle=0.0093)
+
+
+def slit(name, place, direction, watts, color, width, height, reach, spread=0.5):
+    """A lamp whose flat beam slides along the floor: a line of light of one brightness, so many meters long."""
+    along = Vector((*direction, 0.0)).normalized()
+    start = Vector((*place, 0.51 * height))
+    return light("AREA", name, start, start + along * reach - Vector((0, 0, height)), watts, color,
+                 shape="RECTANGLE", size=width, size_y=height, spread=math.radians(spread))  # fmt: skip
 
 
 def plate(name, x, y, width, depth, z, surface):
@@ -153,12 +186,13 @@ def smooth_line(points, steps=8):
     return [*line, points[-1]]
 
 
-def set_up(scene, width=640, height=400, bounces=8, photons=0):
-    """How the picture is rendered, the same by Cycles where it is compared."""
+def set_up(scene, width=960, height=540, bounces=8, look="AgX - Medium High Contrast", exposure=0.0):
+    """How the picture is rendered, with as many bounces by Cycles, which else keeps Blender's own settings."""
     set_up_pictures(scene)
     scene.render.resolution_x, scene.render.resolution_y = width, height
-    scene.rppm.samples, scene.rppm.photons = 512, photons
+    scene.view_settings.look, scene.view_settings.exposure = look, exposure
+    scene.rppm.samples, scene.rppm.use_denoising = 512, True
     scene.rppm.max_camera_bounces = scene.rppm.max_photon_bounces = bounces
     scene.cycles.max_bounces = scene.cycles.transmission_bounces = scene.cycles.glossy_bounces = bounces
     scene.cycles.diffuse_bounces = bounces
-    scene.cycles.blur_glossy = scene.cycles.sample_clamp_indirect = 0.0
+    scene.cycles.use_denoising = True

@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes wine_glasses.blend: two glasses of wine on a table in the low sun."""
+"""Makes wine_glasses.blend: two glasses of wine in the last sun, which comes from behind them."""
 
-from stage import Vector, camera, color_world, diffuse, glass, lathe, plate, save, set_up, smooth_line, sun
+import math
 
-OUTER = ((0.0, 0.0), (0.034, 0.0), (0.035, 0.0015), (0.02, 0.005), (0.006, 0.010), (0.004, 0.03), (0.004, 0.075),
-         (0.010, 0.088), (0.030, 0.105), (0.041, 0.135), (0.040, 0.170), (0.034, 0.205))  # fmt: skip
-INNER = ((0.0328, 0.205), (0.0386, 0.170), (0.0396, 0.135), (0.0285, 0.1065), (0.009, 0.091), (0.0, 0.0895))
-LEVEL = 0.142
+from stage import Vector, camera, color_world, glass, lathe, light, plate, save, set_up, smooth_line, wood
+
+STEM = -0.030
+OUTER = (
+    (0.0, 0.0), (0.034, 0.0), (0.035, 0.0015), (0.02, 0.005), (0.006, 0.010), (0.004, 0.025), (0.004, 0.075 + STEM),
+    (0.010, 0.088 + STEM), (0.030, 0.105 + STEM), (0.043, 0.135 + STEM), (0.042, 0.165 + STEM), (0.035, 0.205 + STEM),
+)  # fmt: skip
+INNER = (
+    (0.0338, 0.205 + STEM), (0.0406, 0.165 + STEM), (0.0416, 0.135 + STEM), (0.0285, 0.1065 + STEM),
+    (0.009, 0.091 + STEM), (0.0, 0.0895 + STEM),
+)  # fmt: skip
+LEVEL = 0.142 + STEM
 GAP = 0.0003
 
 
@@ -23,13 +31,35 @@ def wine_glass(place, wine_color):
 
 
 def build(scene):
-    plate("Table", 0.0, 0.1, 2.4, 1.6, 0.0, diffuse("Cloth", (0.82, 0.79, 0.74)))
-    wine_glass(Vector((-0.055, 0.01, 0.0)), (0.62, 0.05, 0.09))
-    wine_glass(Vector((0.075, 0.075, 0.0)), (0.98, 0.86, 0.42))
-    sun((0.62, -0.56, -0.52), 6.0, (1.0, 0.86, 0.66))
-    color_world(scene, (0.45, 0.58, 0.85), 0.35)
-    camera((0.06, -0.62, 0.40), (0.065, -0.025, 0.075), 46.0)
-    set_up(scene, bounces=12)
+    oak = wood("Oak", (0.20, 0.115, 0.06), (0.42, 0.29, 0.17), 0.4, 24.0, 2.5)
+    plate("Table", 0.0, 0.6, 6.0, 4.0, 0.0, oak)
+    wine_glass(Vector((-0.085, 0.0, 0.0002)), (0.88, 0.10, 0.13))
+    wine_glass(Vector((0.060, 0.085, 0.0002)), (1.0, 0.88, 0.42))
+    light(
+        "SPOT",
+        "Low Sun",
+        (-1.40, 1.55, 1.95),
+        (0.06, -0.05, 0.0),
+        620.0,
+        (1.0, 0.82, 0.60),
+        shadow_soft_size=0.012,
+        spot_size=math.radians(30),
+        spot_blend=1.0,
+    )
+    light(
+        "AREA",
+        "Window",
+        (1.0, 0.5, 0.6),
+        (0.0, 0.0, 0.1),
+        7.0,
+        (0.55, 0.72, 1.0),
+        shape="RECTANGLE",
+        size=0.4,
+        size_y=1.0,
+    )
+    color_world(scene, (0.45, 0.58, 0.85), 0.06)
+    camera((0.06, -0.66, 0.35), (0.035, -0.050, 0.058), 42.0)
+    set_up(scene, bounces=12, exposure=-0.35)
 
 
 if __name__ == "__main__":
