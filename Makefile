@@ -95,9 +95,10 @@ docs-version: docs-tools ## Keep the site of this version beside those of others
 	NO_MKDOCS_2_WARNING=1 .venv/bin/mike --quiet deploy --config-file tools/site/mkdocs.yml --update-aliases $(VERSION) latest
 	.venv/bin/mike set-default --config-file tools/site/mkdocs.yml latest
 
-docs-images: setup ## Render the pictures of docs/gallery.md, SECONDS_EACH of the processor for each engine (GALLERY="--only prism --again")
+docs-images: setup ## Render the pictures of the pages, SECONDS_EACH of the processor for each engine (GALLERY="--only prism --again")
 	.venv/bin/python tools/gallery/render.py --seconds $(SECONDS_EACH) $(GALLERY)
 	.venv/bin/python tools/gallery/render.py --films $(GALLERY)
+	.venv/bin/python tools/setting_pairs.py
 
 pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
 	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
