@@ -186,6 +186,14 @@ void main() {
         && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
 #ifdef MATERIAL_SUBSURFACE
+#ifdef ROUND_SHAPES
+    // Rays do not see strands and points from within; Cycles loses what goes there.
+    if (instance.shape != SHAPE_SURFACE && largest(material_subsurface.weight) > 0.0) {
+        add_diffuse_parts(builder, material_subsurface.weight, vec3(0.0),
+                          unpack_unit_vector(material_subsurface.normal), 0u);
+        material_subsurface.weight = vec3(0.0);
+    }
+#endif
     hold_subsurface(builder);
 #endif
 #ifdef MATERIAL_AOVS
