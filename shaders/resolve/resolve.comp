@@ -68,6 +68,9 @@ Surface surface_at(Ray ray, Hit hit, uint flags) {
                 : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
+#ifdef ROUND_SHAPES
+    make_round(surface);
+#endif
     return surface;
 }
 
@@ -183,6 +186,14 @@ void main() {
         && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
 #ifdef MATERIAL_SUBSURFACE
+#ifdef ROUND_SHAPES
+    // Rays do not see strands and points from within; Cycles loses what goes there.
+    if (instance.shape != SHAPE_SURFACE && largest(material_subsurface.weight) > 0.0) {
+        add_diffuse_parts(builder, material_subsurface.weight, vec3(0.0),
+                          unpack_unit_vector(material_subsurface.normal), 0u);
+        material_subsurface.weight = vec3(0.0);
+    }
+#endif
     hold_subsurface(builder);
 #endif
 #ifdef MATERIAL_AOVS
