@@ -42,6 +42,11 @@ uvec3 walk_counts = uvec3(0u); // steps, triangle tests, entries
 void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
     vec4 vertex0 = triangle_vertex(3u * triangle);
+#ifdef TRACES_INSTANCES
+    if (traced_instance != ALL_INSTANCES) {
+        if (attributes[triangle].instance != traced_instance) return;
+    } else
+#endif
     if (walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
 #ifdef SHADOW_LINKING
     if (walk.any_hit && !has_set(shadow_sets, shadow_set_of(vertex0.w))) return;
