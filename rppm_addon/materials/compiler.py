@@ -7,6 +7,7 @@ constants in a buffer, so graphs that differ in those only have the same text an
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -47,12 +48,33 @@ class Resource:
     """Of an attribute that is not the node's own."""
 
 
+@dataclass(frozen=True)
+class NodeRayCounts:
+    """What nodes of a text ask of rays."""
+
+    places: int = 0
+    """Of what rays find, for each hit."""
+    levels: int = 0
+    """How many times rays are traced: those of a node may depend on what those of another found."""
+    samples: int = 0
+    """Rays of a place, at most."""
+
+    def united(self, other: "NodeRayCounts") -> "NodeRayCounts":
+        """Of graphs that have their text in common."""
+        return NodeRayCounts(self.places, self.levels, max(self.samples, other.samples))
+
+
+MOST_NODE_RAYS = 128
+"""Samples of a node, as in Blender."""
+
+
 @dataclass
 class CompiledGraph:
     """GLSL for a structure of graphs, and the constants of one graph."""
 
     text: str
     constants: list[float | Resource] = field(default_factory=list)
+    rays: NodeRayCounts = NodeRayCounts()
 
 
 _DEEPEST_BUMP = 2
@@ -74,20 +96,30 @@ NEUTRAL_TEXT = """void evaluate_material(Surface surface, uint first, inout Clos
 class _Scope:
     """Statements of one GLSL function, each output of a node computed once."""
 
-    def __init__(self, depth: int = 0) -> None:
+    def __init__(self, depth: int = 0, ray_level: int = 0) -> None:
         self.depth = depth
         """How many heights of bumps lie around it."""
+        self.ray_level = ray_level
+        """Of the first rays that its nodes ask for: before, those that its normal depends on are traced."""
         self.lines: list[str] = []
         self.known: dict[int, dict[str, str]] = {}
 
 
 class _Compiler:
     def __init__(
-        self, graph: NodeGraph, aovs: Sequence[RenderPass], abbe_number: float | None, on_round_shapes: bool
+        self,
+        graph: NodeGraph,
+        aovs: Sequence[RenderPass],
+        abbe_number: float | None,
+        *,
+        on_round_shapes: bool,
+        traces_rays: bool,
     ) -> None:
         self._graph = graph
         self._on_round_shapes = on_round_shapes
         self._abbe_number = abbe_number
+        self._traces_rays = traces_rays
+        self._rays = NodeRayCounts()
         self._aovs = aovs
         self._constants: list[float | Resource] = []
         self._places: dict[tuple[int, str], int] = {}
@@ -98,7 +130,7 @@ class _Compiler:
         self._calls = 0
 
     def compile(self) -> CompiledGraph:
-        scope = _Scope()
+        scope = _Scope(ray_level=self._level_of_normal)
         text = '#include "materials/round_shapes.glsl"\n' if self._on_round_shapes else ""
         if self._abbe_number is not None and disperses(self._graph):
             text += '#include "materials/dispersion.glsl"\n'
@@ -123,7 +155,7 @@ class _Compiler:
             + "".join(f"    {line}\n" for line in in_pieces(scope.lines))
             + "}\n"
         )
-        return CompiledGraph(text + aovs, self._constants)
+        return CompiledGraph(text + aovs, self._constants, self._rays if self._traces_rays else NodeRayCounts())
 
     def compile_displacement(self) -> CompiledGraph:
         assert self._graph.displacement is not None
@@ -133,13 +165,14 @@ class _Compiler:
         return CompiledGraph("".join([*self._includes(), *self._functions, function]), self._constants)
 
     def _includes(self) -> list[str]:
-        return [f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources)]
+        rays = ['#include "materials/node_rays.glsl"\n'] if self._rays.places and self._traces_rays else []
+        return rays + [f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources)]
 
     def _aov_function(self) -> str:
         """The function that writes the passes of AOV Output nodes, and what it needs; nothing of a graph that has
         none."""
         stride = sum(len(entry.channels) for entry in self._aovs)
-        scope, written, place = _Scope(), list[str](), 0
+        scope, written, place = _Scope(ray_level=self._level_of_normal), list[str](), 0
         if self._graph.normal is not None:
             scope.lines.append("surface.normal = material_normal(surface, first);")
         for entry in self._aovs:
@@ -307,6 +340,8 @@ class _Compiler:
         for what in kind.resources:
             place = self._place((index, f"<{what}>"), [Resource(what, index)])
             arguments.append(f"constant_index(first + {place}u)")
+        if kind.traces_rays:
+            arguments += self._ray_arguments(scope, index)
         for name, (socket, default) in kind.inputs.items():
             arguments.append(self._input(scope, index, name, socket, default))
         values = {
@@ -316,6 +351,29 @@ class _Compiler:
             scope.lines.append(f"{kind.outputs[name].glsl} {value};")
         scope.lines.append(f"{function}({', '.join([*arguments, *values.values()])});")
         scope.known[index] = values
+
+    @cached_property
+    def _ray_depths(self) -> list[int]:
+        """By node, how many nodes that trace rays follow one from another up to it."""
+        depths: list[int] = []
+        for index, node in enumerate(self._graph.nodes):
+            links = [link.node for link in node.inputs.values() if isinstance(link, Link)]
+            below = max((depths[link] for link in links if 0 <= link < index), default=0)
+            depths.append(below + (node.kind in KINDS and KINDS[node.kind].traces_rays))
+        return depths
+
+    @property
+    def _level_of_normal(self) -> int:
+        normal = self._graph.normal
+        return 0 if normal is None or not 0 <= normal.node < len(self._ray_depths) else self._ray_depths[normal.node]
+
+    def _ray_arguments(self, scope: _Scope, index: int) -> list[str]:
+        """The place of what a node's rays find, and its level."""
+        place, level = self._rays.places, scope.ray_level + self._ray_depths[index] - 1
+        samples = self._graph.nodes[index].inputs.get("samples", 1.0)
+        count = int(np.clip(_finite(samples), 1, MOST_NODE_RAYS)) if isinstance(samples, (int, float)) else 1
+        self._rays = NodeRayCounts(place + 1, max(self._rays.levels, level + 1), max(self._rays.samples, count))
+        return [f"{place}u", f"{level}u"]
 
     def _bump(self, scope: _Scope, index: int) -> None:
         """The height is a function of the place, which is asked at three of them."""
@@ -329,7 +387,7 @@ class _Compiler:
             return
         function = f"height_{number}_{scope.depth}"
         if (index, scope.depth) not in self._heights:
-            inner = _Scope(scope.depth + 1)
+            inner = _Scope(scope.depth + 1, scope.ray_level)
             height = self._input(inner, index, "height", *kind.inputs["height"])
             self._functions.append(_function("float", function, inner.lines, height))
             self._heights[index, scope.depth] = function
@@ -391,16 +449,17 @@ def compile_graph(
     aovs: Sequence[RenderPass] = (),
     abbe_number: float | None = None,
     on_round_shapes: bool = False,
+    traces_rays: bool = True,
 ) -> CompiledGraph:
     """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
     ``abbe_number``: by which its glass disperses light, None where it does not; ``on_round_shapes``: whether it is on
-    strands or points.
+    strands or points; ``traces_rays``: whether nodes may, which those of worlds and lights do not.
 
     Raises GraphError when nodes, options or links are unknown.
     """
-    return _Compiler(graph, aovs, abbe_number, on_round_shapes).compile()
+    return _Compiler(graph, aovs, abbe_number, on_round_shapes=on_round_shapes, traces_rays=traces_rays).compile()
 
 
 def compile_displacement(graph: NodeGraph) -> CompiledGraph:
     """The GLSL of what moves vertices, ``material_displacement``, and its constants. Raises as compile_graph does."""
-    return _Compiler(graph, (), None, False).compile_displacement()
+    return _Compiler(graph, (), None, on_round_shapes=False, traces_rays=False).compile_displacement()

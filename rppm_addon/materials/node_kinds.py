@@ -30,7 +30,8 @@ class NodeKind:
 
     The function takes, in this order: ``Surface surface`` if ``surface`` says so; of shader nodes ``inout
     ClosureBuilder builder, float weight``; an int for each option, the place of its value in the option's tuple
-    (always a literal, so that the compiler folds it); a uint for each resource; the inputs; ``out`` the outputs.
+    (always a literal, so that the compiler folds it); a uint for each resource; of nodes that trace rays a uint for the
+    place of what they find and one for its level; the inputs; ``out`` the outputs.
 
     Inputs and outputs are named as the identifiers of Blender's sockets, in lower case with underscores for blanks;
     options as the properties of its nodes, with Blender's own values.
@@ -46,6 +47,9 @@ class NodeKind:
     """What the node needs besides: "table", where its table starts in material_data; "image", the number of its
     image; "attribute", the number of its mesh attribute."""
     surface: bool = False
+    traces_rays: bool = False
+    """Whether rays that it asks for are traced before its value is known (shaders/materials/node_rays.glsl). Such a
+    kind has an input "samples": how many rays."""
     fallbacks: dict[str, str] = field(default_factory=dict)
     """What is rendered in place of the node where an option has a value, or "" for any: users are told."""
     function_option: str = ""

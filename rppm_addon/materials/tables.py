@@ -18,7 +18,15 @@ from ..scene.passes import RenderPass, aov_passes
 from ..scene.scene import Scene
 from ..scene.sharing import same_members
 from . import albedo_tables, dispersion
-from .compiler import NEUTRAL_TEXT, CompiledGraph, GraphError, Resource, compile_displacement, compile_graph
+from .compiler import (
+    NEUTRAL_TEXT,
+    CompiledGraph,
+    GraphError,
+    NodeRayCounts,
+    Resource,
+    compile_displacement,
+    compile_graph,
+)
 from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LightSurface
 from .records import IMAGE_ENTRY, MATERIAL, MOST_MEDIA, TexelFormat
@@ -88,6 +96,8 @@ class MaterialTables(BufferSet):
         """By index, those materials that move vertices."""
         self.users: dict[str, list[str]] = {}
         """By text, the names of the materials that it belongs to."""
+        self.rays: dict[str, NodeRayCounts] = {}
+        """By text, what its nodes ask of rays."""
         self._others: dict[int, tuple[str, int, str]] = {}
         self._images: list[Image] = []
         self._scene: Scene | None = None
@@ -107,15 +117,16 @@ class MaterialTables(BufferSet):
         self.default_material = len(scene.materials)
         materials = [*scene.materials, default_material()]
         aovs = aov_passes(scene.settings.aovs)
-        compiled, self.emits, self.users = [], [], {}
+        compiled, self.emits, self.users, self.rays = [], [], {}, {}
         for material in materials:
             owner = f'Material "{material.name}"'
             graph, emission = self._compile(
-                material.graph, owner, "it is gray", aovs, material.abbe_number, material.on_round_shapes
+                material.graph, owner, "it is gray", aovs, material.abbe_number, on_round_shapes=material.on_round_shapes
             )
             compiled.append(graph)
             self.emits.append(emission)
             self.users.setdefault(graph.text, []).append(material.name)
+            self.rays[graph.text] = graph.rays.united(self.rays.get(graph.text, graph.rays))
         self.programs = list(dict.fromkeys(graph.text for graph in compiled))
         number = {text: index for index, text in enumerate(self.programs)}
         layout = _Layout(scene.images)
@@ -135,7 +146,7 @@ class MaterialTables(BufferSet):
         self._others = {}
         for owner, other in others:
             if other is not None:
-                compiled_graph, _ = self._compile(other, owner, _DARK)
+                compiled_graph, _ = self._compile(other, owner, _DARK, traces_rays=False)
                 self._others[id(other)] = compiled_graph.text, layout.add(other, compiled_graph), owner
         self.attribute_names = list(layout.attributes)
         self._buffers["MaterialData"].upload(layout.data())
@@ -186,10 +197,15 @@ class MaterialTables(BufferSet):
         remedy: str,
         aovs: Sequence[RenderPass] = (),
         abbe_number: float | None = None,
+        *,
         on_round_shapes: bool = False,
+        traces_rays: bool = True,
     ) -> tuple[CompiledGraph, Emits]:
         try:
-            return compile_graph(graph, aovs, abbe_number, on_round_shapes), emits(graph)
+            compiled = compile_graph(
+                graph, aovs, abbe_number, on_round_shapes=on_round_shapes, traces_rays=traces_rays
+            )
+            return compiled, emits(graph)
         except GraphError as error:
             self._scene.warn(f"{owner}: {error}; {remedy}")
             return CompiledGraph(NEUTRAL_TEXT), Emits.NOTHING

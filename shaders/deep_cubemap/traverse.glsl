@@ -45,6 +45,11 @@ uvec3 walk_counts = uvec3(0u); // steps, triangle tests, entries
 void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
     vec4 vertex0 = triangle_vertex(3u * triangle);
+#ifdef TRACES_INSTANCES
+    if (traced_instance != ALL_INSTANCES) {
+        if (attributes[triangle].instance != traced_instance) return;
+    } else
+#endif
     if (walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
 #ifdef ONE_SIDED_TRIANGLES
     vec3 vertex1 = triangle_vertex(3u * triangle + 1u).xyz, vertex2 = triangle_vertex(3u * triangle + 2u).xyz;

@@ -75,17 +75,9 @@ void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3
     add_lobe(builder, mirror_lobe(at, weight * color * factor));
 }
 
-// What a film reflects on a base, for the angle of the viewer. base: reflectances of the base at normal incidence, or
-// where the first is negative, Fresnel's between the indices.
-vec3 film_reflectance(Microfacets at, Film film, float before, float behind, vec3 base) {
-    return thin_film_reflectance(at.cosine, film.thickness, before, film.ior, behind, base);
-}
-
-// Under a film a metal is taken for a dielectric that reflects as much: f0 at normal incidence.
-vec3 metal_below_film(vec3 f0, Film film) {
-    vec3 root = sqrt(clamp(f0, 0.0, 0.99)), index = (1.0 + root) / (1.0 - root),
-         amplitude = (index - film.ior) / (index + film.ior);
-    return amplitude * amplitude;
+// What a film reflects, for the angle of the viewer.
+vec3 film_reflectance(Microfacets at, Film film, float before, float behind, FilmMetal metal) {
+    return thin_film_reflectance(at.cosine, film.thickness, before, film.ior, behind, metal);
 }
 
 vec3 covered_metal(Microfacets at, vec3 reflectance) {
@@ -126,7 +118,7 @@ MicrofacetLobe covered_glass_lobe(Microfacets at, vec3 reflected, vec3 passed, v
 }
 
 vec3 glass_film_reflectance(ClosureBuilder builder, Microfacets at, Film film, float ior) {
-    return film_reflectance(at, film, builder.backfacing ? ior : 1.0, builder.backfacing ? 1.0 : ior, vec3(-1.0));
+    return film_reflectance(at, film, builder.backfacing ? ior : 1.0, builder.backfacing ? 1.0 : ior, NO_METAL);
 }
 
 void add_refraction(inout ClosureBuilder builder, Microfacets at, vec3 weight, float ior) {

@@ -66,8 +66,9 @@ Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, fl
     for (int k = 0; k < count; ++k) {
         bool on_metal = k == 0, on_glass = k == 1, leaving = on_glass && builder.backfacing;
         float before = leaving ? p.ior : 1.0, behind = on_metal || leaving ? 1.0 : on_glass ? p.ior : base_ior;
-        vec3 below = on_metal ? metal_below_film(min(p.base_color, 1.0), p.film) : vec3(-1.0);
-        vec3 reflectance = film_reflectance(at, p.film, before, behind, below);
+        FilmMetal metal = metal_below_film(min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.film.ior);
+        if (!on_metal) metal = NO_METAL;
+        vec3 reflectance = film_reflectance(at, p.film, before, behind, metal);
         if (on_metal) films.metal = reflectance;
         else if (on_glass) films.glass = reflectance;
         else films.base = reflectance;

@@ -20,10 +20,10 @@ void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out
     float within2 = 1.0 - (1.0 - cosine * cosine) / (ior * ior);
     vec3 outside = tinted_dielectric(cosine, ior, tint), inside = outside;
     if (film.thickness > THINNEST_FILM) {
-        outside = thin_film_reflectance(cosine, film.thickness, 1.0, film.ior, ior, vec3(-1.0));
+        outside = thin_film_reflectance(cosine, film.thickness, 1.0, film.ior, ior, NO_METAL);
         // As in Cycles with indices relative to the sheet's, by which the film seems thinner from within.
         inside = thin_film_reflectance(sqrt(max(within2, 0.0)), film.thickness, 1.0, film.ior / ior, 1.0 / ior,
-                                       vec3(-1.0));
+                                       NO_METAL);
     }
     vec3 kept = within2 > 0.0 ? pow(color, vec3(inversesqrt(within2))) : vec3(0.0), returned = inside * kept;
     passed = kept * (1.0 - outside) * (1.0 - inside) / max(1.0 - returned * returned, 1e-6);

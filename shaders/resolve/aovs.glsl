@@ -5,7 +5,12 @@
 // Of each path of a band the channels of all AOVs.
 layout(std430, binding = 14) buffer AovValues;
 
-void add_aov(uint at, float value) { aov_values[at] += value; }
+void add_aov(uint at, float value) {
+#ifdef NODE_RAYS
+    if (asks_rays()) return;
+#endif
+    aov_values[at] += value;
+}
 void add_aov(uint at, vec3 color) {
     add_aov(at, color.r);
     add_aov(at + 1u, color.g);

@@ -167,6 +167,9 @@ void main() {
 #ifdef LOBES_IN_MEMORY
     resolved_path = index;
 #endif
+#ifdef NODE_RAYS
+    path_of_node_rays = index;
+#endif
     uint flags = path_flags(index);
     Surface surface = surface_at(ray, hit, flags);
     uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
@@ -201,6 +204,9 @@ void main() {
     bool seen_first = parameters.path_kind == PATH_OF_CAMERA
         && (flags & (PATH_STRAIGHT | PATH_SURFACE_FOUND)) == PATH_STRAIGHT;
     if (seen_first && !unseen) evaluate_aovs(surface, materials[material].first_constant, index);
+#endif
+#ifdef NODE_RAYS
+    if (asks_rays()) return;
 #endif
     hold_out_and_catch(surface, instance, unseen, builder);
     if (!shines_there(surface, instance, ray.source_triangle)) builder.closure.emission = vec3(0.0);

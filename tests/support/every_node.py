@@ -35,12 +35,10 @@ def graph_of(names: list[str]) -> NodeGraph:
     return graph
 
 
-def programs() -> dict[str, str]:
-    """The text of a graph for each file of kinds, and of one whose light is dispersed."""
-    texts = {
-        source: compile_graph(graph_of([name for name, kind in KINDS.items() if kind.source == source])).text
-        for source in SOURCES
-    }
+def programs(traces_rays: bool = True) -> dict[str, str]:
+    """The text of a graph for each file of kinds, and of one whose light is dispersed; traces_rays: of a surface."""
+    graphs = {source: graph_of([name for name, kind in KINDS.items() if kind.source == source]) for source in SOURCES}
+    texts = {source: compile_graph(graph, traces_rays=traces_rays).text for source, graph in graphs.items()}
     return texts | {"dispersion": compile_graph(graph_of(["bsdf_glass", "bsdf_refraction"]), abbe_number=64.0).text}
 
 

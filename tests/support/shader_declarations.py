@@ -45,7 +45,9 @@ def _graphs_of(text: str) -> list[str]:
     """What the compiler of node graphs writes for a stage file with this text."""
     if GENERATED not in text:
         return [""]
-    return list((displacements() if "material_displacement" in text else programs()).values())
+    # Worlds and lights trace no rays.
+    texts = displacements() if "material_displacement" in text else programs(traces_rays="path_of_node_rays" in text)
+    return list(texts.values())
 
 
 def variants() -> list[Variant]:

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Node graphs to GLSL: what is part of the text, what is a constant, and what is refused."""
 
+import re
+
 import numpy as np
 import pytest
 from support.every_node import programs
 
 from rppm_addon.materials import compiler
-from rppm_addon.materials.compiler import GraphError, Resource, compile_graph
+from rppm_addon.materials.compiler import GraphError, NodeRayCounts, Resource, compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
 from rppm_addon.scene.passes import aov_passes
 
@@ -249,3 +251,50 @@ def test_aov_outputs_that_are_malformed_are_refused():
         graph.aovs = [AovOutput("Tint", color=color)]
         with pytest.raises(GraphError):
             compile_graph(graph, aov_passes(("Tint.RGBA",)))
+
+
+def occluded(*normals: str) -> NodeGraph:
+    """Ambient Occlusion about a chain of normals."""
+    graph = NodeGraph()
+    normal = None
+    for kind in normals:
+        inputs = {} if normal is None else {"normal": normal}
+        normal = graph.add(kind, "normal", **inputs)
+    inputs = {} if normal is None else {"normal": normal}
+    shade = graph.add("ambient_occlusion", "color", samples=5.0, **inputs)
+    graph.surface = graph.add("emission", "emission", color=shade)
+    return graph
+
+
+@pytest.mark.parametrize(
+    ("normals", "expected"),
+    [
+        ((), NodeRayCounts(1, 1, 5)),
+        (("bevel",), NodeRayCounts(2, 2, 5)),
+        (("bevel", "bump"), NodeRayCounts(2, 2, 5)),
+        (("bevel", "bump", "bevel"), NodeRayCounts(3, 3, 5)),
+    ],
+)
+def test_rays_that_depend_on_others_are_traced_after_them(normals, expected):
+    compiled = compile_graph(occluded(*normals))
+    assert compiled.rays == expected
+    assert '#include "materials/node_rays.glsl"' in compiled.text
+    calls = re.findall(r"node_(?:bevel|ambient_occlusion)\(.*", compiled.text)
+    levels = re.findall(r"(\d+)u, (\d+)u, ", "".join(calls))
+    assert levels == [(str(place), str(place)) for place in range(expected.places)]
+
+
+def test_nodes_about_a_normal_of_rays_ask_after_it():
+    """Bump that belongs to the surface itself changes the normal of all of its nodes."""
+    graph = occluded()
+    graph.normal = graph.add("bevel", "normal")
+    compiled = compile_graph(graph)
+    assert compiled.rays == NodeRayCounts(2, 2, 5)
+    assert "node_bevel(surface, 0u, 0u," in compiled.text
+    assert "node_ambient_occlusion(surface, 0, 0, 1u, 1u," in compiled.text
+
+
+def test_worlds_trace_no_rays():
+    compiled = compile_graph(occluded("bevel"), traces_rays=False)
+    assert compiled.rays == NodeRayCounts() and "node_rays.glsl" not in compiled.text
+    assert compile_graph(textured()).rays == NodeRayCounts()

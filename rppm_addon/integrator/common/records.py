@@ -33,6 +33,7 @@ class RandomStage(enum.IntEnum):
     WAVELENGTH = 10
     SUBSURFACE = 11
     SUBSURFACE_PHOTONS = 12
+    NODE_RAYS = 13
 
 
 Constants("RandomStages", STAGE=RandomStage)

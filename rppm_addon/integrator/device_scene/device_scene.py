@@ -107,6 +107,7 @@ class DeviceScene:
         is_near = np.linalg.norm(wanted - self._wanted_center) <= center_tolerance * self.geometry.radius
         if changes.geometry or changes.cubemap or not is_near:
             self._build_deep_cubemap()
+        self.resolve.trace_through(self.deep_cubemap)
         for text in itertools.chain(*self._warnings.values()):
             scene.warn(text)
         self._uploaded_scene = snapshot(scene)
@@ -134,6 +135,7 @@ class DeviceScene:
             self._build_parts(changes, iteration.photon_count, keep_learned=True)
         if changes.geometry:
             self._build_deep_cubemap()
+        self.resolve.trace_through(self.deep_cubemap)
         self._uploaded_scene = snapshot(self.scene)
 
     def _take(self, scene: Scene) -> None:

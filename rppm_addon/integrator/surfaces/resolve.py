@@ -13,13 +13,14 @@ from ...gl.context import Context
 from ...gl.programs import ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.sources import CompileError
-from ...materials.compiler import NEUTRAL_TEXT
+from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
 from ...scene.camera import Camera
 from ...scene.scene import Scene
 from ..common.living_paths import LivingPaths
-from ..common.records import CAMERA_PATH, PHOTON_PATH
+from ..common.records import CAMERA_PATH, CLOSURE, PHOTON_PATH
 from .geometry import Geometry
+from .node_rays import NodeRays, Traversal
 from .surface_attributes import SurfaceAttributes
 
 Record(
@@ -39,6 +40,9 @@ Record(
     orthographic="uint",
     pixel_size="float",
     has_adjoint_queries="uint",
+    ray_stride="uint",
+    ray_level="uint",
+    ray_levels="uint",
 )
 
 
@@ -65,6 +69,8 @@ _RANGE_SIZE = 8
 Constants("Ranges", RANGE_SIZE=_RANGE_SIZE)
 Constants("PathKinds", PATH_OF=_PathKind)
 _STAGE = "resolve/resolve.comp"
+_LOOKING_BACK = 64
+"""Tells the rays of nodes that are seen from where photons go from those of all segments."""
 
 
 def _inserts(text: str) -> dict[str, str]:
@@ -82,6 +88,7 @@ class Resolve(BufferSet):
     remedy = "lower the resolution or the photons per iteration"
     _order = StorageBuffer("hits by material", "uint")
     _surface_attributes = Part(SurfaceAttributes)
+    _node_rays = Part(NodeRays)
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
@@ -90,6 +97,10 @@ class Resolve(BufferSet):
         self._allocate = library.compute("resolve/allocate.comp")
         self._order_hits = library.compute("resolve/order.comp")
         self._programs: list[ComputeProgram] = []
+        self._ray_counts: list[NodeRayCounts] = []
+        self._ray_stride = 0
+        """What nodes ask of rays at a hit, at most."""
+        self._traversal: Traversal | None = None
         self._buffers: dict[str, moderngl.Buffer] = {}
         self._parameters: dict[str, object] = {}
 
@@ -113,6 +124,9 @@ class Resolve(BufferSet):
         for text in materials.programs:
             self._library.expect(_STAGE, _inserts(text))
         self._programs = [self._program(text, scene, materials) for text in materials.programs]
+        self._ray_counts = [materials.rays[text] for text in materials.programs]
+        self._ray_stride = max((counts.places for counts in self._ray_counts), default=0)
+        self._traversal = None
         self._surface_attributes.build(scene, geometry, materials.attribute_names)
         self._buffers = {
             "Triangles": geometry.triangles.buffer,
@@ -120,6 +134,10 @@ class Resolve(BufferSet):
             **self._surface_attributes.buffers,
             **materials.buffers,
         }
+
+    def trace_through(self, traversal: Traversal) -> None:
+        """Take what rays of nodes run through; from a build until then such nodes find nothing."""
+        self._traversal = traversal
 
     def look_from(self, camera: Camera, seed: int) -> None:
         """Take the camera that nodes may ask about, and the seed of random choices."""
@@ -176,6 +194,9 @@ class Resolve(BufferSet):
             "iteration": iteration,
             "segment": segment,
             "has_adjoint_queries": has_adjoint_queries,
+            "ray_stride": 0,
+            "ray_level": 0,
+            "ray_levels": 0,
             "path_kind": _PathKind.CAMERA if camera_paths else _PathKind.PHOTON if photon_paths else _PathKind.NONE,
         }
 
@@ -183,9 +204,30 @@ class Resolve(BufferSet):
         order = living.buffer if len(self._programs) == 1 else self._order_by_program(buffers, living)
         for number, program in enumerate(self._programs):
             arguments = 4 * (_RANGE_SIZE * number + 4)
-            program.run_indirect(
-                order, arguments, _blocks_of(program, {**buffers, "HitOrder": order}), {**parameters, "program": number}
-            )
+            ordered, of_program = {**buffers, "HitOrder": order}, {**parameters, "program": number}
+            if self._ray_counts[number].levels:
+                ordered["NodeRays"] = self._node_rays.require(closures.size // CLOSURE.size * self._ray_stride)
+                of_program |= self._trace_node_rays(program, arguments, ordered, of_program)
+            program.run_indirect(order, arguments, _blocks_of(program, ordered), of_program)
+
+    def _trace_node_rays(
+        self, program: ComputeProgram, arguments: int, buffers: dict[str, moderngl.Buffer], parameters: dict
+    ) -> dict[str, int]:
+        """Have the nodes of a program ask and be answered, level by level; returns what parameters then tell it."""
+        if self._traversal is None:
+            return {"ray_stride": 0}
+        counts = self._ray_counts[parameters["program"]]
+        told = {"ray_stride": self._ray_stride, "ray_levels": counts.levels}
+        traced = {name: parameters[name] for name in ("seed", "iteration", "program")}
+        traced["segment"] = parameters["segment"] + (_LOOKING_BACK if parameters["has_adjoint_queries"] else 0)
+        for level in range(counts.levels):
+            told["ray_level"] = level
+            program.run_indirect(buffers["HitOrder"], arguments, _blocks_of(program, buffers), {**parameters, **told})
+            self._node_rays.trace(
+                self._traversal, arguments, buffers, counts,
+                {**traced, "ray_stride": self._ray_stride, "ray_level": level},
+            )  # fmt: skip
+        return {**told, "ray_level": counts.levels}
 
     def _order_by_program(self, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> moderngl.Buffer:
         self._order.require_items(_RANGE_SIZE * len(self._programs) + living.most)

@@ -119,8 +119,21 @@ KINDS = {
     "displacement_height": NodeKind(
         "normals.glsl", inputs={"displacement": (VECTOR, 0.0)}, outputs={"height": FLOAT}, surface=True
     ),
-    "bevel": NodeKind("normals.glsl", inputs={"normal": (VECTOR, "normal")}, outputs={"normal": VECTOR}),
+    "bevel": NodeKind(
+        "ray_nodes.glsl",
+        inputs={"radius": (FLOAT, 0.05), "normal": (VECTOR, "normal"), "samples": (FLOAT, 4.0)},
+        outputs={"normal": VECTOR},
+        surface=True,
+        traces_rays=True,
+    ),
     "ambient_occlusion": NodeKind(
-        "normals.glsl", inputs={"color": (COLOR, 1.0)}, outputs={"color": COLOR, "ao": FLOAT}
+        "ray_nodes.glsl",
+        inputs={
+            "color": (COLOR, 1.0), "distance": (FLOAT, 1.0), "normal": (VECTOR, "normal"), "samples": (FLOAT, 16.0),
+        },
+        outputs={"color": COLOR, "ao": FLOAT},
+        options={"inside": BOOLEAN, "only_local": BOOLEAN},
+        surface=True,
+        traces_rays=True,
     ),
 }  # fmt: skip

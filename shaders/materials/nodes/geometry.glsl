@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes that tell about the place, the object and the path. Needs the camera members of the parameters.
 
-vec3 to_camera(vec3 p) { return (parameters.world_to_camera * vec4(p, 1.0)).xyz; }
+#include "common/differential_frame.glsl"
 
-// The two directions across a surface in which Cycles takes differences.
-void differential_frame(vec3 n, out vec3 x, out vec3 y) {
-    x = n.x != n.y || n.x != n.z ? n.zxy - n.yzx : vec3(n.z - n.y, n.x + n.z, -n.y - n.x);
-    x = normalize(x);
-    y = cross(n, x);
-}
+vec3 to_camera(vec3 p) { return (parameters.world_to_camera * vec4(p, 1.0)).xyz; }
 
 // Meters across what a pixel sees of a place that faces it.
 float pixel_width(Surface surface) {
     return parameters.pixel_size * (parameters.orthographic != 0u ? 1.0 : surface.ray_length);
+}
+
+// The same of a place that the camera sees itself: away from the middle of a picture pixels see less. As in Cycles, the
+// mean of what one pixel to the side and one upward turn the ray by.
+float seen_pixel_width(Surface surface) {
+    vec3 at = to_camera(surface.position);
+    if (parameters.orthographic != 0u || at.z == 0.0 || (surface.ray & RAY_CAMERA) == 0u) return pixel_width(surface);
+    vec2 slope2 = at.xy * at.xy / (at.z * at.z);
+    return pixel_width(surface) * dot(sqrt(1.0 + slope2), vec2(0.5)) / (1.0 + slope2.x + slope2.y);
 }
 
 void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object,
@@ -165,7 +169,7 @@ void node_wireframe(Surface surface, int pixel_size, float size, out float fac) 
         vec3 x, y;
         differential_frame(surface.geometric, x, y);
         vec2 along = vec2(dot(x, surface.viewer), dot(y, surface.viewer));
-        width *= pixel_width(surface) * dot(sqrt(max(1.0 - along * along, 0.0)), vec2(0.5));
+        width *= seen_pixel_width(surface) * dot(sqrt(max(1.0 - along * along, 0.0)), vec2(0.5));
     }
     fac = min(heights.x, min(heights.y, heights.z)) < 0.5 * width ? 1.0 : 0.0;
 }

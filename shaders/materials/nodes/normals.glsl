@@ -66,15 +66,6 @@ void node_bump(Surface surface, int invert, float strength, float distance, vec3
     normal = normalize(mix(normal_in, bumped, max(strength, 0.0)));
 }
 
-// Rounded edges would take rays of their own: the normal stays what it is.
-void node_bevel(vec3 normal_in, out vec3 normal) { normal = normal_in; }
-
-// As if nothing were near.
-void node_ambient_occlusion(vec3 color_in, out vec3 color, out float ao) {
-    color = color_in;
-    ao = 1.0;
-}
-
 // How far the surface is pushed out, in world space.
 void node_displacement(Surface surface, int space, float height, float midlevel, float scale, vec3 normal_in,
                        out vec3 displacement) {

@@ -109,7 +109,9 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
     }
     Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
     if (film.thickness > THINNEST_FILM) {
-        f0 = covered_metal(at, film_reflectance(at, film, 1.0, 1.0, metal_below_film(f0, film)));
+        FilmMetal metal = metal_below_film(f0, edge, film.ior);
+        if (fresnel_type == 0) metal = FilmMetal(max(ior, 1e-3), max(extinction, 0.0), f0, edge, false);
+        f0 = covered_metal(at, film_reflectance(at, film, 1.0, 1.0, metal));
         edge = vec3(1.0);
     }
     add_lobe(builder, metal_lobe(at, vec3(weight), f0, edge, distribution == 2, white_albedos(at)));

@@ -21,8 +21,8 @@ Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path]
 HANDLERS: dict[str, Handler] = {}
 """By node type, the nodes that are more than their sockets and options."""
 
-FALLBACKS = {"SHADERTORGB": "", "RADIAL_TILING": "Vector"}
-"""By node type, the socket whose value passes through a node that is not rendered."""
+_MAIN_INPUTS = ("Color", "Base Color", "Value", "Fac", "Vector", "Shader")
+"""Identifiers of the sockets of which the first passes through a node that is not rendered."""
 
 
 def handles(*types: str) -> Callable[[Handler], Handler]:
@@ -287,8 +287,7 @@ class GraphExporter:
 
     def _fallback(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
         """For a node that is not rendered: what feeds its main input, or nothing."""
-        names = (FALLBACKS.get(node.type, ""), "Color", "Base Color", "Value", "Fac", "Vector", "Shader")
-        socket = next((socket for name in names for socket in node.inputs if name and socket.identifier == name), None)
+        socket = next((s for name in _MAIN_INPUTS for s in node.inputs if s.identifier == name), None)
         if output.type == "SHADER":
             if node.type in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "VOLUME_COEFFICIENTS"}:
                 self.warn(node, "is a volume and no surface; it is left out")

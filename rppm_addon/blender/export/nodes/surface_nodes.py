@@ -134,10 +134,17 @@ def _vector_displacement(
     return exporter.add("vector_displacement", node, path, "displacement", attribute=attribute)
 
 
-@handles("BEVEL", "AMBIENT_OCCLUSION")
-def _environment(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
-    exporter.warn(node, "would need rays of its own, which are not traced; it is left out")
-    return exporter.add(node.type.lower(), node, path, snake_case(output.identifier))
+@handles("AMBIENT_OCCLUSION")
+def _ambient_occlusion(
+    exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path
+) -> object:
+    reach = next(socket for socket in node.inputs if socket.identifier == "Distance")
+    inputs = {}
+    if not exporter.is_linked(reach, path) and exporter.value(reach, path) == 0.0:  # the world's, as in Cycles
+        exporter.context.owner_reads += 1
+        worlds = [owner for owner in exporter.context.owners if isinstance(owner, bpy.types.World)]
+        inputs["distance"] = worlds[0].light_settings.distance if worlds else 0.0
+    return exporter.add("ambient_occlusion", node, path, snake_case(output.identifier), inputs=inputs)
 
 
 @handles("MATERIAL_RAYCAST")  # of Blender 5.2

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rays that nodes of materials ask for: what Ambient Occlusion and Bevel find around the places that are resolved.
+
+Programs of materials only ask, and one program traces for all of them: with the traversal inside, each would take as
+long to compile, and more storage blocks than devices have. A hit on such a material is evaluated once more for each
+level of nodes: those of the first level ask, what they ask is traced, those that depend on it ask, and so on.
+"""
+
+import enum
+from collections.abc import Mapping
+from typing import Protocol
+
+import moderngl
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.constants import Constants
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from ...materials.compiler import MOST_NODE_RAYS, NodeRayCounts
+
+Record(
+    "NodeRaysParameters",
+    seed="uint",
+    iteration="uint",
+    segment="uint",
+    program="uint",
+    ray_stride="uint",
+    ray_places="uint",
+    ray_level="uint",
+    first_sample="uint",
+    sample_count="uint",
+    samples="uint",
+)
+NODE_RAY = Record("NodeRay", direction="vec3", question="uint", found="vec3", reach="float")
+"""What a node asks: the unit vector around which rays go and how far they reach, meters; and what they found so far:
+how many met nothing, or the weighted sum of normals. No question: 0."""
+StorageBlock("NodeRays", "NodeRay node_rays[];")
+
+
+class _Question(enum.IntEnum):
+    """What is looked for."""
+
+    OCCLUSION = 1
+    LOCAL_OCCLUSION = 2
+    """By the object itself."""
+    BEVEL = 3
+
+
+Constants(
+    "NodeQuestions",
+    QUESTION=_Question,
+    QUESTION_KIND=0xF,
+    QUESTION_LEVEL=0xFFF,
+    QUESTION_LEVEL_SHIFT=4,
+    QUESTION_SAMPLES_SHIFT=16,
+    MOST_NODE_RAYS=MOST_NODE_RAYS,
+)
+_SAMPLES_AT_ONCE = 8
+"""llvmpipe ends all loops of a thread after 65535 rounds in all."""
+
+
+class Traversal(Protocol):
+    """What rays run through."""
+
+    @property
+    def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
+        """Buffers by block name that kernels which include deep_cubemap/traverse.glsl need."""
+
+    @property
+    def traversal_defines(self) -> Mapping[str, object]:
+        """And their defines."""
+
+
+class NodeRays(BufferSet):
+    """Questions and answers of the paths whose hits are resolved, ``places`` of them a path."""
+
+    remedy = "lower the resolution or the photons per iteration, or bake what Ambient Occlusion and Bevel nodes give"
+    _rays = StorageBuffer("rays of nodes", NODE_RAY)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
+        super().__init__(context, library, sizes)
+        self._library = library
+
+    def require(self, count: int) -> moderngl.Buffer:
+        """Room for so many NODE_RAY, by path and place. Raises DeviceError."""
+        if self._rays.require_items(count):
+            self._rays.clear()
+        return self._rays.buffer
+
+    def trace(
+        self,
+        traversal: Traversal,
+        arguments: int,
+        buffers: Mapping[str, moderngl.Buffer],
+        counts: NodeRayCounts,
+        parameters: Mapping[str, object],
+    ) -> None:
+        """Answer what the nodes of a program ask at a level.
+
+        arguments: byte of HitOrder where the groups of the program's dispatch are; buffers: HitOrder, NodeRays, Rays,
+        Hits and Attributes among others; counts: of the program; parameters: the others of NodeRaysParameters.
+        """
+        program = self._library.compute("node_rays/trace.comp", traversal.traversal_defines)
+        blocks = {**buffers, **traversal.traversal_buffers}
+        of_all = {**parameters, "ray_places": counts.places, "samples": counts.samples}
+        for first in range(0, counts.samples, _SAMPLES_AT_ONCE):
+            program.run_indirect(
+                buffers["HitOrder"],
+                arguments,
+                {name: blocks[name] for name in program.blocks},
+                {**of_all, "first_sample": first, "sample_count": _SAMPLES_AT_ONCE},
+            )

@@ -1,0 +1,145 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: TEXEL_BUFFERS=1
+// What the nodes of a program's materials ask of rays, some samples of each at a time.
+
+layout(local_size_x = 64) in;
+
+#include <NodeRaysParameters>
+#include "common/invocation.glsl"
+#include "common/low_discrepancy.glsl"
+#include "common/differential_frame.glsl"
+#include "common/sampling.glsl"
+layout(std140, binding = 0) uniform Parameters { NodeRaysParameters parameters; };
+layout(std430, binding = 0) buffer NodeRays;
+layout(std430, binding = 1) readonly buffer Rays;
+layout(std430, binding = 2) readonly buffer Hits;
+layout(std430, binding = 3) readonly buffer Attributes;
+layout(std430, binding = 4) readonly buffer HitOrder { uint hit_order[]; };
+
+const uint ALL_INSTANCES = 0xffffffffu;
+uint traced_instance;  // that rays may hit
+#define TRACES_INSTANCES
+#include "deep_cubemap/traverse.glsl"
+#include <NodeQuestions>
+#include <Ranges>
+
+// Of surfaces behind one another, those up to here count for a bevel.
+const int MOST_BEVEL_HITS = 4;
+const vec3 AXES = vec3(0.5, 0.25, 0.25);  // probabilities of the normal and of two directions across it
+
+// 10 (1 - r)^3 / pi for points of the disk of radius 1.
+float bevel_pdf(float r) {
+    float f = max(1.0 - r, 0.0);
+    return 10.0 / PI * f * f * f;
+}
+
+// The radius that a fraction u of its points is within, by Newton's method.
+float bevel_radius(float u) {
+    float x = 0.25;
+    for (int k = 0; k < 10; ++k) {
+        float x2 = x * x, y = 1.0 - x, f = x2 * (10.0 - 20.0 * x + 15.0 * x2 - 4.0 * x2 * x) - u;
+        float slope = 20.0 * x * y * y * y;
+        if (abs(f) < 1e-6 || slope == 0.0) break;
+        x = clamp(x - f / slope, 0.0, 1.0);
+    }
+    return x;
+}
+
+// Through the sphere around the place along one of the axes (King et al., BSSRDF Importance Sampling, SIGGRAPH 2013, as
+// Cycles' bevel has it). r: how far from the center, in radii.
+Ray bevel_ray(vec3 position, mat3 axes, float radius, vec2 u, out int axis, out float r) {
+    axis = u.x < AXES.x ? 0 : u.x < AXES.x + AXES.y ? 1 : 2;
+    float angle = 2.0 * PI * (axis == 0 ? 2.0 * u.x : 4.0 * (u.x - (axis == 1 ? 0.5 : 0.75)));
+    vec3 along = axis == 0 ? axes[0] : axis == 1 ? axes[1] : axes[2];
+    vec3 across = axis == 1 ? axes[0] : axes[1], other = axis == 2 ? axes[0] : axes[2];
+    r = bevel_radius(u.y);
+    float height = sqrt(max(1.0 - r * r, 0.0));
+    vec3 from = height * along + r * (cos(angle) * across + sin(angle) * other);
+    return Ray(position + radius * from, NO_TRIANGLE, -along, 2.0 * radius * height);
+}
+
+vec3 point_of(uint triangle, vec3 b) {
+    return b.x * triangle_vertex(3u * triangle).xyz + b.y * triangle_vertex(3u * triangle + 1u).xyz
+           + b.z * triangle_vertex(3u * triangle + 2u).xyz;
+}
+
+vec3 barycentrics(Hit hit) { return vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2); }
+
+vec3 geometric_normal(uint triangle) {
+    vec3 v0 = triangle_vertex(3u * triangle).xyz;
+    return normalize(cross(triangle_vertex(3u * triangle + 1u).xyz - v0, triangle_vertex(3u * triangle + 2u).xyz - v0));
+}
+
+// The axes: first the one around which rays go.
+Ray occlusion_ray(vec3 position, vec3 geometric, uint triangle, mat3 axes, float reach, vec2 u) {
+    vec2 d = sample_disk(u);
+    vec3 direction = normalize(axes * vec3(sqrt(max(1.0 - dot(d, d), 0.0)), d));
+    vec3 origin = offset_from_surface(position, dot(direction, geometric) < 0.0 ? -geometric : geometric);
+    return Ray(origin, triangle, direction, reach);
+}
+
+// The front's smooth normal where a bevel's ray hits, by its weight.
+vec3 bevel_normal(Hit hit, vec3 position, mat3 axes, int axis, float radius, float r) {
+    vec3 geometric = geometric_normal(hit.triangle), b = barycentrics(hit);
+    vec3 normal = b.x * unpack_unit_vector(attributes[hit.triangle].normal0)
+                  + b.y * unpack_unit_vector(attributes[hit.triangle].normal1)
+                + b.z * unpack_unit_vector(attributes[hit.triangle].normal2);
+    normal = dot(normal, normal) > 1e-12 ? normalize(normal) : geometric;
+    // The power heuristic between the axes.
+    vec3 pdfs = AXES * abs(geometric * axes);
+    float pdf = axis == 0 ? pdfs.x : axis == 1 ? pdfs.y : pdfs.z;
+    float weight = pdf / max(dot(pdfs, pdfs), 1e-20);
+    weight *= bevel_pdf(length(point_of(hit.triangle, b) - position) / radius) / max(bevel_pdf(r), 1e-20);
+    return weight * normal;
+}
+
+void main() {
+    uint place = invocation_index();
+    if (place >= hit_order[RANGE_SIZE * parameters.program + 1u]) return;
+    uint index = hit_order[hit_order[RANGE_SIZE * parameters.program] + place];
+    Hit seen = hits[index];
+    if (!(rays[index].maximum_distance > 0.0) || seen.triangle == NO_TRIANGLE) return;
+    vec3 position = point_of(seen.triangle, barycentrics(seen)), geometric = geometric_normal(seen.triangle);
+    uint instance = attributes[seen.triangle].instance;
+    for (uint k = 0u; k < parameters.ray_places; ++k) {
+        uint at = parameters.ray_stride * index + k;
+        NodeRay asked = node_rays[at];
+        uint kind = asked.question & QUESTION_KIND;
+        if (kind == 0u || (asked.question >> QUESTION_LEVEL_SHIFT & QUESTION_LEVEL) != parameters.ray_level) continue;
+        uint samples = asked.question >> QUESTION_SAMPLES_SHIFT;
+        uint end = min(parameters.first_sample + parameters.sample_count, samples);
+        uvec4 set = pcg4d(uvec4(index, parameters.iteration, parameters.seed,
+                                STAGE_NODE_RAYS << 24u | parameters.segment << 12u | k));
+        bool bevel = kind == QUESTION_BEVEL;
+        traced_instance = kind == QUESTION_OCCLUSION ? ALL_INSTANCES : instance;
+        mat3 axes;
+        axes[0] = asked.direction;
+        differential_frame(axes[0], axes[1], axes[2]);
+        vec3 found = asked.found;
+        for (uint number = parameters.first_sample; number < end; ++number) {
+            vec2 u = scrambled_sobol(number, set);
+            int axis = 0;
+            float r = 0.0;
+            Ray ray;
+            if (bevel) ray = bevel_ray(position, axes, asked.reach, u, axis, r);
+            else ray = occlusion_ray(position, geometric, seen.triangle, axes, asked.reach, u);
+            int most_hits = bevel ? MOST_BEVEL_HITS : 1;
+            for (int hit_number = 0; hit_number < most_hits; ++hit_number) {
+                Hit hit = trace_deep_cubemap(ray, !bevel);
+                if (hit.triangle == NO_TRIANGLE) {
+                    if (!bevel) found.x += 1.0;
+                    break;
+                }
+                if (!bevel) break;
+                found += bevel_normal(hit, position, axes, axis, asked.reach, r);
+                ray.origin += hit.distance * ray.direction;
+                ray.maximum_distance -= hit.distance;
+                ray.source_triangle = hit.triangle;
+            }
+        }
+        node_rays[at].found = found;
+        if (parameters.first_sample + parameters.sample_count >= parameters.samples) node_rays[at].question = 0u;
+    }
+}
