@@ -63,7 +63,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         MicrofacetLobe lobe = stored_lobe(index, k);
         vec3 normal = lobe_normal(lobe);
         float cosine = dot(normal, wi);
-        if (!lobe_stores(lobe, smoothest_lit(gathered)) || (cosine > 0.0) != front) continue;
+        if (!lobe_stores(lobe, smoothest_lit(gathered)) || !lobe_faces(lobe, cosine, front)) continue;
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = specular ? 1.0 : by_rays;

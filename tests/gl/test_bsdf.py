@@ -17,7 +17,7 @@ Record(
     aspect="float", radiance="uint", beckmann="uint",
 )  # fmt: skip
 SHADER = str(Path(__file__).with_name("lobe_albedo.comp"))
-_, MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET, TOON, GLOSSY_TOON = MicrofacetKind
+_, MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET, TOON, GLOSSY_TOON, *_ = MicrofacetKind
 COUNT = 1 << 18
 
 
