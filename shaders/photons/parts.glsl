@@ -40,7 +40,13 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
         if (lobe.kind == LOBE_NONE || lobe_part(lobe, transmitted) != part) continue;
         // Where viewers are makes no other difference.
         if (part == PART_TOON || part == PART_STRAND) share += lobe.weight;
-        else if (part <= PART_TRANSMITTING || part == PART_HAIR)
+#ifdef HAIR_LOBES
+        else if (part == PART_HAIR) {
+            vec3 n = lobe_normal(lobe);
+            share += lobe.weight * hair_carried(lobe, n, viewer, light) / max(abs(dot(n, light)), 1e-6);
+        }
+#endif
+        else if (part <= PART_TRANSMITTING)
             share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
                    * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? lobe.ior : 1.0));
         else if (!transmitted || abs(lobe.ior - ior) <= 1e-3 * ior)

@@ -75,6 +75,12 @@ HairValue hair_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     return value;
 }
 
+// Of light that paths bring, BSDF times cosine without the lobe's weight: as it is sampled.
+vec3 hair_carried(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    return lobe.kind < LOBE_HAIR_CHIANG ? vec3(plain_hair_value(lobe, n, wo, wi).pdf)
+                                        : chiang_value(lobe, n, wo, wi).scattered;
+}
+
 // Estimate of what is not absorbed; cosine: of the viewer to n.
 vec3 hair_albedo(MicrofacetLobe lobe, float cosine) {
     return lobe.kind == LOBE_HAIR_CHIANG ? chiang_albedo(lobe, cosine) : vec3(1.0);

@@ -19,7 +19,7 @@ vec3 fiber_tangent(Surface surface, int corner, out bool on_strand) {
     if (surface.triangle == NO_TRIANGLE) return surface.normal.zxy;
     vec3 v0, v1, v2;
     triangle_points(surface.triangle, v0, v1, v2);
-    return normalize((corner == 1 ? v1 : v2) - v0);
+    return normalize((corner == 1 ? v1 : v2) - v0) * (surface.backfacing ? -1.0 : 1.0);
 }
 
 // Without a tangent given, meshes have no offset.
