@@ -2,6 +2,7 @@
 """Which node graphs scatter as fibers do."""
 
 from ..scene.node_graphs import NodeGraph
+from . import hair_energy as hair_energy  # whose constants shaders of fibers include
 from .nodes.hair import KINDS
 
 

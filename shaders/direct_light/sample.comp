@@ -218,6 +218,9 @@ void main() {
     vec3 throughput = path.throughput * segment_transmittance(flags, closure);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
+#ifdef HAIR_LOBES
+    fiber_seed = choices.w + 2654435769u * parameters.light_sample;
+#endif
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
     Parts parts;  // shares of it

@@ -15,7 +15,7 @@ const float SHARPEST_COMPARED = 1e-3;
 
 uint lobe_part(MicrofacetLobe lobe, bool transmitted) {
 #ifdef HAIR_LOBES
-    if (lobe_is_hair(lobe.kind)) return lobe_is_on_strand(lobe) ? PART_STRAND : PART_HAIR;
+    if (lobe_is_hair(lobe.kind)) return hair_has_no_side(lobe) ? PART_STRAND : PART_HAIR;
 #endif
     if (lobe_is_toon(lobe.kind)) return PART_TOON;
     if (lobe.alpha <= SHARPEST_COMPARED) return transmitted ? PART_SHARP_TRANSMITTING : PART_SHARP_REFLECTING;
@@ -43,7 +43,7 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
 #ifdef HAIR_LOBES
         else if (part == PART_HAIR) {
             vec3 n = lobe_normal(lobe);
-            share += lobe.weight * hair_carried(lobe, n, viewer, light) / max(abs(dot(n, light)), 1e-6);
+            share += hair_carried(lobe, n, viewer, light) / max(abs(dot(n, light)), 1e-6);
         }
 #endif
         else if (part <= PART_TRANSMITTING)

@@ -37,6 +37,12 @@ void main() {
     LobeValue there = lobe_value(lobe, n, wo, at);
     results[4u * index] = vec4(sampled.weight, there.pdf);
     results[4u * index + 1u] = vec4(value.bsdf * abs(dot(wi, n)), value.pdf) * sphere;
+    if (parameters.kind == LOBE_HAIR_HUANG) {  // which has no pdf
+        vec3 scattered = value.bsdf * abs(dot(wi, n));
+        results[4u * index + 2u] = sampled.weight.y * vec4(1.0, at.x, at.y * at.y, at.z * at.x);
+        results[4u * index + 3u] = scattered.y * sphere * vec4(1.0, wi.x, wi.y * wi.y, wi.z * wi.x);
+        return;
+    }
     results[4u * index + 2u] = vec4(there.pdf > 0.0 ? 1.0 : 0.0, at.x, at.y * at.y, at.z * at.x);
     // As in Cycles, transmission has a pdf also where nothing is sampled, in front of the fiber.
     if (parameters.kind == LOBE_HAIR_TRANSMISSION && wi.z > 0.0) value.pdf = 0.0;

@@ -107,3 +107,17 @@ def test_chiang_tilts_what_it_reflects(context, library):
     smooth, offset = (0.3, 0.05, 1.0), 0.1
     _, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_CHIANG, 0.0, 0.0, (1e3, 1e3, 1e3), smooth, offset=offset)
     assert drawn[:, 1].mean() == pytest.approx(-np.sin(2.0 * offset), abs=0.01)
+
+
+@pytest.mark.parametrize("shape", [(1.0, 0.3, 1.0), (0.7, 0.5, 1.0), (1.0, 0.2, 0.1)])
+@pytest.mark.parametrize(("sine", "h", "offset"), [(0.0, 0.0, 0.0), (0.5, 0.6, 0.05), (-0.7, -0.4, -0.1)])
+def test_huang_is_sampled_as_it_is_evaluated(context, library, shape, sine, h, offset):
+    """Sampling and evaluation share no formula for the direction; and all but some light leaves a white fiber."""
+    for sigma in ((0.0, 0.0, 0.0), (0.2, 1.0, 4.0)):
+        weights, values, drawn, expected = run(
+            context, library, MicrofacetKind.HAIR_HUANG, sine, h, sigma, shape, offset=offset
+        )
+        print(shape, sine, sigma, weights[:, :3].mean(axis=0), values[:, :3].mean(axis=0))
+        for moment in range(4):
+            error = np.sqrt((drawn[:, moment].var() + expected[:, moment].var()) / COUNT)
+            print("  ", moment, drawn[:, moment].mean(), expected[:, moment].mean(), error)

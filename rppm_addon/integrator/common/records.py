@@ -129,6 +129,7 @@ class MicrofacetKind(enum.IntEnum):
     """Of fibers, as those that follow: programs know them where HAIR_LOBES is defined."""
     HAIR_TRANSMISSION = 13
     HAIR_CHIANG = 14
+    HAIR_HUANG = 15
 
 
 Constants("MicrofacetKinds", LOBE=MicrofacetKind)

@@ -45,6 +45,5 @@ KINDS = {
         options={"model": ("CHIANG", "HUANG"), "parametrization": ("ABSORPTION", "MELANIN", "COLOR")},
         surface=True,
         function_option="model",
-        fallbacks={"HUANG": "the model of Chiang"},
     ),
 }

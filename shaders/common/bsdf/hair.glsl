@@ -6,6 +6,7 @@
 // the offset, and around it another. f0: both roughnesses and the offset; anisotropy: the tangent; tint.x: 1 on strands.
 
 #include "common/bsdf/hair_chiang.glsl"
+#include "common/bsdf/hair_huang.glsl"
 
 bool lobe_is_on_strand(MicrofacetLobe lobe) {
     return lobe.kind >= LOBE_HAIR_CHIANG ? (lobe.anisotropy & HAIR_ON_STRAND) != 0u : lobe.tint.x > 0.5;
@@ -68,48 +69,59 @@ bool is_hidden(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     return !lobe_is_on_strand(lobe) && dot(n, wi) * dot(n, side) * dot(side, wi) < 0.0;
 }
 
+// With the lobe's weight.
 HairValue hair_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
-    if (lobe.kind < LOBE_HAIR_CHIANG) return plain_hair_value(lobe, n, wo, wi);
-    HairValue value = chiang_value(lobe, n, wo, wi);
-    if (is_hidden(lobe, n, wo, wi)) value.scattered = vec3(0.0);
+    bool hidden = lobe.kind >= LOBE_HAIR_CHIANG && is_hidden(lobe, n, wo, wi);
+    if (lobe.kind == LOBE_HAIR_HUANG)
+        return HairValue(hidden ? vec3(0.0) : huang_scattered(lobe, n, wo, wi), HUANG_PDF);
+    HairValue value = plain_hair_value(lobe, n, wo, wi);
+    if (lobe.kind == LOBE_HAIR_CHIANG) value = chiang_value(lobe, n, wo, wi);
+    value.scattered *= hidden ? vec3(0.0) : lobe.weight;
     return value;
 }
 
-// Of light that paths bring, BSDF times cosine without the lobe's weight: as it is sampled.
+// Of light that paths bring, BSDF times cosine: as it is sampled.
 vec3 hair_carried(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
-    return lobe.kind < LOBE_HAIR_CHIANG ? vec3(plain_hair_value(lobe, n, wo, wi).pdf)
-                                        : chiang_value(lobe, n, wo, wi).scattered;
+    return lobe.weight * (lobe.kind == LOBE_HAIR_CHIANG ? chiang_value(lobe, n, wo, wi).scattered
+                                                        : vec3(plain_hair_value(lobe, n, wo, wi).pdf));
 }
 
-// Estimate of what is not absorbed; cosine: of the viewer to n.
+// Estimate of what is not absorbed, with the lobe's weight; cosine: of the viewer to n.
 vec3 hair_albedo(MicrofacetLobe lobe, float cosine) {
-    return lobe.kind == LOBE_HAIR_CHIANG ? chiang_albedo(lobe, cosine) : vec3(1.0);
+    if (lobe.kind == LOBE_HAIR_HUANG) return huang_albedo(lobe, cosine);
+    return lobe.weight * (lobe.kind == LOBE_HAIR_CHIANG ? chiang_albedo(lobe, cosine) : vec3(1.0));
 }
 
-// Light arrives on all of a strand's width, and leaves it wherever it may: of photons, both cosines to the tangent tell
-// how much of the strand's length is met and seen. Elsewhere than on strands the adjoint tells.
-float photon_scale(MicrofacetLobe lobe, vec3 wo, vec3 wi) {
-    if (!lobe_is_on_strand(lobe)) return 1.0;
-    bool plain = lobe.kind < LOBE_HAIR_CHIANG;
+// Whether photons need not ask how viewers see them: light that comes to a strand leaves it all around, and means over
+// the width of a fiber are the same from both sides, but for cosines.
+bool hair_has_no_side(MicrofacetLobe lobe) { return lobe_is_on_strand(lobe) || lobe.kind == LOBE_HAIR_HUANG; }
+
+// Of such photons: how much of the fiber's length is met and seen, or of the surface that it stands for.
+float photon_scale(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    if (!hair_has_no_side(lobe)) return 1.0;
+    bool plain = lobe.kind < LOBE_HAIR_CHIANG, strand = lobe_is_on_strand(lobe);
     vec3 tangent = plain ? unpack_unit_vector(lobe.anisotropy) : chiang_tangent(lobe);
     float sine_o = dot(tangent, wo), sine_i = dot(tangent, wi);
-    float ratio2 = min((1.0 - sine_i * sine_i) / max(1.0 - sine_o * sine_o, 1e-6), 16.0);
-    return plain ? ratio2 : sqrt(max(ratio2, 0.0));
+    float ratio = sqrt(max(1.0 - sine_i * sine_i, 0.0) / max(1.0 - sine_o * sine_o, 1e-6));
+    float scale = plain ? ratio * ratio : ratio;
+    if (lobe.kind == LOBE_HAIR_HUANG) scale = strand ? 1.0 : abs(dot(n, wi)) / max(abs(dot(n, wo)) * ratio, 1e-6);
+    return min(scale, 4.0);
 }
 
 // A direction; weight: BSDF times cosine over its pdf. radiance: not of photons.
 vec3 sample_hair(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance, out vec3 weight) {
     vec2 u = disk_to_square(disk);
     vec3 direction;
-    bool scattered = true;
-    weight = lobe.weight;
-    if (lobe.kind == LOBE_HAIR_CHIANG) {
+    if (lobe.kind == LOBE_HAIR_HUANG) direction = sample_huang(lobe, n, wo, u, u_event, weight);
+    else if (lobe.kind == LOBE_HAIR_CHIANG) {
         direction = sample_chiang(lobe, n, wo, u, u_event);
         HairValue value = chiang_value(lobe, n, wo, direction);
-        weight *= value.scattered / max(value.pdf, 1e-20);
-        scattered = value.pdf > 0.0;
-    } else direction = sample_plain_hair(lobe, wo, u, scattered);
-    if (!radiance) weight *= photon_scale(lobe, wo, direction);
-    if (!scattered) weight = vec3(0.0);
+        weight = lobe.weight * value.scattered / max(value.pdf, 1e-20);
+    } else {
+        bool scattered;
+        direction = sample_plain_hair(lobe, wo, u, scattered);
+        weight = scattered ? lobe.weight : vec3(0.0);
+    }
+    if (!radiance) weight *= photon_scale(lobe, n, wo, direction);
     return direction;
 }

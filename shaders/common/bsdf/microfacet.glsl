@@ -84,7 +84,7 @@ vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
     FacetShares shares = facet_shares(lobe, cosine);
     vec3 albedo = lobe.weight * shares.reflectance;
 #ifdef HAIR_LOBES
-    if (lobe_is_hair(lobe.kind)) return lobe.weight * hair_albedo(lobe, cosine);
+    if (lobe_is_hair(lobe.kind)) return hair_albedo(lobe, cosine);
 #endif
     return lobe_transmits(lobe.kind) ? albedo + shares.transmittance : albedo;
 }
@@ -223,7 +223,7 @@ LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 #ifdef HAIR_LOBES
     if (lobe_is_hair(lobe.kind)) {
         HairValue hair = hair_value(lobe, n, wo, wi);
-        return LobeValue(lobe.weight * hair.scattered / max(abs(dot(wi, n)), 1e-20), hair.pdf);
+        return LobeValue(hair.scattered / max(abs(dot(wi, n)), 1e-20), hair.pdf);
     }
 #endif
     face_sheet(lobe, n, wi);
@@ -244,4 +244,9 @@ LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 
 vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) { return lobe_value(lobe, n, wo, wi).bsdf; }
 
-float lobe_pdf(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) { return lobe_value(lobe, n, wo, wi).pdf; }
+float lobe_pdf(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+#ifdef HAIR_LOBES
+    if (lobe.kind == LOBE_HAIR_HUANG) return HUANG_PDF;
+#endif
+    return lobe_value(lobe, n, wo, wi).pdf;
+}

@@ -80,13 +80,31 @@ void node_bsdf_hair_principled_chiang(Surface surface, inout ClosureBuilder buil
                                      pack_unit_vector(n), pack_hair(n, tangent, offset, on_strand)));
 }
 
-// That of Chiang stands in for that of Huang, with the same roughness around the fiber as along it.
+// Half of what a pixel covers over the radius of a strand that the camera sees, at most 1: means are over that width.
+// Elsewhere over all of it.
+float pixel_over_radius(Surface surface) {
+#ifdef ROUND_SHAPES
+    if (is_strand(surface) && (surface.ray & RAY_CAMERA) != 0u) {
+        float width = parameters.pixel_size * (parameters.orthographic != 0u ? 1.0 : surface.ray_length);
+        return min(0.5 * width / max(strand_at(surface).radius, 1e-20), 1.0);
+    }
+#endif
+    return 1.0;
+}
+
 void node_bsdf_hair_principled_huang(Surface surface, inout ClosureBuilder builder, float weight, int parametrization,
                                      vec3 color, float melanin, float redness, vec3 tint, vec3 absorption,
                                      float aspect_ratio, float roughness, float radial_roughness, float coat,
                                      float ior, float offset, float random_color, float random_roughness,
                                      float random, float r_lobe, float tt_lobe, float trt_lobe) {
-    node_bsdf_hair_principled_chiang(surface, builder, weight, parametrization, color, melanin, redness, tint,
-                                     absorption, aspect_ratio, roughness, roughness, 0.0, ior, offset, random_color,
-                                     random_roughness, random, r_lobe, tt_lobe, trt_lobe);
+    roughness *= 1.0 + 2.0 * (random - 0.5) * random_roughness;
+    bool on_strand;
+    vec3 tangent = fiber_tangent(surface, 1, on_strand), n = builder.geometric;
+    vec3 sigma = hair_absorption(parametrization, color, melanin, redness, tint, absorption, roughness, random_color,
+                                 random);
+    float aspect = max(aspect_ratio, 0.05);
+    vec3 shape = clamp(vec3(min(aspect, 1.0 / aspect), roughness, pixel_over_radius(surface)), 0.0, 1.0);
+    add_lobe(builder, MicrofacetLobe(weight * max(vec3(r_lobe, tt_lobe, trt_lobe), 0.0), LOBE_HAIR_HUANG, sigma,
+                                     HAIR_ALPHA, shape, max(ior, 1e-3), pack_unit_vector(n),
+                                     pack_hair(n, tangent, offset, on_strand)));
 }
