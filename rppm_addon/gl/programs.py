@@ -354,7 +354,9 @@ class ProgramLibrary:
         Raises ShaderError with file and line; CompileError where it is the driver that refuses, without
         ``inserts`` maybe not before the program is first run.
         """
-        return self._compute(path, dict(defines or {}) if inserts else self._defines([path], defines), dict(inserts or {}))
+        return self._compute(
+            path, dict(defines or {}) if inserts else self._defines([path], defines), dict(inserts or {})
+        )
 
     def has_stand_in(self, path: str, inserts: Mapping[str, str]) -> bool:
         """Whether a compute program that something can stand in for is still to be compiled, and is, in the background.

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: HAIR_LOBES=1
 // TraceImportons: collect what a camera path sees shine, leave an importon for the lobes that store
 // photons, and go on by the specular ones.
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fibers, which scatter light all around. Of a fiber's surface a lobe keeps the normal n, from which follows how far from
-// the fiber's middle it is met, and the tangent. What is scattered counts by no cosine of n.
+// Fibers, which scatter light all around. Of a fiber's surface a lobe keeps the normal n, from which follows how far
+// from the fiber's middle it is met, and the tangent. What is scattered counts by no cosine of n.
 //
-// Reflection and transmission are those of Cycles' Hair BSDF: of half angles along the fiber a Cauchy distribution about
-// the offset, and around it another. f0: both roughnesses and the offset; anisotropy: the tangent; tint.x: 1 on strands.
+// Reflection and transmission are those of Cycles' Hair BSDF: of half angles along the fiber a Cauchy distribution
+// about the offset, and around it another. f0: both roughnesses and the offset; anisotropy: the tangent; tint.x: 1 on
+// strands.
 
 #include "common/bsdf/hair_chiang.glsl"
 #include "common/bsdf/hair_huang.glsl"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair as Chiang, Bitterli, Tappan and Burley have it (A Practical and Controllable Hair and Fur Model for Production
-// Path Tracing, 2016), near field, with the constants of Cycles: light that is reflected (R), passes (TT), passes after a
-// reflection within (TRT), and the rest.
+// Path Tracing, 2016), near field, with the constants of Cycles: light that is reflected (R), passes (TT), passes
+// after a reflection within (TRT), and the rest.
 //
-// f0: absorption over the fiber's radius; ior; tint: roughness around, along, and of the coat; anisotropy: the tangent's
-// angle about n and the offset, and in the lowest bit whether it is a strand (materials/nodes/hair.glsl).
+// f0: absorption over the fiber's radius; ior; tint: roughness around, along, and of the coat; anisotropy: the
+// tangent's angle about n and the offset, and in the lowest bit whether it is a strand (materials/nodes/hair.glsl).
 
 // BSDF times cosine, without the lobe's weight, and the pdf of sampling, 1/sr.
 struct HairValue { vec3 scattered; float pdf; };

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hair as Huang, Hullin and Hanika have it (A Microfacet-based Hair Scattering Model, 2022), with the terms of Cycles: a
-// fiber with tilted scales of rough microfacets, whose section is an ellipse that lies across the view. What it scatters is
-// a mean over its width, or over what a pixel of the camera sees of it.
+// Hair as Huang, Hullin and Hanika have it (A Microfacet-based Hair Scattering Model, 2022), with the terms of Cycles:
+// a fiber with tilted scales of rough microfacets, whose section is an ellipse that lies across the view. What it
+// scatters is a mean over its width, or over what a pixel of the camera sees of it.
 //
-// weight: of R, TT, TRT; f0: absorption over the fiber's radius; ior; tint: minor over major axis, roughness, and half of a
-// pixel over the radius; anisotropy: as common/bsdf/hair_chiang.glsl has it.
+// weight: of R, TT, TRT; f0: absorption over the fiber's radius; ior; tint: minor over major axis, roughness, and half
+// of a pixel over the radius; anisotropy: as common/bsdf/hair_chiang.glsl has it.
 //
 // In the frame of a fiber y lies along it, x across it and the view, and z to the viewer. gamma is the angle around the
 // fiber of a point of the ellipse, (sin gamma, aspect cos gamma).
@@ -22,8 +22,8 @@ struct Huang {
     vec3 leaving[2];
 };
 
-// What single scattering by microfacets of glass loses, over the squared roughness: a polynomial in 1 - cosine, fit to the
-// table of albedos.
+// What single scattering by microfacets of glass loses, over the squared roughness: a polynomial in 1 - cosine, fit to
+// the table of albedos.
 void glass_loss(int table, float roughness, float ior, out vec3 terms[2]) {
     float root = sqrt(roughness), place = sqrt(abs(ior - 1.0) / (ior + 1.0));
     for (int j = 0; j < 6; ++j) {
@@ -111,7 +111,9 @@ float fiber_random(inout uint state) {
 
 uint fiber_state(vec3 a, vec3 b) {
     uvec3 x = floatBitsToUint(a), y = floatBitsToUint(b);
-    return fiber_seed ^ x.x * 73856093u ^ x.y * 19349663u ^ x.z * 83492791u ^ y.x * 2654435761u ^ y.y * 40503u ^ y.z * 2246822519u;
+    x *= uvec3(73856093u, 19349663u, 83492791u);
+    y *= uvec3(2654435761u, 40503u, 2246822519u);
+    return fiber_seed ^ x.x ^ x.y ^ x.z ^ y.x ^ y.y ^ y.z;
 }
 
 vec3 sample_scale_facet(float roughness, vec3 w, vec3 m, inout uint state) {
@@ -129,8 +131,8 @@ vec2 seen_width(Huang hair) {
                                : vec2(-1.0, 1.0);
 }
 
-// Cycles' integrals by Simpson's rule, of which the error is part of its picture; of smoother fibers fewer steps, from a
-// random start.
+// Cycles' integrals by Simpson's rule, of which the error is part of its picture; of smoother fibers fewer steps, from
+// a random start.
 const int MOST_FIBER_STEPS = 48;
 
 struct FiberSteps { int count; float start; float size; bool simpson; };
@@ -173,7 +175,8 @@ float reflected_by_scales(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 l, vec2 
 // Of light that is reflected twice within and more often.
 vec3 residual_of(float transmitted, float reflected, vec3 absorbed) {
     float mean = max(1.0 - reflected, 1e-5);
-    return transmitted * reflected * reflected * mean * absorbed * absorbed * absorbed / (1.0 - absorbed * (1.0 - mean));
+    vec3 thrice = absorbed * absorbed * absorbed;
+    return transmitted * reflected * reflected * mean * thrice / (1.0 - absorbed * (1.0 - mean));
 }
 
 // A path within a fiber on its way to a facet.

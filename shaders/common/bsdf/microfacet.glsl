@@ -26,8 +26,8 @@ bool lobe_has_facets(uint kind) { return kind < LOBE_SHEEN; }
 // For Cycles, as are the diffuse parts of a closure.
 bool lobe_is_diffuse(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_TOON; }
 
-// Whether light from a direction with that cosine to the lobe's normal counts, which comes from the front of the surface
-// or not: for hair from all around.
+// Whether light from a direction with that cosine to the lobe's normal counts, which comes from the front of the
+// surface or not: for hair from all around.
 bool lobe_faces(MicrofacetLobe lobe, float cosine, bool front) {
     return (cosine > 0.0) == front || lobe_is_hair(lobe.kind);
 }
