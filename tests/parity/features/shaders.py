@@ -107,36 +107,6 @@ lit(
     effort=2,
     reason="a diffuse surface stands in",
 )
-for _component in ("Reflection", "Transmission"):
-    lit(
-        "Hair",
-        f"{_component} on a mesh",
-        shader("BsdfHair", COLOR | {"RoughnessV": 0.4}, component=_component),
-        settings=LONG,
-        effort=2,
-    )
-lit(
-    "Principled Hair",
-    "CHIANG, a color, on a mesh",
-    shader("BsdfHairPrincipled", {"Color": (0.6, 0.3, 0.15)}),
-    settings=LONG,
-    effort=2,
-)
-lit(
-    "Principled Hair",
-    "CHIANG, melanin, on a mesh",
-    shader("BsdfHairPrincipled", {"Melanin": 0.6, "Offset": 0.1}, parametrization="MELANIN"),
-    settings=LONG,
-    effort=2,
-)
-lit(
-    "Principled Hair",
-    "HUANG on a mesh",
-    shader("BsdfHairPrincipled", {"Color": (0.6, 0.3, 0.15)}, model="HUANG"),
-    settings=LONG,
-    effort=2,
-    warns=True,
-)
 
 # --- Principled -----------------------------------------------------------------------------------------
 
