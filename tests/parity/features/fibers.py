@@ -2,11 +2,17 @@
 """Shaders of fibers, on a mesh."""
 
 from .rows import lit
-from .shaders import LONG, shader
 
 GROUPS = "Hair", "Principled Hair"
+LONG = {"camera_path_length": 64, "photon_path_length": 24}
+"""Light runs through what is shaded so as through glass."""
 COLOR = {"Color": (0.6, 0.3, 0.15)}
 _TWO_GUESSES = {"block": 0.1, "reason": "what is reflected within is guessed in two ways, toward lights and by paths"}
+
+
+def shader(kind, inputs, **properties):
+    return lambda net: net.out(kind, 0, inputs, **properties)
+
 
 for _component in ("Reflection", "Transmission"):
     _inputs = COLOR | {"RoughnessV": 0.4}
