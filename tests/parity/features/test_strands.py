@@ -16,7 +16,7 @@ def parameters():
         yield pytest.param(row, id=row.id, marks=[] if row.id in SHORT else [pytest.mark.long])
 
 
-@pytest.mark.parametrize("row", parameters())
+@pytest.mark.parametrize("row", list(parameters()))
 def test_strands(renderer, row):
     found = measure(row, renderer, PART)
     print(f"{row.id}: mean {found.mean:.2%} +- {found.mean_error:.2%}, block {found.block:.2%}")
