@@ -82,8 +82,11 @@ class _Scope:
 
 
 class _Compiler:
-    def __init__(self, graph: NodeGraph, aovs: Sequence[RenderPass], abbe_number: float | None) -> None:
+    def __init__(
+        self, graph: NodeGraph, aovs: Sequence[RenderPass], abbe_number: float | None, on_round_shapes: bool
+    ) -> None:
         self._graph = graph
+        self._on_round_shapes = on_round_shapes
         self._abbe_number = abbe_number
         self._aovs = aovs
         self._constants: list[float | Resource] = []
@@ -96,9 +99,9 @@ class _Compiler:
 
     def compile(self) -> CompiledGraph:
         scope = _Scope()
-        text = ""
+        text = '#include "materials/round_shapes.glsl"\n' if self._on_round_shapes else ""
         if self._abbe_number is not None and disperses(self._graph):
-            text = '#include "materials/dispersion.glsl"\n'
+            text += '#include "materials/dispersion.glsl"\n'
             place = self._place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
             scope.lines.append(f"inverse_abbe_number = constant_float(first + {place}u);")
         if has_subsurface(self._graph):
@@ -383,15 +386,21 @@ def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:
         raise GraphError(f'node "{node.name}" ({node.kind}) {error}') from error
 
 
-def compile_graph(graph: NodeGraph, aovs: Sequence[RenderPass] = (), abbe_number: float | None = None) -> CompiledGraph:
+def compile_graph(
+    graph: NodeGraph,
+    aovs: Sequence[RenderPass] = (),
+    abbe_number: float | None = None,
+    on_round_shapes: bool = False,
+) -> CompiledGraph:
     """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
-    ``abbe_number``: by which its glass disperses light, None where it does not.
+    ``abbe_number``: by which its glass disperses light, None where it does not; ``on_round_shapes``: whether it is on
+    strands or points.
 
     Raises GraphError when nodes, options or links are unknown.
     """
-    return _Compiler(graph, aovs, abbe_number).compile()
+    return _Compiler(graph, aovs, abbe_number, on_round_shapes).compile()
 
 
 def compile_displacement(graph: NodeGraph) -> CompiledGraph:
     """The GLSL of what moves vertices, ``material_displacement``, and its constants. Raises as compile_graph does."""
-    return _Compiler(graph, (), None).compile_displacement()
+    return _Compiler(graph, (), None, False).compile_displacement()

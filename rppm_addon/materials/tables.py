@@ -110,7 +110,9 @@ class MaterialTables(BufferSet):
         compiled, self.emits, self.users = [], [], {}
         for material in materials:
             owner = f'Material "{material.name}"'
-            graph, emission = self._compile(material.graph, owner, "it is gray", aovs, material.abbe_number)
+            graph, emission = self._compile(
+                material.graph, owner, "it is gray", aovs, material.abbe_number, material.on_round_shapes
+            )
             compiled.append(graph)
             self.emits.append(emission)
             self.users.setdefault(graph.text, []).append(material.name)
@@ -184,9 +186,10 @@ class MaterialTables(BufferSet):
         remedy: str,
         aovs: Sequence[RenderPass] = (),
         abbe_number: float | None = None,
+        on_round_shapes: bool = False,
     ) -> tuple[CompiledGraph, Emits]:
         try:
-            return compile_graph(graph, aovs, abbe_number), emits(graph)
+            return compile_graph(graph, aovs, abbe_number, on_round_shapes), emits(graph)
         except GraphError as error:
             self._scene.warn(f"{owner}: {error}; {remedy}")
             return CompiledGraph(NEUTRAL_TEXT), Emits.NOTHING

@@ -6,7 +6,7 @@ from .images import Image
 from .light_linking import ALL_SETS, LIGHT_SETS, LightLinking
 from .lights import UNLIMITED_BOUNCES, Light, LightKind, Mist, World
 from .materials import Material
-from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Particle, RayVisibility
+from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape, Particle, RayVisibility
 from .motion import CameraMovement, Deformation, Movement, Shutter
 from .moving_scene import MovingScene
 from .node_graphs import AovOutput, Link, NodeGraph, ShaderNode
@@ -36,6 +36,7 @@ __all__ = [
     "Material",
     "Mesh",
     "MeshAttribute",
+    "MeshShape",
     "Mist",
     "Movement",
     "MovingScene",

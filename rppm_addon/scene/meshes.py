@@ -44,6 +44,17 @@ class Dicing:
     """Whether faces bend by their normals as they are divided; else they stay flat."""
 
 
+class MeshShape(enum.Enum):
+    """What the triangles of a mesh stand for."""
+
+    SURFACE = "surface"
+    """Themselves."""
+    STRANDS = "strands"
+    """Round strands: tubes (blender/export/strands/tubes.py)."""
+    POINTS = "points"
+    """Spheres."""
+
+
 @dataclass
 class Mesh:
     """One evaluated mesh in its object space, shared by all its instances.
@@ -71,6 +82,7 @@ class Mesh:
     """By name, those that the materials in use ask for."""
     dicing: Dicing | None = None
     """None: it is displaced as it is."""
+    shape: MeshShape = MeshShape.SURFACE
 
     @property
     def triangle_count(self) -> int:

@@ -80,9 +80,7 @@ def _small_ball() -> Mesh:
 
 def energy(renderer: Renderer) -> list[Finding]:
     """Whether light is neither lost nor gained where its radiance is known. Raises the errors of scene/errors.py."""
-    by_rays, by_photons = (
-        furnace(24, 4, direct_light) for direct_light in (DirectLight.RAYS, DirectLight.PHOTONS)
-    )
+    by_rays, by_photons = (furnace(24, 4, direct_light) for direct_light in (DirectLight.RAYS, DirectLight.PHOTONS))
     bounced = 2.0 * (1.0 - 0.5**12)
     return [
         _mean_of(renderer, "Energy of diffuse light, by rays", by_rays, bounced, 0.02),

@@ -11,7 +11,9 @@ const uint PATH_STRAIGHT = 1u, PATH_SURFACE_FOUND = 2u, PATH_GATHERED = 4u, PATH
            PATH_LIGHTS_FOUND = 512u;
 
 // Whether a path whose ray came to a surface sets out to gather, from there or again: in corners, within some distance
-// of where the ray began, the disk in which photons count reaches beyond the surface, to where there are none.
+// of where the ray began, the disk in which photons count reaches beyond the surface, to where there are none;
+// and on strands and points everywhere, whose rays count as of length LENGTH_ON_ROUND_SHAPES.
+const float LENGTH_ON_ROUND_SHAPES = -1.0;
 bool path_gathers(uint flags, float ray_length, float again_below) {
     return (flags & PATH_GATHERED) == 0u || ((flags & PATH_CAUSTIC) == 0u && ray_length < again_below);
 }

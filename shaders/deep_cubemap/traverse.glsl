@@ -20,6 +20,9 @@
 #include "deep_cubemap/cell_entry.glsl"
 #include "deep_cubemap/core.glsl"
 #include "deep_cubemap/faces.glsl"
+#ifdef ONE_SIDED_TRIANGLES
+#include "common/light_sets.glsl"
+#endif
 
 // What stays the same along a ray.
 struct CubemapWalk {
@@ -43,6 +46,11 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
     vec4 vertex0 = triangle_vertex(3u * triangle);
     if (walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
+#ifdef ONE_SIDED_TRIANGLES
+    vec3 vertex1 = triangle_vertex(3u * triangle + 1u).xyz, vertex2 = triangle_vertex(3u * triangle + 2u).xyz;
+    bool from_within = dot(cross(vertex1 - vertex0.xyz, vertex2 - vertex0.xyz), walk.direction) > 0.0;
+    if (from_within && is_one_sided(vertex0.w)) return;
+#endif
 #ifdef SHADOW_LINKING
     if (walk.any_hit && !has_set(shadow_sets, shadow_set_of(vertex0.w))) return;
 #endif

@@ -25,6 +25,7 @@ layout(std430, binding = 8) writeonly buffer Contributions;
 layout(std430, binding = 11) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
+#include "importons/round_shapes.glsl"
 layout(std430, binding = 12) writeonly buffer LightSplits;
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
@@ -216,7 +217,7 @@ void main() {
     uint flags = path.flags;
     bool gathered = (flags & PATH_GATHERED) != 0u;
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
-                && path_gathers(flags, closure.distance, parameters.gathers_again_below);
+                && path_gathers(flags, length_to_gather_by(closure), parameters.gathers_again_below);
     vec3 throughput = path.throughput * segment_transmittance(flags, closure);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));

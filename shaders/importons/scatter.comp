@@ -29,6 +29,7 @@ layout(std430, binding = 8) buffer Radiances;
 layout(std430, binding = 9) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
+#include "importons/round_shapes.glsl"
 
 // What does not wait for the lobe is written first: beside one, processors have no registers for all of an importon.
 void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius,
@@ -296,7 +297,7 @@ void main() {
                                 STAGE_IMPORTONS << 24u));
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
-                && path_gathers(path.flags, closure.distance, parameters.gathers_again_below);
+                && path_gathers(path.flags, length_to_gather_by(closure), parameters.gathers_again_below);
     PathShares shares = path_shares(index, closure, path.throughput, -ray.direction, parameters.specular_alpha,
                                     gathers);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {

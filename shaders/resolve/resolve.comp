@@ -68,6 +68,9 @@ Surface surface_at(Ray ray, Hit hit, uint flags) {
                 : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
+#ifdef ROUND_SHAPES
+    make_round(surface);
+#endif
     return surface;
 }
 

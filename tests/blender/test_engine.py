@@ -275,7 +275,7 @@ def test_warnings_are_reported(lit, monkeypatch):
     replace_methods(monkeypatch, report=lambda kind, text: reports.append((kind, text)))
     lit.camera.scale = (-1.0, 1.0, 1.0)
     for index in range(20):
-        lit.collection.objects.link(bpy.data.objects.new(f"Hair{index}", bpy.data.hair_curves.new("Hair")))
+        lit.collection.objects.link(bpy.data.objects.new(f"Smoke{index}", bpy.data.volumes.new("Smoke")))
     bpy.ops.render.render()
     texts = [text for kind, text in reports if kind == {"WARNING"}]
     assert any("not mirrored" in text for text in texts)

@@ -32,11 +32,6 @@ def the(scene, kind):
     return next(found for found in scene.objects if found.type == kind)
 
 
-def add_hair(scene):
-    the(scene, "MESH").modifiers.new("hair", "PARTICLE_SYSTEM")
-    the(scene, "MESH").particle_systems[0].settings.type = "HAIR"
-
-
 def set_of_cycles(block, name, value):
     """As the window does: Python's own changes of what add-ons add are not told to depsgraphs."""
     setattr(block.cycles, name, value)
@@ -69,7 +64,6 @@ def look_around_with_both_eyes(scene):
 
 
 USES = {
-    "Hair of particle systems": add_hair,
     "Adaptive Subdivision": subdivide,
     "Rolling Shutter": roll,
     "Spherical Stereo": look_around_with_both_eyes,
@@ -88,7 +82,7 @@ def test_what_is_used_is_named_once(lit, omission):
 
 def test_previews_name_nothing(lit):
     """Their scene is Blender's own, and none of the user's doing."""
-    add_hair(lit)
+    subdivide(lit)
     lit.view_layers[0].update()
     engine = SimpleNamespace(is_preview=True, test_break=lambda: False, update_stats=lambda *_: None)
     scene = export_scene(bpy.context.evaluated_depsgraph_get(), engine)

@@ -12,7 +12,8 @@ import pytest
 
 from rppm_addon.blender import kept_exports
 from rppm_addon.blender.export.images import images
-from rppm_addon.blender.export.meshes import mesh_table, meshes
+from rppm_addon.blender.export.meshes import meshes
+from rppm_addon.blender.export.objects import mesh_table
 from rppm_addon.blender.export.sync import SceneSync
 from rppm_addon.scene import Camera, Instance, Scene
 from rppm_addon.scene.documents import field_names

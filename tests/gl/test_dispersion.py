@@ -26,9 +26,7 @@ def prism(material_: Material, camera: Camera | None = None, **settings: object)
     slope = np.tan(WEDGE)
     floor = scenes.rectangle("floor", (-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0))
     top = scenes.rectangle("top", (-1, -1, 3), (1, -1, 3), (1, 1, 3), (-1, 1, 3))
-    bottom = scenes.rectangle(
-        "bottom", (-1, 1, 2 + slope), (1, 1, 2 - slope), (1, -1, 2 - slope), (-1, -1, 2 + slope)
-    )
+    bottom = scenes.rectangle("bottom", (-1, 1, 2 + slope), (1, 1, 2 - slope), (1, -1, 2 - slope), (-1, -1, 2 + slope))
     instances = [Instance(index, np.eye(4), [kind]) for index, kind in enumerate((0, 1, 1))]
     camera = camera or Camera(scenes.looking((0, -3, 1), (0, 0, 0)), (-0.5, 0.5, -0.5, 0.5), 8, 8)
     sun = Light("sun", LightKind.SUN, scenes.looking((0, 0, 9), (0, 0.001, 0)), np.full(3, 1.0))

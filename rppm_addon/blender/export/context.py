@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from .culling import Culling
+from .curve_settings import CurveSettings, curve_settings
 from .images.images import ImageTable
 from .images.texture_limit import texture_limit
 from .layers import LayerMasks, world_of
@@ -33,6 +34,9 @@ class ExportContext:
     """Whether the view layer has the world's light."""
     use_surfaces: bool = True
     """Whether it has surfaces."""
+    curves: CurveSettings = field(default_factory=CurveSettings)
+    is_render: bool = True
+    """Whether Blender evaluated what renders show, and not viewports."""
     has_light_groups: bool = False
     """Whether objects are asked for theirs."""
     owner_reads: int = 0
@@ -53,6 +57,7 @@ class ExportContext:
         self.images.longest_side = texture_limit(scene, self.viewport)
         layer = depsgraph.view_layer_eval
         self.owners = (layer, scene, world_of(depsgraph))
+        self.curves, self.is_render = curve_settings(depsgraph), depsgraph.mode == "RENDER"
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
         self.use_environment, self.use_surfaces = layer.use_sky, layer.use_solid

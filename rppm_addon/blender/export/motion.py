@@ -18,11 +18,15 @@ from .context import ExportContext
 from .culling import Culling
 from .meshes.meshes import read_shape, read_velocities
 from .objects.matrices import usable_matrices
-from .objects.object_pass import Identity, Placed, identity_of
+from .objects.mesh_table import MeshTable
+from .objects.object_pass import Identity, Placed, identity_of, identity_of_hair
 from .objects.objects import ObjectExporter
+from .strands.particle_hair import hair_systems
+from .strands.round_meshes import ROUND_TYPES, Hair, RoundSource, round_shape_at, round_velocities
 from .sync import read_edits
 
 MIDDLE = 0.5
+_WITH_SHAPES = {"MESH", *ROUND_TYPES}
 _CURVE_STEPS = 256
 _MIDDLES = {"START": 0.5, "CENTER": 0.0, "END": -0.5}
 """Where the middle of the shutter's time is, in shutter times from the frame."""
@@ -86,6 +90,8 @@ class MotionExporter:
         self._cameras: dict[float, tuple[np.ndarray, tuple[float, ...]]] = {}
         self._steps_of_shapes: dict[int, int] = {}
         self._with_velocities: set[int] = set()
+        self._table: MeshTable | None = None
+        """Of the meshes of the middle."""
 
     def run(self, scene: Scene, objects: ObjectExporter, placed: Placed) -> Placed:
         """Give a scene its shutter, and what moves the places of the middle of the shutter's time.
@@ -103,7 +109,7 @@ class MotionExporter:
         try:
             if middle != frame:
                 placed = self._go_to_middle(middle, scene, objects, camera)
-            meshes = list(objects.meshes.meshes)
+            meshes, self._table = list(objects.meshes.meshes), objects.meshes
             bases = {placed.identities[id(instance)]: instance.mesh for instance in placed.instances}
             self._follow_velocities(bases, meshes, seconds)
             changed: set[int] = set()
@@ -147,28 +153,28 @@ class MotionExporter:
 
     def _look_around(self, time: float, bases: dict[Identity, int], meshes: list[Mesh], changed: set[int]) -> None:
         """Note where everything is, and the shape of what has changed."""
-        for identity, instance, source, steps, deforms in self._instances():
+        for identity, instance, data, steps, deforms in self._instances():
             if steps == 0 or time not in step_times(steps):
                 continue
             matrix = np.array(instance.matrix_world, np.float64)
             if np.isfinite(matrix).all():
                 self._matrices.setdefault(identity, {})[time] = matrix
             place = bases.get(identity)
-            if place is None or not deforms or source.type != "MESH" or place in self._with_velocities:
+            if place is None or not deforms or data is None or place in self._with_velocities:
                 continue
             if time not in self._shapes.get(place, {}) and changed & set(identity[:2]):
-                self._shapes.setdefault(place, {})[time] = _shape(source.data, meshes[place])
+                self._shapes.setdefault(place, {})[time] = self._shape(data, place, meshes[place])
                 self._steps_of_shapes[place] = steps
 
     def _follow_velocities(self, bases: dict[Identity, int], meshes: list[Mesh], seconds: float) -> None:
         """Meshes that say how fast their vertices are go straight on: their faces may be others at other times."""
         known: set[int] = set()
-        for identity, _, source, steps, deforms in self._instances():
+        for identity, _, data, steps, deforms in self._instances():
             place = bases.get(identity)
-            if place is None or place in known or source.type != "MESH":
+            if place is None or place in known or data is None:
                 continue
             known.add(place)
-            velocities = read_velocities(source.data) if steps and deforms else None
+            velocities = self._velocities(data, place) if steps and deforms else None
             if velocities is not None:
                 mesh, way = meshes[place], velocities * np.float32(0.5 * seconds)
                 self._shapes[place] = {
@@ -178,15 +184,37 @@ class MotionExporter:
                 self._steps_of_shapes[place] = 1
                 self._with_velocities.add(place)
 
+    def _shape(
+        self, data: bpy.types.Mesh | RoundSource, place: int, middle: Mesh
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        if isinstance(data, bpy.types.Mesh):
+            return _shape(data, middle)
+        return round_shape_at(data, self._context.curves, middle, self._table.rings.get(place))
+
+    def _velocities(self, data: bpy.types.Mesh | RoundSource, place: int) -> np.ndarray | None:
+        """(vertices, 3) float32 meters a second, if there are any."""
+        if isinstance(data, bpy.types.Mesh):
+            return read_velocities(data)
+        return round_velocities(data, self._table.rings.get(place))
+
     def _instances(
         self,
-    ) -> Iterator[tuple[Identity, bpy.types.DepsgraphObjectInstance, bpy.types.Object, int, bool]]:
-        """All that there is now, each with its object and what _flags_for gives; valid until the next one only."""
+    ) -> Iterator[tuple[Identity, bpy.types.DepsgraphObjectInstance, bpy.types.Mesh | RoundSource | None, int, bool]]:
+        """All that there is now, each with what its mesh is made of, if it has one, and what _flags_for gives; valid
+        until the next one only."""
+        may_have_hair = self._context.curves.shown and any(part.type == "HAIR" for part in bpy.data.particles)
         for instance in self._depsgraph.object_instances:
             source = instance.object
             owner = instance.parent if instance.is_instance else source
             identity = identity_of(instance, source.original, owner.original)
-            yield identity, instance, source, *self._flags_for(identity, source, owner)
+            data = source.data if source.type in _WITH_SHAPES else None
+            yield identity, instance, data, *self._flags_for(identity, source, owner)
+            if may_have_hair and source.type == "MESH" and len(source.particle_systems):
+                systems = list(hair_systems(source, self._context.is_render))
+                if systems:
+                    identity = identity_of_hair(identity, source.original)
+                    hair = Hair(source, systems, False)
+                    yield identity, instance, hair, *self._flags_for(identity, source, owner)
 
     def _flags_for(self, identity: Identity, source: bpy.types.Object, owner: bpy.types.Object) -> tuple[int, bool]:
         """Steps and whether shapes are blurred, by what the object and what multiplies it say."""

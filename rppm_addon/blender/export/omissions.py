@@ -36,19 +36,7 @@ def _cycles(block: bpy.types.bpy_struct, name: str, default: object) -> object:
     return getattr(getattr(block, "cycles", None), name, default)
 
 
-def _has_hair(source: bpy.types.Object) -> bool:
-    return any(
-        system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in source.particle_systems
-    )
-
-
 OF_OBJECTS = (
-    Omission(
-        "Hair of particle systems",
-        "strands are not rendered, only objects and collections that stand for them",
-        ("particle_systems",),
-        _has_hair,
-    ),
     Omission(
         "Adaptive Subdivision",
         "what is displaced is divided evenly, into a million triangles at most; other surfaces are as their modifiers "

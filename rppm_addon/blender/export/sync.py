@@ -14,6 +14,7 @@ from ...scene.lights import Light
 from ...scene.sharing import share
 from .context import ExportContext
 from .culling import Culling
+from .curve_settings import curve_settings
 from .images.texture_limit import texture_limit
 from .layers import overrides_of, world_of
 from .libraries import warn_of_missing
@@ -177,7 +178,11 @@ class SceneSync:
         be called again, with a depsgraph that is up to date. Between two calls anything may change: nothing of Blender
         is held, and what changes is exported again.
         """
-        overrides = *overrides_of(depsgraph), texture_limit(depsgraph.scene_eval, self._viewport)
+        overrides = (
+            *overrides_of(depsgraph),
+            texture_limit(depsgraph.scene_eval, self._viewport),
+            curve_settings(depsgraph),
+        )
         if overrides != self._overrides or 0 < self._most_images < len(self._images.images):
             self._begin()
         edits = self.note(depsgraph)

@@ -6,6 +6,7 @@ import bpy
 from . import (
     baking,
     borrowed,
+    curves,
     cycles_settings,
     data,
     lights,
@@ -30,6 +31,7 @@ CLASSES = (
     *sampling.CLASSES,
     *performance.STATUS,
     *render.CLASSES,
+    *curves.CLASSES,
     *motion.CLASSES,
     *baking.CLASSES,
     *lights.CLASSES,

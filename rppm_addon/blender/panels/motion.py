@@ -13,7 +13,7 @@ _SHAPES = (
     ("LINE", "LINCURVE"),
     ("MAX", "NOCURVE"),
 )
-_BLURRED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CAMERA", "LIGHT"}
+_BLURRED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CAMERA", "LIGHT", "CURVES", "POINTCLOUD"}
 
 
 class RPPM_PT_motion_blur(RppmPanel, bpy.types.Panel):

@@ -160,7 +160,7 @@ class RPPM_PT_world_light_group(RppmPanel, bpy.types.Panel):
         _draw_light_group(self.column(), context.world, context.view_layer)
 
 
-_VISIBLE_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "LIGHT"}
+_VISIBLE_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "LIGHT", "CURVES", "POINTCLOUD"}
 """Objects that are rendered."""
 
 

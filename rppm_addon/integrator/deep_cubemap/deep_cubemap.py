@@ -213,6 +213,7 @@ class DeepCubemap(BufferSet):
         """Changes places with the list of fragments, level by level."""
         self._framebuffer: moderngl.Framebuffer | None = None
         self._triangles: moderngl.Buffer | None = None
+        self._has_one_sided = False
         self._too_many, self._last_level = 1 << 32, 0
         self._fragments_found = 0
         self.resolution = 0
@@ -226,6 +227,7 @@ class DeepCubemap(BufferSet):
         center: Iterable[float],
         scene_radius: float,
         resolution: int = 0,
+        has_one_sided: bool = False,
     ) -> None:
         """Sort triangles into the cubemap.
 
@@ -233,13 +235,14 @@ class DeepCubemap(BufferSet):
         ``scene_radius``: the greatest distance from ``center`` of any vertex (meters); nothing farther
         out is hit. Rays may start anywhere, yet lose precision from some ten radii on.
         ``resolution``: the most cells along a face's side, a power of two from 4 to FINEST_RESOLUTION, which 0 stands
-        for too. Triangles with infinite or NaN coordinates are left out.
+        for too. ``has_one_sided``: whether any triangle is met by rays from outside only. Triangles with infinite or
+        NaN coordinates are left out.
         Raises ValueError for other resolutions, and DeviceError where the device's limits are too low.
         """
         resolution = resolution or FINEST_RESOLUTION
         if not 4 <= resolution <= FINEST_RESOLUTION or resolution & (resolution - 1):
             raise ValueError(f"cubemap resolution {resolution} is not a power of two from 4 to {FINEST_RESOLUTION}")
-        self._triangles = triangles
+        self._triangles, self._has_one_sided = triangles, has_one_sided
         x, y, z = map(float, center)
         self.center = x, y, z
         exponent = resolution.bit_length() - 1
@@ -307,7 +310,8 @@ class DeepCubemap(BufferSet):
         """And their defines."""
         fits = all(self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS)
         is_asked_for = self._texel_buffers or self._entries.size > self._context.storage_block_limit
-        return {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
+        defines = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
+        return defines | {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else defines
 
     @property
     def route(self) -> str | None:

@@ -198,6 +198,7 @@ class DeviceScene:
                     center,
                     radius_about(center, self.geometry),
                     known(self.scene).settings.cubemap_resolution,
+                    self.geometry.has_round_shapes,
                 )
                 if self.deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
                     return

@@ -34,6 +34,7 @@ Record(
     specular_alpha="float",
     **RADIUS_PARAMETERS,
     gathers_again_below="float",
+    has_round_shapes="uint",
     photon_flux="float",
 )
 
@@ -144,6 +145,7 @@ class Importons(BufferSet):
                     "specular_alpha": settings.specular_roughness**2,
                     **radii.parameters,
                     "gathers_again_below": radii.corner,
+                    "has_round_shapes": context.geometry.has_round_shapes,
                     "photon_flux": lights.photon_flux,
                 },
             )

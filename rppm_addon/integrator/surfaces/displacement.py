@@ -11,7 +11,7 @@ import numpy as np
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
-from ...scene.meshes import UNDISPLACED, AttributeDomain, Instance, Mesh, MeshAttribute
+from ...scene.meshes import UNDISPLACED, AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.motion import Deformation, Shutter
 from ...scene.scene import Scene
 from ...scene.sharing import same_bits
@@ -145,6 +145,8 @@ def _users(scene: Scene, slots_of: dict[int, tuple[int, bool]]) -> _Users:
     found: _Users = {}
     known: dict[tuple[int, ...], _Slots] = {}
     for member, instance in enumerate(scene.instances):
+        if scene.meshes[instance.mesh].shape is not MeshShape.SURFACE:  # as in Cycles
+            continue
         key = tuple(instance.materials)
         if key not in known:
             known[key] = tuple(slots_of.get(material) for material in key)

@@ -14,7 +14,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...scene.light_linking import LightLinking
-from ...scene.meshes import Instance, Mesh, RayVisibility
+from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ..common.records import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 
@@ -23,6 +23,9 @@ log = logging.getLogger(__name__)
 _NO_UV = 0xFFFFFFFF
 """In place of where a mesh's UV begin."""
 Constants("MeshArrays", NO_UV=_NO_UV)
+_ONE_SIDED = 1 << 12
+"""In the codes of triangles, above the sets: rays meet it from outside only."""
+Constants("TriangleCodes", ONE_SIDED=_ONE_SIDED)
 
 INSTANCE_ENTRY = Record(
     "InstanceEntry",
@@ -117,7 +120,7 @@ class Geometry(BufferSet):
     what they lie in, low and high in meters, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
     """
 
-    remedy = "lower the subdivision, decimate meshes or remove instances"
+    remedy = "lower the subdivision, decimate meshes, or remove instances or children of hair"
     triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, texel_bytes=16)
     attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, texel_bytes=16)
 
@@ -134,6 +137,8 @@ class Geometry(BufferSet):
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
         self.triangle_count = 0
+        self.has_round_shapes = False
+        """Whether any triangles stand for strands or points."""
         self.placements: list[Placement] = []
         self.matrices, self.boxes = np.zeros((0, 4, 4)), np.zeros((0, 2, 3))
         self.bounds_low = self.bounds_high = np.zeros(3)
@@ -179,7 +184,9 @@ class Geometry(BufferSet):
             entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
             for row in range(3):
                 entries[f"row{row}"] = self.matrices[:, row]
-            slots = _fill(entries, instances, len(scene.materials), default_material)
+            is_round = np.array([mesh.shape is not MeshShape.SURFACE for mesh in meshes])[which]
+            slots = _fill(entries, instances, is_round, len(scene.materials), default_material)
+        self.has_round_shapes = bool(instances) and bool(is_round.any())
         boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
         self.placements = list(map(Placement, instances, entries["first_triangle"].tolist()))
         self._enclose(boxes[which], swept)
@@ -241,11 +248,16 @@ class Geometry(BufferSet):
             self._arrays[name] = arrays
 
 
-def _fill(entries: np.ndarray, instances: list[Instance], materials: int, default_material: int) -> list[int]:
-    """Sets, shadows and slots of entries; returns the materials of all slots, the same for instances alike."""
+def _fill(
+    entries: np.ndarray, instances: list[Instance], is_round: np.ndarray, materials: int, default_material: int
+) -> list[int]:
+    """Sets, shadows and slots of entries; returns the materials of all slots, the same for instances alike.
+
+    is_round: (n,) bool, of which instances triangles stand for strands or points.
+    """
     visibility = np.array([int(instance.visibility) for instance in instances])
     shadowless = visibility & int(RayVisibility.SHADOW) == 0
-    sets = np.array([_packed_sets(instance.linking) for instance in instances])
+    sets = np.array([_packed_sets(instance.linking) for instance in instances]) + _ONE_SIDED * is_round
     entries["set_code"] = np.where(shadowless, 1 + sets, -sets)  # shaders/common/light_sets.glsl
     slots: list[int] = []
     ranges: dict[tuple[int, ...], tuple[int, int]] = {}

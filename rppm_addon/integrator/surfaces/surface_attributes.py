@@ -7,12 +7,13 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.light_linking import ALL_SETS
-from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute
+from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
 from ..common.records import CLOSURE_CURVED, TERMINATOR_SHIFT, TERMINATOR_STEPS
@@ -45,13 +46,23 @@ SHADING_INSTANCE = Record(
     particle_angular_velocity="vec3",
     light_sets1="uint",
     terminator_flags="uint",
+    shape="uint",
 )
 """An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell;
 the words of the bits of the light sets that it shines on; and of its shadow terminator the geometry offset and what the
-flags of its closures tell."""
+flags of its closures tell; ``shape``: of its mesh (MeshShapes)."""
+SPHERE_REACHES = [1.14563412, 1.03787541, 1.00954588, 1.00239101]
+"""By how often an icosahedron is subdivided, how far from the middle its vertices lie where it has the area of the unit
+sphere, as those of points have it."""
+Constants(
+    "MeshShapes",
+    SHAPE={shape.name: number for number, shape in enumerate(MeshShape)},
+    SPHERE_REACHES=SPHERE_REACHES,
+)
 
 StorageBlock("ShadingInstances", "ShadingInstance shading_instances[];")
 
+_SHAPES = {shape: number for number, shape in enumerate(MeshShape)}
 _PARTICLE = ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity")
 
 
@@ -132,6 +143,7 @@ def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, 
     place = np.searchsorted(used, which)
     size = np.array([meshes[index].texture_size for index in used], np.float64)
     records["texture_location"] = np.array([meshes[index].texture_location for index in used])[place]
+    records["shape"] = np.array([_SHAPES[meshes[index].shape] for index in used])[place]
     records["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)[place]
     inverses = _inverses(matrices)
     for row in range(3):

@@ -50,6 +50,10 @@ KINDS = {
         options={"direction_type": ("RADIAL", "UV_MAP"), "axis": ("X", "Y", "Z")},
         resources=("attribute",),
     ),
+    "strand_value": _geometry({"value": FLOAT}, resources=("attribute",)),
+    "hair_info": _geometry({"is_strand": FLOAT, "tangent_normal": VECTOR}),
+    "point_position": _geometry({"position": VECTOR}, resources=("attribute",)),
+    "round_size": _geometry({"size": FLOAT}, resources=("attribute",)),
     "object_info": _geometry(
         {
             "location": VECTOR, "color": COLOR, "alpha": FLOAT, "object_index": FLOAT, "material_index": FLOAT,

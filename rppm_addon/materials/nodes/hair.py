@@ -40,6 +40,7 @@ KINDS = {
             "r_lobe": (FLOAT, 1.0),
             "tt_lobe": (FLOAT, 1.0),
             "trt_lobe": (FLOAT, 1.0),
+            "strand_random": (FLOAT, -1.0),
         },
         outputs=_BSDF,
         options={"model": ("CHIANG", "HUANG"), "parametrization": ("ABSORPTION", "MELANIN", "COLOR")},

@@ -35,6 +35,8 @@ class KnownPrograms:
 def text_of(material: Material) -> str:
     """The GLSL that a material is rendered with."""
     try:
-        return compile_graph(material.graph, abbe_number=material.abbe_number).text
+        return compile_graph(
+            material.graph, abbe_number=material.abbe_number, on_round_shapes=material.on_round_shapes
+        ).text
     except GraphError:
         return NEUTRAL_TEXT

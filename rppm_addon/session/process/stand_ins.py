@@ -66,7 +66,10 @@ class StandIns:
             return material
         if id(material) not in self._made:
             graph = stand_in_graph(material.graph, scene.images)
-            self._made[id(material)] = material, dataclasses.replace(material, graph=graph, abbe_number=None)
+            self._made[id(material)] = (
+                material,
+                dataclasses.replace(material, graph=graph, abbe_number=None, on_round_shapes=False),
+            )
         return self._made[id(material)][1]
 
     @property

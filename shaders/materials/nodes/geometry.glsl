@@ -62,6 +62,9 @@ void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out 
     parametric = vec3(surface.barycentrics.x, surface.barycentrics.y, 0.0);
     backfacing = surface.backfacing ? 1.0 : 0.0;
     tangent = default_tangent(surface);
+#ifdef ROUND_SHAPES
+    if (is_strand(surface)) true_normal = surface.viewer;  // ribbons face it
+#endif
 }
 
 void node_tangent(Surface surface, int direction_type, int axis, uint layer, out vec3 tangent) {
@@ -93,6 +96,33 @@ void node_particle_info(Surface surface, out float index, out float random, out 
     size = at.particle_size;
     velocity = at.particle_velocity;
     angular_velocity = at.particle_angular_velocity;
+}
+
+// A number of each strand, place along it, or point; other surfaces have none.
+void node_strand_value(Surface surface, uint layer, out float value) { value = attribute_value(surface, layer).x; }
+
+void node_hair_info(Surface surface, out float is_strand_out, out vec3 tangent_normal) {
+    is_strand_out = 0.0;
+    tangent_normal = vec3(0.0);
+#ifdef ROUND_SHAPES
+    if (!is_strand(surface)) return;
+    is_strand_out = 1.0;
+    tangent_normal = strand_at(surface).across;
+#endif
+}
+
+void node_point_position(Surface surface, uint layer, out vec3 position) {
+    position = vec3(0.0);
+    if (attribute_place(surface, layer).y == 0u) return;
+    position = surface.position
+               + direction_to_world(surface, attribute_value(surface, layer).xyz
+                                             - point_to_object(surface, surface.position));
+}
+
+// A length across a strand or point: as in Cycles as large as the instance makes it along the diagonal.
+void node_round_size(Surface surface, uint layer, out float size) {
+    float own = attribute_value(surface, layer).x;
+    size = own > 0.0 ? length(direction_to_world(surface, vec3(own / sqrt(3.0)))) : 0.0;
 }
 
 void node_camera(Surface surface, out vec3 view_vector, out float view_z_depth, out float view_distance) {

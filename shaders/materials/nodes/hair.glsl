@@ -63,16 +63,19 @@ vec3 hair_absorption(int parametrization, vec3 color, float melanin, float redne
     return max(melanin * pigments, 0.0) + absorption_of_color(tint, radial_roughness);
 }
 
+// strand_random: of a strand, in place of random; less than 0 where that is given.
 void node_bsdf_hair_principled_chiang(Surface surface, inout ClosureBuilder builder, float weight, int parametrization,
                                       vec3 color, float melanin, float redness, vec3 tint, vec3 absorption,
                                       float aspect_ratio, float roughness, float radial_roughness, float coat,
                                       float ior, float offset, float random_color, float random_roughness,
-                                      float random, float r_lobe, float tt_lobe, float trt_lobe) {
+                                      float random, float r_lobe, float tt_lobe, float trt_lobe,
+                                      float strand_random) {
+    bool on_strand;
+    vec3 tangent = fiber_tangent(surface, 1, on_strand), n = builder.geometric;
+    if (on_strand && strand_random >= 0.0) random = strand_random;
     float randomness = 1.0 + 2.0 * (random - 0.5) * random_roughness;
     roughness *= randomness;
     radial_roughness *= randomness;
-    bool on_strand;
-    vec3 tangent = fiber_tangent(surface, 1, on_strand), n = builder.geometric;
     vec3 sigma = hair_absorption(parametrization, color, melanin, redness, tint, absorption, radial_roughness,
                                  random_color, random);
     add_lobe(builder, MicrofacetLobe(vec3(weight), LOBE_HAIR_CHIANG, sigma, HAIR_ALPHA,
@@ -96,10 +99,12 @@ void node_bsdf_hair_principled_huang(Surface surface, inout ClosureBuilder build
                                      vec3 color, float melanin, float redness, vec3 tint, vec3 absorption,
                                      float aspect_ratio, float roughness, float radial_roughness, float coat,
                                      float ior, float offset, float random_color, float random_roughness,
-                                     float random, float r_lobe, float tt_lobe, float trt_lobe) {
-    roughness *= 1.0 + 2.0 * (random - 0.5) * random_roughness;
+                                     float random, float r_lobe, float tt_lobe, float trt_lobe,
+                                     float strand_random) {
     bool on_strand;
     vec3 tangent = fiber_tangent(surface, 1, on_strand), n = builder.geometric;
+    if (on_strand && strand_random >= 0.0) random = strand_random;
+    roughness *= 1.0 + 2.0 * (random - 0.5) * random_roughness;
     vec3 sigma = hair_absorption(parametrization, color, melanin, redness, tint, absorption, roughness, random_color,
                                  random);
     float aspect = max(aspect_ratio, 0.05);

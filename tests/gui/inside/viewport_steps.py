@@ -315,7 +315,7 @@ _exported: list[str] = []
 
 def count_meshes() -> None:
     """From now on note whose mesh is exported."""
-    module = _module("meshes.mesh_table")
+    module = _module("objects.mesh_table")
     export_mesh = module.export_mesh
 
     def counted(mesh, name, *arguments):

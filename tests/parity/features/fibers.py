@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shaders of fibers, on a mesh."""
+"""Shaders of fibers, on a mesh and on strands."""
 
-from .rows import lit
+import bpy
+
+from ..scenes import camera
+from . import stage
+from .net import material
+from .rows import Kind, Row, add, lit
+from .strands import OUTLINES, tuft
 
 GROUPS = "Hair", "Principled Hair"
 LONG = {"camera_path_length": 64, "photon_path_length": 24}
@@ -49,3 +55,39 @@ lit(
     ),
     settings=LONG,
 )
+
+
+def on_strands(group, name, give, **members):
+    """A row of strands that stand on the ground."""
+
+    def build():
+        stage.empty()
+        surface, net = material()
+        net.output(give(net))
+        plain, plain_net = material("Ground")
+        plain_net.output(plain_net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
+        camera((0.4, -4.6, 2.3), (0.0, 0.0, 0.9), 34.0)
+        stage.background().inputs["Strength"].default_value = 0.25
+        bpy.context.scene.world.cycles.sampling_method = "MANUAL"
+        bpy.context.scene.world.cycles.sample_map_resolution = 256
+        tuft(surface, count=100, radius=0.03, tip=0.3)
+        stage.ground(plain)
+        stage.area_light()
+
+    settings = {"camera_path_length": 24, "photon_path_length": 12}
+    add(Row(group, f"{name}, on strands", build, Kind.LIGHT, OUTLINES, 0.01, 0.06, settings, 2, **members))
+
+
+on_strands("Hair", "Reflection", shader("BsdfHair", COLOR | {"Offset": 0.2}, component="Reflection"))
+on_strands("Hair", "Transmission", shader("BsdfHair", COLOR, component="Transmission"))
+on_strands("Principled Hair", "CHIANG", shader("BsdfHairPrincipled", COLOR))
+on_strands(
+    "Principled Hair",
+    "CHIANG, random",
+    shader(
+        "BsdfHairPrincipled",
+        {"Melanin": 0.5, "Random Color": 1.0, "Random Roughness": 0.8},
+        parametrization="MELANIN",
+    ),
+)
+on_strands("Principled Hair", "HUANG", shader("BsdfHairPrincipled", COLOR, model="HUANG"))

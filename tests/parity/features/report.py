@@ -44,8 +44,8 @@ NOT_RENDERED = """
 ## Not rendered
 
 What a file may use beside its nodes and RPPM renders in another way, or not at all. Log, panel and statistics name it,
-with the objects that use it. Objects without a surface (hair curves, point clouds, volumes) are named likewise, and so
-are nodes; of these the remarks further down say what stands in.
+with the objects that use it. Objects without a surface (volumes) are named likewise, and so are nodes; of these the
+remarks further down say what stands in.
 
 | used by a file | in RPPM's picture |
 |---|---|

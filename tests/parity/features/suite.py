@@ -14,6 +14,7 @@ from . import (  # noqa: F401
     shaders,
     shadow_terminator,
     simplify,
+    strands,
     values,
     worlds,
     zones_and_closures,

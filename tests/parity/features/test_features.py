@@ -9,7 +9,7 @@ and all but the first of those kinds of nodes whose values have tests of their o
 import numpy as np
 import pytest
 
-from . import displacement, fibers, zones_and_closures
+from . import displacement, fibers, strands, zones_and_closures
 from .flip import flip
 from .measure import measure, shortcomings
 from .suite import ROWS
@@ -19,7 +19,7 @@ PART = 0.5
 DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", "Driven: Normal by a bump")
 
 
-MODULES_OF_THEIR_OWN = {displacement.GROUP, zones_and_closures.GROUP, *fibers.GROUPS}
+MODULES_OF_THEIR_OWN = {displacement.GROUP, zones_and_closures.GROUP, *fibers.GROUPS, *strands.GROUPS}
 VALUES_ELSEWHERE = {
     "Textures", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range", "Vector Transform",
 }  # fmt: skip

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender materials to node graphs."""
 
+import dataclasses
 from collections.abc import Iterator
 
 import bpy
@@ -25,6 +26,8 @@ class MaterialTable:
         """Of each material, the attributes that its nodes read, with the name of such a node."""
         self._context = context
         self._places: dict[int, int] = {}
+        self._on_round_shapes: set[int] = set()
+        """Places of those that are on strands or points."""
         self.untracked: set[int] = set()
         """session_uid of those that rest on what changes without the depsgraph telling."""
 
@@ -39,12 +42,19 @@ class MaterialTable:
             self.attributes.append(_attributes_of(exported))
         return self._places[key]
 
+    def put_on_round_shapes(self, places: list[int]) -> None:
+        """Materials are on strands or points as well."""
+        for place in set(places) - self._on_round_shapes:
+            self._on_round_shapes.add(place)
+            self.materials[place] = dataclasses.replace(self.materials[place], on_round_shapes=True)
+
     def renew(self, material: bpy.types.Material) -> bool:
         """Export a material that has changed again, if it is in use. Returns whether meshes need other attributes."""
         key = material.original.session_uid
         if key not in self._places:
             return False
         exported, place = self._export(key, material), self._places[key]
+        exported.on_round_shapes = place in self._on_round_shapes
         before = self.attributes[place]
         self.materials[place], self.attributes[place] = exported, _attributes_of(exported)
         return self.attributes[place] != before

@@ -14,6 +14,7 @@ from ....scene.sky import Sky
 from ....scene.whole_files import is_no_file
 from ..images.images import is_associated
 from ..meshes.attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, POINTINESS, TANGENT, attribute_of
+from ..strands.attributes import CURVE_RANDOM, INTERCEPT, LENGTH, POINT_PLACE, POINT_RADIUS, POINT_RANDOM, THICKNESS
 from .graphs import GraphExporter, handles, snake_case
 from .links import Path
 
@@ -207,7 +208,48 @@ def _profile(node: bpy.types.Node, library: bpy.types.Library | None) -> str:
     return file.read_text(encoding="latin-1")
 
 
-@handles("HAIR_INFO", "POINT_INFO", "VOLUME_INFO", "UVALONGSTROKE")
+@handles("HAIR_INFO")
+def _hair_info(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    name = snake_case(output.identifier)
+    if name in _OF_STRANDS:
+        return exporter.shared(*_OF_STRANDS[name])
+    return exporter.shared("hair_info", name)
+
+
+@handles("BSDF_HAIR_PRINCIPLED")
+def _principled_hair(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    """Strands have random numbers of their own where none are given, and where they make a difference."""
+    inputs: dict[str, object] = {}
+    sockets = {socket.identifier: socket for socket in node.inputs if socket.enabled}
+    factors = [sockets[name] for name in ("Random Color", "Random Roughness") if name in sockets]
+    if not exporter.is_linked(sockets["Random"], path) and any(
+        exporter.is_linked(factor, path) or factor.default_value != 0.0 for factor in factors
+    ):
+        inputs["strand_random"] = exporter.shared(*_OF_STRANDS["random"])
+    return exporter.add("bsdf_hair_principled", node, path, "bsdf", inputs=inputs)
+
+
+@handles("POINT_INFO")
+def _point_info(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    return exporter.shared(*_OF_POINTS[snake_case(output.identifier)])
+
+
+_OF_STRANDS = {
+    "intercept": ("strand_value", "value", INTERCEPT),
+    "length": ("strand_value", "value", LENGTH),
+    "thickness": ("round_size", "size", THICKNESS),
+    "random": ("strand_value", "value", CURVE_RANDOM),
+}
+"""Kind and output of the nodes that give Hair Info's outputs, and the attribute that they read."""
+_OF_POINTS = {
+    "position": ("point_position", "position", POINT_PLACE),
+    "radius": ("round_size", "size", POINT_RADIUS),
+    "random": ("strand_value", "value", POINT_RANDOM),
+}
+"""Likewise of Point Info's."""
+
+
+@handles("VOLUME_INFO", "UVALONGSTROKE")
 def _other_geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
 

@@ -9,14 +9,16 @@ import numpy as np
 from ....scene import Instance, Light, LightLinking, RayVisibility
 from ..context import ExportContext
 from ..culling import Culling
+from ..hashing import hashed
 from ..layers import light_group_of
 from ..lights.lights import export_light
 from ..meshes.attributes import attribute_of
-from ..meshes.mesh_table import MeshTable
 from ..nodes.materials import MaterialTable
+from ..strands.round_meshes import RoundSource
 from ..visibility import visibility_of
-from .hashing import hashed
+from .mesh_table import MeshTable
 
+_USE_UV = {"tex_coord", "attribute", "normal_map", "tangent", "uvmap", "tex_image", "tex_image_tiles"}
 _WHOLE = {"OBJECT", "INSTANCER"}
 """Domains of attributes that objects have as a whole."""
 
@@ -26,7 +28,7 @@ class InstanceReader:
 
     def __init__(self, context: ExportContext) -> None:
         self.materials = MaterialTable(context)
-        self.meshes = MeshTable(context.report)
+        self.meshes = MeshTable(context)
         self.report = context.report
         self._context = context
         self._wants: dict[tuple[int, ...], tuple[set[str], bool]] = {}
@@ -125,6 +127,26 @@ class InstanceReader:
         return self._context.use_surfaces
 
     @property
+    def shows_strands(self) -> bool:
+        """Whether the view layer has hair."""
+        return self._context.curves.shown
+
+    @property
+    def may_have_hair(self) -> bool:
+        """Whether any object may have particle systems with hair to be rendered."""
+        return self.shows_strands and any(settings.type == "HAIR" for settings in bpy.data.particles)
+
+    @property
+    def is_render(self) -> bool:
+        """Whether Blender evaluated what renders show, and not viewports."""
+        return self._context.is_render
+
+    def uses_uv(self, materials: list[int]) -> bool:
+        """Whether nodes of any of these materials may ask for the UV map in use."""
+        graphs = (self.materials.materials[material].graph for material in materials)
+        return any(node.kind in _USE_UV for graph in graphs for node in graph.nodes)
+
+    @property
     def culling(self) -> Culling:
         """What is left out."""
         return self._context.culling
@@ -163,7 +185,11 @@ class InstanceReader:
         return self._wants[key]
 
     def mesh_index(
-        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, shading: dict[str, object], owner: int
+        self,
+        source: bpy.types.Object,
+        mesh: bpy.types.Mesh | RoundSource | None,
+        shading: dict[str, object],
+        owner: int,
     ) -> int | None:
         """Index of an object's mesh with the attributes that its materials read; None of one without faces.
 

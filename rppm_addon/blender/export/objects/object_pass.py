@@ -11,6 +11,9 @@ from ....scene import Instance, Light
 from ....scene.meshes import SMOOTH_NORMALS
 from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
 from ..omissions import objects_of
+from ..strands.attributes import OF_ROUND_SHAPES
+from ..strands.particle_hair import hair_systems
+from ..strands.round_meshes import ROUND_TYPES, Hair, RoundSource
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
 from .matrices import usable_matrices
@@ -21,7 +24,12 @@ _AT_ONCE = 32
 """Instances between which nobody looks at the clock."""
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
-UNSUPPORTED_TYPES = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
+UNSUPPORTED_TYPES = {"VOLUME": "volumes"}
+
+_PARTS = {"CURVES": -2, "POINTCLOUD": -3}
+"""What one object shows beside its mesh, in its identity."""
+_HAIR = -1
+"""Likewise, what its particle systems bring."""
 
 Identity = tuple[int, ...]
 """By what an instance or a light is known at other times: the session_uid of its object, or those of what multiplies
@@ -32,9 +40,17 @@ def identity_of(
     instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, owner: bpy.types.Object
 ) -> Identity:
     """source: the original object; owner: what multiplies it, or itself."""
+    part = _PARTS.get(instance.object.type)
+    if part is not None:
+        return (owner.session_uid, source.session_uid, *instance.persistent_id, part)
     if not instance.is_instance:
         return (owner.session_uid,)
     return (owner.session_uid, source.session_uid, *instance.persistent_id)
+
+
+def identity_of_hair(identity: Identity, source: bpy.types.Object) -> Identity:
+    """Of what the particle systems of an instance's object bring; source: the original object."""
+    return (*(identity if len(identity) > 1 else (*identity, source.session_uid)), _HAIR)
 
 
 @dataclass
@@ -147,6 +163,7 @@ class ObjectPass:
             return
         start, slices, matrices = self.place, self._report.slices, self._matrices
         self._particles.frame = depsgraph.scene_eval.frame_current_final
+        has_hair = self._reader.may_have_hair
         for number, instance in enumerate(depsgraph.object_instances):
             if number < start:  # Blender's iterator is nothing to be held from one slice to the next
                 continue
@@ -162,6 +179,8 @@ class ObjectPass:
                     self._export_multiplied(instance, source, matrices[number])
                 elif instance.show_self:
                     self._export_alone(instance, source, matrices[number])
+                if has_hair and source.type == "MESH" and instance.show_particles:
+                    self._export_hair(instance, source, matrices[number])
             self.place = number + 1
         self.place = self.count
 
@@ -174,6 +193,10 @@ class ObjectPass:
         uid = original.session_uid
         if self._identify:
             self._identity = identity_of(instance, original, original)
+        if source.type in ROUND_TYPES:  # an object may show several
+            self._multiple.add(uid)
+            self._export_instance(source, matrix, uid)
+            return
         meshes, kept = self._reader.meshes, self._unchanged.get(uid)
         if kept is None and (moved := self._moved.get(uid)) is not None and meshes.knows(moved.mesh):
             kept = self._reader.instance(source, matrix, moved)
@@ -246,6 +269,29 @@ class ObjectPass:
             kind.placed = True
         self._add(placed, matrix, kind.uid)
 
+    def _export_hair(
+        self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
+    ) -> None:
+        """What the particle systems of an object bring, whether it is seen itself or not."""
+        if len(source.particle_systems) == 0:
+            return
+        instancer = instance.parent if instance.is_instance else None
+        owner = (instancer or source).original
+        if not (self._shown is None or self._shown(owner)) or self._reader.culling.leaves_out(source, matrix):
+            return
+        visibility = visibility_of(source)
+        systems = list(hair_systems(source, self._reader.is_render)) if visibility else []
+        if not systems:
+            return
+        self._multiple.add(source.original.session_uid)
+        if self._identify:
+            self._identity = identity_of_hair(identity_of(instance, source.original, owner), source.original)
+        shading = self._reader.shading(source, visibility, instancer=instancer)
+        if instancer is not None:
+            shading |= {"random": _random_of(instance)}
+        hair = Hair(source, systems, self._reader.uses_uv(shading["materials"]))
+        self._place(source, hair, matrix, shading, owner.session_uid)
+
     def _learn(self, kind: _Kind, source: bpy.types.Object, owner: _Owner, parent: bpy.types.Object) -> None:
         visibility = visibility_of(source)
         if not visibility or len(source.data.polygons) == 0:
@@ -288,7 +334,9 @@ class ObjectPass:
             what = UNSUPPORTED_TYPES[kind]
             self._report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
             return
-        if kind not in CONVERTED_TYPES and kind != "MESH":
+        if kind not in CONVERTED_TYPES and kind not in ROUND_TYPES and kind != "MESH":
+            return
+        if kind == "CURVES" and not self._reader.shows_strands:
             return
         visibility = visibility_of(source)
         if not visibility:
@@ -298,7 +346,7 @@ class ObjectPass:
         shading = self._reader.shading(source, visibility, instancer=instancer)
         if instancer is not None:
             shading |= {"random": _random_of(instance), "particle": self._particles.of(instance)}
-        if kind != "MESH":
+        if kind in CONVERTED_TYPES:
             original = source.original
             self._unconverted.append(((original.session_uid, original.as_pointer()), matrix, shading, self._identity))
             return
@@ -310,14 +358,16 @@ class ObjectPass:
     def _place(
         self,
         source: bpy.types.Object,
-        mesh: bpy.types.Mesh | None,
+        mesh: bpy.types.Mesh | RoundSource | None,
         matrix: np.ndarray,
         shading: dict[str, object],
         owner: int,
     ) -> None:
         index = self._reader.mesh_index(source, mesh, shading, owner)
         if index is not None:
-            uid = 0 if mesh is None else source.original.session_uid
+            if mesh is not None and not isinstance(mesh, bpy.types.Mesh):
+                self._reader.materials.put_on_round_shapes(shading["materials"])
+            uid = source.original.session_uid if isinstance(mesh, bpy.types.Mesh) else 0
             instance = shaded_instance(index, source, matrix, shading)
             self._note_missing(instance)
             self._add(instance, matrix, uid)
@@ -328,7 +378,8 @@ class ObjectPass:
         key = instance.mesh, len(mesh.attributes), tuple(instance.materials), tuple(instance.attributes)
         if key in self._lacks_nothing:
             return
-        known = {GENERATED, ISLAND, POINTINESS, SMOOTH_NORMALS, TANGENT, *mesh.attributes, *instance.attributes}
+        known = {GENERATED, ISLAND, POINTINESS, SMOOTH_NORMALS, TANGENT, *OF_ROUND_SHAPES}
+        known |= {*mesh.attributes, *instance.attributes}
         asked = [(slot, materials.attributes[material]) for slot, material in enumerate(instance.materials)]
         if all(attributes.keys() <= known for _, attributes in asked):
             self._lacks_nothing.add(key)

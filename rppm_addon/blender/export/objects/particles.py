@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ....scene import Particle
-from .hashing import hashed
+from ..hashing import hashed
 
 _COLUMNS = {"birth_time": 1, "lifetime": 1, "size": 1, "location": 3, "velocity": 3, "angular_velocity": 3}
 

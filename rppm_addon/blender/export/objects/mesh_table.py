@@ -9,13 +9,15 @@ from typing import Any
 
 import bpy
 
-from ....scene import Mesh
+from ....scene import Mesh, MeshShape
 from ....scene.sharing import equal
-from ..report import Report
+from ..context import ExportContext
+from ..meshes.attributes import export_attribute
+from ..meshes.dicing import export_dicing
+from ..meshes.meshes import NO_MESH, export_mesh
 from ..slices import Slices
-from .attributes import export_attribute
-from .dicing import export_dicing
-from .meshes import NO_MESH, export_mesh
+from ..strands.round_meshes import RoundSource, export_round, export_round_attribute
+from ..strands.tubes import Rings
 
 
 class MeshTable:
@@ -26,10 +28,13 @@ class MeshTable:
     next it is believed only of the owners that it had.
     """
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, context: ExportContext) -> None:
         self.meshes: list[Mesh] = []
         """Those that nothing uses any more are empty."""
-        self._report = report
+        self.rings: dict[int, Rings] = {}
+        """Of meshes of strands, by their places."""
+        self._context = context
+        self._report = context.report
         self._places: dict[int, int | None] = {}
         self._owners: dict[int, set[int]] = {}
         self._seen: set[int] = set()
@@ -86,9 +91,14 @@ class MeshTable:
             heapq.heappush(self._free, place)
             self._tried.pop(place)
             self._keys.pop(place)
+            self.rings.pop(place, None)
 
     def index(
-        self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, attributes: set[str], owner: int
+        self,
+        source: bpy.types.Object,
+        mesh: bpy.types.Mesh | RoundSource | None,
+        attributes: set[str],
+        owner: int,
     ) -> int | None:
         """Index of a mesh, exported now if it is new, with the named attributes; None when it has no triangles.
 
@@ -123,30 +133,53 @@ class MeshTable:
             self._unfinished[key] = owner, {}
         return self._unfinished[key][1]
 
-    def _add(self, source: bpy.types.Object, mesh: bpy.types.Mesh | None, key: int, owner: int, slices: Slices) -> None:
+    def _add(
+        self,
+        source: bpy.types.Object,
+        mesh: bpy.types.Mesh | RoundSource | None,
+        key: int,
+        owner: int,
+        slices: Slices,
+    ) -> None:
         self._report.progress(f"Exporting {source.name}")
-        exported = None
+        exported, name, record = None, source.name, self._record(key, owner)
         if mesh is not None:
-            before, record = self._before.get(owner), self._record(key, owner)
-            with self._report.about(("mesh", owner, source.name)):
-                exported = export_mesh(mesh, source.name, self._report, before, slices, record)
+            before = self._before.get(owner)
+            with self._report.about(("mesh", owner, name, type(mesh).__name__)):
+                if isinstance(mesh, bpy.types.Mesh):
+                    exported = export_mesh(mesh, name, self._report, before, slices, record)
+                else:
+                    exported = export_round(mesh, name, self._context.curves, self._report, before, slices, record)
         self._owners[key] = {owner}
         self._seen.add(key)
         if exported is None:
             self._places[key] = None
             return
         place = self._places[key] = heapq.heappop(self._free) if self._free else len(self.meshes)
-        exported.dicing = export_dicing(source)
+        if exported.shape is MeshShape.SURFACE:
+            exported.dicing = export_dicing(source)
         self.meshes[place : place + 1] = [exported]
         self._tried[place] = set()
         self._keys[place] = key
+        if "rings" in record:
+            self.rings[place] = record["rings"]
 
-    def _complete(self, place: int, mesh: bpy.types.Mesh, attributes: set[str], owner: int, slices: Slices) -> None:
+    def _complete(
+        self,
+        place: int,
+        mesh: bpy.types.Mesh | RoundSource,
+        attributes: set[str],
+        owner: int,
+        slices: Slices,
+    ) -> None:
         """Read attributes that were not asked for before; meshes that were handed out stay as they are."""
         known, before = self.meshes[place], self._before.get(owner)
         found, record = dict(known.attributes), self._record(self._keys[place], owner)
         for name in sorted(attributes - known.attributes.keys()):
-            attribute = export_attribute(known, mesh, name, slices, record)
+            if isinstance(mesh, bpy.types.Mesh):
+                attribute = export_attribute(known, mesh, name, slices, record)
+            else:
+                attribute = export_round_attribute(mesh, name, self._context.curves, slices, record)
             if attribute is not None:
                 old = None if before is None else before.attributes.get(name)
                 found[name] = old if old is not None and equal(old, attribute) else attribute
@@ -155,7 +188,9 @@ class MeshTable:
 
 
 @contextlib.contextmanager
-def _mesh_of(source: bpy.types.Object, mesh: bpy.types.Mesh | None) -> Iterator[bpy.types.Mesh | None]:
+def _mesh_of(
+    source: bpy.types.Object, mesh: bpy.types.Mesh | RoundSource | None
+) -> Iterator[bpy.types.Mesh | RoundSource | None]:
     """The evaluated mesh given, or else one that Blender makes of the object; None when it has no geometry."""
     if mesh is not None:
         yield mesh

@@ -3,6 +3,8 @@
 
 import functools
 
+import numpy as np
+
 _MIXED = ((2, 1, 14), (0, 2, 11), (1, 0, 25), (2, 1, 16), (0, 2, 4), (1, 0, 14), (2, 1, 24))
 """Which of three numbers is mixed with which, turned by how many bits."""
 
@@ -16,3 +18,13 @@ def hashed(number: int) -> float:
         rotated = ((values[second] << bits) | (values[second] >> (32 - bits))) & 0xFFFFFFFF
         values[first] = ((values[first] ^ values[second]) - rotated) & 0xFFFFFFFF
     return values[2] / 0xFFFFFFFF
+
+
+def hashed_up_to(count: int) -> np.ndarray:
+    """(count,) float32, what hashed() gives of 0, 1, 2 ..."""
+    start = np.uint32((0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF)
+    values = [start + np.arange(count, dtype=np.uint32), np.full(count, start), np.full(count, start)]
+    for first, second, bits in _MIXED:
+        rotated = (values[second] << np.uint32(bits)) | (values[second] >> np.uint32(32 - bits))
+        values[first] = (values[first] ^ values[second]) - rotated
+    return (values[2] / np.float64(0xFFFFFFFF)).astype(np.float32)

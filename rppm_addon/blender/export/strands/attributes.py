@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What nodes read of strands and points."""
+
+import bpy
+import numpy as np
+
+from ..hashing import hashed_up_to
+from .tubes import Rings, Strands
+
+INTERCEPT, LENGTH, THICKNESS, CURVE_RANDOM = ".intercept", ".length", ".thickness", ".curve_random"
+"""Names under which is exported what Hair Info tells."""
+POINT_PLACE, POINT_RADIUS, POINT_RANDOM = ".point_position", ".point_radius", ".point_random"
+"""Names under which is exported what Point Info tells."""
+OF_ROUND_SHAPES = {INTERCEPT, LENGTH, THICKNESS, CURVE_RANDOM, POINT_PLACE, POINT_RADIUS, POINT_RANDOM}
+"""Other surfaces have none of them, and nobody is told."""
+
+_FIELDS = {
+    "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
+    "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4),
+}  # fmt: skip
+
+
+def strand_values(strands: Strands, rings: Rings, name: str) -> np.ndarray | None:
+    """(vertices, 1) float32 of tubes, what Hair Info tells; None of anything else."""
+    if name == THICKNESS:
+        return rings.per_vertex(rings.of_keys(2.0 * strands.radii[:, None]))
+    if name == CURVE_RANDOM:
+        kept = strands.kept
+        numbers = hashed_up_to(len(strands.slots) if kept is None else len(kept))
+        return rings.per_vertex(rings.of_strands((numbers if kept is None else numbers[kept])[:, None]))
+    if name not in {INTERCEPT, LENGTH}:
+        return None
+    steps = np.zeros(len(strands.keys), np.float64)
+    steps[1:] = np.linalg.norm(strands.keys[1:] - strands.keys[:-1], axis=1)
+    firsts = strands.starts[:-1]
+    steps[firsts] = 0.0
+    passed = np.cumsum(steps)
+    whole = passed[strands.starts[1:] - 1] - passed[firsts]
+    if name == LENGTH:
+        return rings.per_vertex(rings.of_strands(whole[:, None].astype(np.float32)))
+    counts = np.diff(strands.starts)
+    passed -= np.repeat(passed[firsts], counts)
+    share = np.divide(passed, np.repeat(whole, counts), out=np.zeros_like(passed), where=np.repeat(whole > 0.0, counts))
+    return rings.per_vertex(rings.of_keys(share[:, None].astype(np.float32)))
+
+
+def read_values(data: bpy.types.Curves | bpy.types.PointCloud, name: str) -> tuple[np.ndarray, str] | None:
+    """(n, components) float32 of an attribute of curves or points, 0 where it is not finite, and its domain; None when
+    there is none."""
+    attribute = data.attributes.get(name)
+    if attribute is None or attribute.data_type not in _FIELDS:
+        return None
+    field, width = _FIELDS[attribute.data_type]
+    kind = {"INT": np.int32, "INT8": np.int32, "BOOLEAN": bool}.get(attribute.data_type, np.float32)
+    values = np.empty(len(attribute.data) * width, kind)
+    attribute.data.foreach_get(field, values)
+    values = values.reshape(-1, width).astype(np.float32, copy=False)
+    return np.nan_to_num(values, copy=False, posinf=0.0, neginf=0.0), attribute.domain
