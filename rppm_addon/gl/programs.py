@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Programs from our shader files, run with named buffers and one block of parameters."""
 
+import contextlib
 import ctypes
 import functools
 import logging
 import math
 import struct
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -316,12 +317,31 @@ class ProgramLibrary:
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
         self._sources: dict[tuple, Source] = {}
         """Of programs that were expected."""
+        self._scene_defines: dict[str, object] = {}
         self.made = 0
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
         self.started = 0
         """Programs that have run; llvmpipe for one generates their code only then."""
         self.on_start: Callable[[str], None] | None = None
         """Called with its name before a program runs for the first time; ``started`` counts it already."""
+
+    @contextlib.contextmanager
+    def defining(self, defines: Mapping[str, object]) -> Iterator[None]:
+        """Have the programs that are made meanwhile know what a scene has, as far as their sources ask for it."""
+        before, self._scene_defines = self._scene_defines, dict(defines)
+        try:
+            yield
+        finally:
+            self._scene_defines = before
+
+    def _defines(self, paths: Sequence[str], defines: Mapping[str, object] | None) -> dict[str, object]:
+        """Of programs of files, in which whether they know what others do not makes a difference."""
+        given = dict(defines or {})
+        if not self._scene_defines:
+            return given
+        texts = [expand(path, given).text for path in paths]
+        asked = {key: value for key, value in self._scene_defines.items() if any(key in text for text in texts)}
+        return asked | given
 
     def compute(
         self,
@@ -334,7 +354,9 @@ class ProgramLibrary:
         Raises ShaderError with file and line; CompileError where it is the driver that refuses, without
         ``inserts`` maybe not before the program is first run.
         """
-        return self._compute(path, dict(defines or {}), dict(inserts or {}))
+        return self._compute(
+            path, dict(defines or {}) if inserts else self._defines([path], defines), dict(inserts or {})
+        )
 
     def has_stand_in(self, path: str, inserts: Mapping[str, str]) -> bool:
         """Whether a compute program that something can stand in for is still to be compiled, and is, in the background.
@@ -377,7 +399,7 @@ class ProgramLibrary:
 
     def draw(self, vertex: str, fragment: str, defines: Mapping[str, object] | None = None) -> DrawProgram:
         """The program of a .vert and a .frag file. Raises ShaderError with file and line."""
-        return self._draw(vertex, fragment, dict(defines or {}))
+        return self._draw(vertex, fragment, self._defines([vertex, fragment], defines))
 
     def _get(self, key: tuple, make: Callable[[], Any]) -> Any:
         if key not in self._programs:

@@ -156,10 +156,15 @@ def compute(samples: int = SAMPLES) -> dict[str, np.ndarray]:
     return {name: table.astype(np.float32) for name, table in tables.items()}
 
 
+def load_lobes() -> dict[str, np.ndarray]:
+    """Those that compute() gave."""
+    with np.load(_FILE, allow_pickle=False) as file:
+        return {name: file[name].astype(np.float32) for name in SHAPES if name in file}
+
+
 def load() -> np.ndarray:
     """All tables in one (n,) float32 list, in the order of SHAPES; those called average are cosine-weighted means."""
-    with np.load(_FILE, allow_pickle=False) as file:
-        tables = {name: file[name].astype(np.float32) for name in SHAPES if name in file}
+    tables = load_lobes()
     with np.load(_SHEEN_FILE, allow_pickle=False) as file:
         for name, key in (("sheen_a", "a"), ("sheen_b", "b"), ("sheen", "albedo")):
             tables[name] = file[key].astype(np.float32)

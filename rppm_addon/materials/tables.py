@@ -121,7 +121,12 @@ class MaterialTables(BufferSet):
         for material in materials:
             owner = f'Material "{material.name}"'
             graph, emission = self._compile(
-                material.graph, owner, "it is gray", aovs, material.abbe_number, on_round_shapes=material.on_round_shapes
+                material.graph,
+                owner,
+                "it is gray",
+                aovs,
+                material.abbe_number,
+                on_round_shapes=material.on_round_shapes,
             )
             compiled.append(graph)
             self.emits.append(emission)

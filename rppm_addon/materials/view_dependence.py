@@ -4,9 +4,9 @@
 from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 from .emitted import is_positive, reachable
 
-_SHADERS = {"bsdf_principled", "bsdf_sheen", "subsurface_scattering"}
+_SHADERS = {"bsdf_principled", "bsdf_sheen", "subsurface_scattering", "bsdf_hair", "bsdf_hair_principled"}
 """Layers hide what lies below them by the viewer's angle, and sheen is a fit for one. What goes below a surface is seen
-where it comes out."""
+where it comes out, and fibers are met where the viewer sees them."""
 
 _OUTPUTS = {
     ("fresnel", "fac"),

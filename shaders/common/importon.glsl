@@ -46,7 +46,7 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
         MicrofacetLobe lobe = MicrofacetLobe(ITS.lobe_weight, kind, ITS.lobe_f0, ITS.lobe_alpha,
                                              unpack_tint(ITS.lobe_kind),
                                              ITS.lobe_ior, ITS.lobe_normal, ITS.lobe_anisotropy);
-        if ((cosine > 0.0) == front)
+        if (lobe_faces(lobe, cosine, front))
             value += evaluate_lobe(lobe, normal, ITS.direction, wi)
                    * (lobe_shadowing(lobe, ITS.shading_normal, wi)
                       * shading_correction(cosine, geometric_cosine));

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: HAIR_LOBES=1
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;
@@ -64,7 +66,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         MicrofacetLobe lobe = stored_lobe(index, k);
         vec3 normal = lobe_normal(lobe);
         float cosine = dot(normal, wi);
-        if (!lobe_stores(lobe, smoothest_lit(gathered)) || (cosine > 0.0) != front) continue;
+        if (!lobe_stores(lobe, smoothest_lit(gathered)) || !lobe_faces(lobe, cosine, front)) continue;
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
@@ -219,6 +221,9 @@ void main() {
     vec3 throughput = path.throughput * segment_transmittance(flags, closure);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
+#ifdef HAIR_LOBES
+    fiber_seed = choices.w + 2654435769u * parameters.light_sample;
+#endif
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
     Parts parts;  // shares of it

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: HAIR_LOBES=1
 // TraceImportons: collect what a camera path sees shine, leave an importon for the lobes that store
 // photons, and go on by the specular ones.
 
@@ -180,6 +182,8 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
                       * lobe_pdf(lobe, event.normal, viewer, sampled.direction);
     event.direction = sampled.direction;
     event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
+    if (lobe_is_hair(lobe.kind))
+        sampled.transmitted = dot(sampled.direction, unpack_unit_vector(closure.geometric_normal)) < 0.0;
     event.transmitted = sampled.transmitted;
     event.scatter = lobe_scatter(lobe.kind, sampled.transmitted);
     bool lights_found = parameters.next_event != 0u && !sampled.transmitted

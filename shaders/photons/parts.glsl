@@ -7,12 +7,16 @@
 
 // NONE: the other side need not be asked.
 const uint PART_NONE = 0u, PART_DIFFUSE = 1u, PART_TRANSLUCENT = 2u, PART_TRANSPARENT = 3u, PART_REFLECTING = 4u,
-           PART_TRANSMITTING = 5u, PART_SHARP_REFLECTING = 6u, PART_SHARP_TRANSMITTING = 7u, PART_TOON = 8u;
+           PART_TRANSMITTING = 5u, PART_SHARP_REFLECTING = 6u, PART_SHARP_TRANSMITTING = 7u, PART_TOON = 8u,
+           PART_HAIR = 9u, PART_STRAND = 10u;
 
 // Of sharper lobes, rounding leaves no density to be compared: they send light one way.
 const float SHARPEST_COMPARED = 1e-3;
 
 uint lobe_part(MicrofacetLobe lobe, bool transmitted) {
+#ifdef HAIR_LOBES
+    if (lobe_is_hair(lobe.kind)) return hair_has_no_side(lobe) ? PART_STRAND : PART_HAIR;
+#endif
     if (lobe_is_toon(lobe.kind)) return PART_TOON;
     if (lobe.alpha <= SHARPEST_COMPARED) return transmitted ? PART_SHARP_TRANSMITTING : PART_SHARP_REFLECTING;
     return transmitted ? PART_TRANSMITTING : PART_REFLECTING;
@@ -34,7 +38,14 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
     for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = stored_lobe(path, k);
         if (lobe.kind == LOBE_NONE || lobe_part(lobe, transmitted) != part) continue;
-        if (part == PART_TOON) share += lobe.weight;  // where viewers are makes no other difference
+        // Where viewers are makes no other difference.
+        if (part == PART_TOON || part == PART_STRAND) share += lobe.weight;
+#ifdef HAIR_LOBES
+        else if (part == PART_HAIR) {
+            vec3 n = lobe_normal(lobe);
+            share += hair_carried(lobe, n, viewer, light) / max(abs(dot(n, light)), 1e-6);
+        }
+#endif
         else if (part <= PART_TRANSMITTING)
             share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
                    * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? lobe.ior : 1.0));

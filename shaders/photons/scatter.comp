@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: HAIR_LOBES=1
 // TracePhotons: store the photon and choose how its path goes on (D, G or S by importance).
 
 layout(local_size_x = 64) in;
@@ -67,8 +69,10 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout R
         int chosen = u < shares.x ? 0 : (u < shares.x + shares.y ? 1 : 2);
         float probability = shares[chosen];
         MicrofacetLobe lobe = stored_lobe(index, chosen);
+        vec3 geometric = unpack_unit_vector(closure.geometric_normal);
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, u_event, false);
         float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
+        if (lobe_is_hair(lobe.kind)) sampled.transmitted = dot(sampled.direction, geometric) < 0.0;
         result = Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
                             lobe_normal(lobe), sampled.transmitted,
                             (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
@@ -76,6 +80,7 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout R
                                 | dispersed_flag(closure, lobe, sampled.transmitted),
                             sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
                             lobe_is_diffuse(lobe.kind), lobe_part(lobe, sampled.transmitted), lobe.ior);
+        if (result.part == PART_STRAND) result.normal = geometric;
     } else if (is_transparent)
         result = Scattering(-arrival, closure.transparent * (norm / transparent), arrival, true, 0u, 0u, false,
                             PART_TRANSPARENT, 1.0);

@@ -257,7 +257,7 @@ def test_one_node_serves_all_of_its_outputs(scene):
 
 
 NOT_RENDERED = {
-    "BSDF_HAIR_PRINCIPLED", "BSDF_RAY_PORTAL", "EEVEE_SPECULAR", "SCRIPT", "SHADERTORGB", "SQUEEZE",
+    "BSDF_RAY_PORTAL", "EEVEE_SPECULAR", "SCRIPT", "SHADERTORGB", "SQUEEZE",
     "VOLUME_COEFFICIENTS", "PRINCIPLED_VOLUME", "VOLUME_SCATTER", "ShaderNodeRadialTiling", "CAMERA",
 }  # fmt: skip
 """Node types that a neutral value stands in for."""
@@ -310,7 +310,7 @@ def test_every_node_compiles_as_it_is_added(scene, output):
         node.name = node.bl_idname
 
 
-@pytest.mark.parametrize("node", ["ShaderNodeBsdfHairPrincipled", "ShaderNodeEeveeSpecular"])
+@pytest.mark.parametrize("node", ["ShaderNodeBsdfRayPortal", "ShaderNodeEeveeSpecular"])
 def test_unknown_shaders_become_diffuse(scene, node):
     material, _ = surface(node, "Odd")
     shader, warnings = single_shader(scene, material)
@@ -322,7 +322,8 @@ def test_unknown_shaders_become_diffuse(scene, node):
     ("node", "options", "inputs", "standing_in"),
     [
         ("ShaderNodeBsdfToon", {"component": "GLOSSY"}, {}, ""),
-        ("ShaderNodeBsdfHair", {"component": "Transmission"}, {}, "a translucent surface"),
+        ("ShaderNodeBsdfHair", {"component": "Transmission"}, {}, ""),
+        ("ShaderNodeBsdfHairPrincipled", {"model": "HUANG"}, {}, ""),
         ("ShaderNodeSubsurfaceScattering", {}, {}, ""),
         ("ShaderNodeSubsurfaceScattering", {"falloff": "BURLEY"}, {}, "a random walk"),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "ASHIKHMIN_SHIRLEY"}, {}, "GGX"),

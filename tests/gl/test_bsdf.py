@@ -17,7 +17,8 @@ Record(
     aspect="float", radiance="uint", beckmann="uint",
 )  # fmt: skip
 SHADER = str(Path(__file__).with_name("lobe_albedo.comp"))
-_, MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET, TOON, GLOSSY_TOON = MicrofacetKind
+_, MIRROR, METAL, DIELECTRIC, GLASS, REFRACTION, COATED_GLASS, SHEET, SHEEN, VELVET, *_ = MicrofacetKind
+TOON, GLOSSY_TOON = MicrofacetKind.TOON, MicrofacetKind.GLOSSY_TOON
 COUNT = 1 << 18
 
 

@@ -93,11 +93,11 @@ MICROFACET_LOBE = Record(
     normal="uint",
     anisotropy="uint",
 )
-"""A GGX, sheen or toon lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+"""A GGX, sheen, toon or hair lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
 over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
 (weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
 ``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
-(common/bsdf/ggx.glsl), ``normal`` octahedral."""
+(common/bsdf/ggx.glsl), ``normal`` octahedral. What they are of hair says common/bsdf/hair.glsl."""
 
 
 class MicrofacetKind(enum.IntEnum):
@@ -126,9 +126,16 @@ class MicrofacetKind(enum.IntEnum):
     """f0 is the shape of a cone about the normal (common/bsdf/toon.glsl)."""
     GLOSSY_TOON = 11
     """About the mirrored direction."""
+    HAIR_REFLECTION = 12
+    """Of fibers, as those that follow: programs know them where HAIR_LOBES is defined."""
+    HAIR_TRANSMISSION = 13
+    HAIR_CHIANG = 14
+    HAIR_HUANG = 15
 
 
 Constants("MicrofacetKinds", LOBE=MicrofacetKind)
+Constants("HairLobes", HAIR_ON_STRAND=1)
+"""In ``anisotropy`` of principled hair: the lowest bit, which is no part of an angle."""
 
 CLOSURE_LOBE = Record(
     "ClosureLobe",

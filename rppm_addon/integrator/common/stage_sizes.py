@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 
+from ...materials.hair import has_hair
 from ...materials.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
@@ -36,6 +37,8 @@ class StageSizes:
     """Whether lights may shine on some objects only, or pass through some."""
     has_subsurface: bool = False
     """Whether light may go below surfaces."""
+    has_hair: bool = False
+    """Whether materials scatter as fibers do, of which other programs know nothing."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -57,6 +60,7 @@ class StageSizes:
             demands.is_filtered,
             _links_lights(scene),
             any(has_subsurface(material.graph) for material in scene.materials),
+            any(has_hair(material.graph) for material in scene.materials),
         )
 
     @property

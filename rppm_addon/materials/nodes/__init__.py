@@ -2,10 +2,10 @@
 """Kinds of nodes by name; a module a family."""
 
 from ..node_kinds import NodeKind
-from . import color, curves, geometry, images, math, shaders, spectrum, stand_in, textures, view
+from . import color, curves, geometry, hair, images, math, shaders, spectrum, stand_in, textures, view
 
 KINDS: dict[str, NodeKind] = {}
-for _family in (color, curves, geometry, images, math, shaders, spectrum, stand_in, textures, view):
+for _family in (color, curves, geometry, hair, images, math, shaders, spectrum, stand_in, textures, view):
     for _name, _kind in _family.KINDS.items():
         if _name in KINDS:
             raise ValueError(f"node kind {_name} is declared twice")

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes.
 
-Approximations: GGX for the distribution of Ashikhmin and Shirley; a random walk for Christensen-Burley; for hair, GGX
-stretched across the fiber and translucency; for the physical conductor of the metallic node, the F82 curve that
-meets its own at normal incidence and at 82 degrees.
+Approximations: GGX for the distribution of Ashikhmin and Shirley; a random walk for Christensen-Burley; for the
+physical conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
 """
 
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, SHADER, VECTOR, NodeKind
@@ -85,12 +84,6 @@ KINDS = {
         "bsdf",
         _GRAY | {"size": (FLOAT, 0.5), "smooth": (FLOAT, 0.0)} | _NORMAL,
         {"component": ("DIFFUSE", "GLOSSY")},
-    ),
-    "bsdf_hair": _shader(
-        "bsdf",
-        _GRAY | {"offset": (FLOAT, 0.0), "roughnessu": (FLOAT, 0.1), "roughnessv": (FLOAT, 1.0)} | _TANGENT,
-        {"component": ("Reflection", "Transmission")},
-        {"Reflection": "a glossy surface, stretched across the fiber", "Transmission": "a translucent surface"},
     ),
     "bsdf_principled": _shader(
         "bsdf",

@@ -41,12 +41,17 @@ float lobe_cosine(MicrofacetLobe lobe, vec3 wo) { return clamp(dot(lobe_normal(l
 
 bool closure_hit(Closure closure) { return closure.triangle != NO_TRIANGLE; }
 
-// Lobes above the cut-off store photons; the others are traced on. alpha is roughness squared.
+// Smoother lobes cannot be evaluated toward a light, only followed.
+const float SMOOTHEST_LIT = 1e-4;
+
+// Lobes above the cut-off store photons; the others are traced on. alpha is roughness squared. Fibers are too thin to
+// store any.
 bool lobe_stores(MicrofacetLobe lobe, float specular_alpha) {
-    return lobe.kind != LOBE_NONE && lobe.alpha > specular_alpha;
+    return lobe.kind != LOBE_NONE && lobe.alpha > specular_alpha
+        && (!lobe_is_hair(lobe.kind) || specular_alpha <= SMOOTHEST_LIT);
 }
 bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) {
-    return lobe.kind != LOBE_NONE && lobe.alpha <= specular_alpha;
+    return lobe.kind != LOBE_NONE && (lobe.alpha <= specular_alpha || lobe_is_hair(lobe.kind));
 }
 
 // Whether the weight of what a lobe scatters this way holds the color of a path's wavelength. From within, what is
@@ -59,9 +64,6 @@ bool is_dispersed(MicrofacetLobe lobe, bool transmitted) {
 uint dispersed_flag(Closure closure, MicrofacetLobe lobe, bool transmitted) {
     return (closure.flags & CLOSURE_DISPERSES) != 0u && is_dispersed(lobe, transmitted) ? PATH_DISPERSED : 0u;
 }
-
-// Smoother lobes cannot be evaluated toward a light, only followed.
-const float SMOOTHEST_LIT = 1e-4;
 
 // BSDF of the diffuse and translucent parts over that of smooth ones without a normal map; normal is unpacked.
 vec3 diffuse_factor(Closure closure, vec3 normal, vec3 wo, vec3 wi) {

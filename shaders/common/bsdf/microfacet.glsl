@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lobes of a closure: microfacets that reflect or refract, sheen and toon. n is a lobe's own normal.
+// Lobes of a closure: microfacets that reflect or refract, sheen, toon and hair. n is a lobe's own normal.
 
 #include <MicrofacetLobe>
 #include "common/bsdf/diffuse.glsl"
@@ -7,14 +7,30 @@
 #include "common/bsdf/ggx.glsl"
 #include "common/bsdf/sheen.glsl"
 #include "common/bsdf/toon.glsl"
+#include "common/luminance.glsl"
 
 #include <MicrofacetKinds>
+#include <HairLobes>
 
-bool lobe_transmits(uint kind) { return kind >= LOBE_GLASS && kind <= LOBE_SHEET; }
-bool lobe_is_toon(uint kind) { return kind >= LOBE_TOON; }
+// Scenes without hair have programs that know none.
+#ifdef HAIR_LOBES
+#include "common/bsdf/hair.glsl"
+bool lobe_is_hair(uint kind) { return kind >= LOBE_HAIR_REFLECTION; }
+#else
+bool lobe_is_hair(uint kind) { return false; }
+#endif
+
+bool lobe_transmits(uint kind) { return (kind >= LOBE_GLASS && kind <= LOBE_SHEET) || lobe_is_hair(kind); }
+bool lobe_is_toon(uint kind) { return kind >= LOBE_TOON && !lobe_is_hair(kind); }
 bool lobe_has_facets(uint kind) { return kind < LOBE_SHEEN; }
 // For Cycles, as are the diffuse parts of a closure.
 bool lobe_is_diffuse(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_TOON; }
+
+// Whether light from a direction with that cosine to the lobe's normal counts, which comes from the front of the
+// surface or not: for hair from all around.
+bool lobe_faces(MicrofacetLobe lobe, float cosine, bool front) {
+    return (cosine > 0.0) == front || lobe_is_hair(lobe.kind);
+}
 
 // Of these lobes f0 is a share of the light, as weight is of the others'.
 bool passes_by_f0(uint kind) { return kind == LOBE_GLASS || kind == LOBE_COATED_GLASS; }
@@ -67,6 +83,9 @@ FacetShares facet_shares(MicrofacetLobe lobe, float cosine) {
 vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
     FacetShares shares = facet_shares(lobe, cosine);
     vec3 albedo = lobe.weight * shares.reflectance;
+#ifdef HAIR_LOBES
+    if (lobe_is_hair(lobe.kind)) return hair_albedo(lobe, cosine);
+#endif
     return lobe_transmits(lobe.kind) ? albedo + shares.transmittance : albedo;
 }
 
@@ -130,6 +149,13 @@ LobeSample sample_toon_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, boo
 // disk: sample_disk of two random numbers, which callers that choose among lobes and diffuse parts have anyway.
 LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
     LobeSample result;
+#ifdef HAIR_LOBES
+    if (lobe_is_hair(lobe.kind)) {
+        result.direction = sample_hair(lobe, n, wo, disk, u_event, radiance, result.weight);
+        result.transmitted = dot(result.direction, n) < 0.0;
+        return result;
+    }
+#endif
     if (lobe_has_facets(lobe.kind)) result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
     else if (lobe_is_toon(lobe.kind)) result = sample_toon_lobe(lobe, n, wo, disk, radiance);
     else {
@@ -194,6 +220,12 @@ LobeValue microfacet_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 }
 
 LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+#ifdef HAIR_LOBES
+    if (lobe_is_hair(lobe.kind)) {
+        HairValue hair = hair_value(lobe, n, wo, wi);
+        return LobeValue(hair.scattered / max(abs(dot(wi, n)), 1e-20), hair.pdf);
+    }
+#endif
     face_sheet(lobe, n, wi);
     if (lobe_has_facets(lobe.kind)) return microfacet_value(lobe, n, wo, wi);
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
@@ -212,4 +244,9 @@ LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 
 vec3 evaluate_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) { return lobe_value(lobe, n, wo, wi).bsdf; }
 
-float lobe_pdf(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) { return lobe_value(lobe, n, wo, wi).pdf; }
+float lobe_pdf(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+#ifdef HAIR_LOBES
+    if (lobe.kind == LOBE_HAIR_HUANG) return HUANG_PDF;
+#endif
+    return lobe_value(lobe, n, wo, wi).pdf;
+}

@@ -123,19 +123,6 @@ void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, v
                                 smoothness, normal));
 }
 
-// A glossy surface stretched across the fiber, or a translucent one, stands in.
-void node_bsdf_hair(inout ClosureBuilder builder, float weight, int component, vec3 color, float offset,
-                    float roughnessu,
-                    float roughnessv, vec3 tangent) {
-    if (component == 1) add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), builder.shading, 0u);
-    else {
-        vec2 alpha = clamp(vec2(roughnessv, roughnessu), 0.01, 1.0);
-        Microfacets at = anisotropic_microfacets(builder, builder.shading, sqrt(sqrt(alpha.x * alpha.y)),
-                                                 sqrt(alpha.y / alpha.x), tangent, 0.25);
-        add_mirror(builder, at, weight, max(color, 0.0), false);
-    }
-}
-
 void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method,
                           int thin_wall,
                           vec3 base_color, float metallic, float roughness, float ior, float alpha, vec3 normal,

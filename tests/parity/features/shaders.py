@@ -106,26 +106,6 @@ lit(
     effort=2,
     reason="a diffuse surface stands in",
 )
-lit(
-    "Principled Hair",
-    "plain",
-    shader("BsdfHairPrincipled"),
-    mean=0.15,
-    block=1.2,
-    warns=True,
-    effort=2,
-    reason="a diffuse surface stands in",
-)
-lit(
-    "Hair",
-    "plain",
-    shader("BsdfHair"),
-    mean=0.15,
-    block=1.2,
-    warns=True,
-    effort=2,
-    reason="made for strands; stretched reflections stand in",
-)
 
 # --- Principled -----------------------------------------------------------------------------------------
 

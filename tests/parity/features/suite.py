@@ -5,6 +5,7 @@ from . import (  # noqa: F401
     cameras,
     coordinates,
     displacement,
+    fibers,
     image_textures,
     light_limits,
     light_linking,

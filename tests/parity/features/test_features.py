@@ -9,7 +9,7 @@ and all but the first of those kinds of nodes whose values have tests of their o
 import numpy as np
 import pytest
 
-from . import displacement, metallic, ray_nodes, strands, zones_and_closures
+from . import displacement, fibers, metallic, ray_nodes, strands, zones_and_closures
 from .flip import flip
 from .measure import measure, shortcomings
 from .suite import ROWS
@@ -20,7 +20,7 @@ DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", 
 
 
 MODULES_OF_THEIR_OWN = {
-    displacement.GROUP, metallic.GROUP, *ray_nodes.GROUPS, *strands.GROUPS, zones_and_closures.GROUP,
+    displacement.GROUP, *fibers.GROUPS, metallic.GROUP, *ray_nodes.GROUPS, *strands.GROUPS, zones_and_closures.GROUP,
 }  # fmt: skip
 VALUES_ELSEWHERE = {
     "Textures", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range", "Vector Transform",

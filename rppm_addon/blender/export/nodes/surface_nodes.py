@@ -223,6 +223,19 @@ def _hair_info(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.
     return exporter.shared("hair_info", name)
 
 
+@handles("BSDF_HAIR_PRINCIPLED")
+def _principled_hair(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    """Strands have random numbers of their own where none are given, and where they make a difference."""
+    inputs: dict[str, object] = {}
+    sockets = {socket.identifier: socket for socket in node.inputs if socket.enabled}
+    factors = [sockets[name] for name in ("Random Color", "Random Roughness") if name in sockets]
+    if not exporter.is_linked(sockets["Random"], path) and any(
+        exporter.is_linked(factor, path) or factor.default_value != 0.0 for factor in factors
+    ):
+        inputs["strand_random"] = exporter.shared(*_OF_STRANDS["random"])
+    return exporter.add("bsdf_hair_principled", node, path, "bsdf", inputs=inputs)
+
+
 @handles("POINT_INFO")
 def _point_info(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     return exporter.shared(*_OF_POINTS[snake_case(output.identifier)])

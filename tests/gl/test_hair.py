@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lobes of fibers: what is not absorbed is scattered, sampling has the pdf that is told, and light is attenuated as in
+closed form."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rppm_addon.gl.records import Record
+from rppm_addon.integrator.common.records import MicrofacetKind
+
+Record(
+    "HairTestParameters",
+    f0="vec3", count="uint", tint="vec3", kind="uint", ior="float", sine="float", h="float", offset="float",
+)  # fmt: skip
+SHADER = str(Path(__file__).with_name("hair.comp"))
+COUNT = 1 << 16
+
+
+def run(context, library, kind, sine, h=0.0, f0=(0.0, 0.0, 0.0), tint=(0.3, 0.3, 1.0), ior=1.55, offset=0.0):
+    """(4, COUNT, 4): weights of samples and the pdf there; BSDF times cosine and pdf over uniform directions; functions
+    of the direction of samples, and weighted by the pdf."""
+    results = context.moderngl.buffer(reserve=64 * COUNT)
+    library.compute(SHADER, {"HAIR_LOBES": 1}).run(
+        COUNT,
+        {"Results": results},
+        {"f0": f0, "count": COUNT, "tint": tint, "kind": kind, "ior": ior, "sine": sine, "h": h, "offset": offset},
+    )
+    table = np.frombuffer(results.read(), np.float32).reshape(COUNT, 4, 4)
+    results.release()
+    return table.transpose(1, 0, 2).astype(np.float64)
+
+
+def assert_equal_means(a, b):
+    """Within 4.5 standard errors."""
+    error = np.sqrt((a.var() + b.var()) / COUNT)
+    assert abs(a.mean() - b.mean()) < 4.5 * error + 1e-6
+
+
+def assert_sampled_by_its_pdf(drawn, expected):
+    for moment in range(4):
+        assert_equal_means(drawn[:, moment], expected[:, moment])
+
+
+@pytest.mark.parametrize("kind", [MicrofacetKind.HAIR_REFLECTION, MicrofacetKind.HAIR_TRANSMISSION])
+@pytest.mark.parametrize("shape", [(0.3, 0.4, 0.0), (0.8, 0.5, -0.2)])
+def test_hair(context, library, kind, shape):
+    """Every sample has the weight 1 but for those along the fiber; lights are seen on one side only."""
+    for sine in (0.0, -0.6):
+        weights, values, drawn, expected = run(context, library, kind, sine, f0=shape)
+        assert np.isin(weights[:, :3], (0.0, 1.0)).all() and weights[:, 0].mean() > 0.99
+        assert np.all(drawn[weights[:, 0] == 0.0, 0] == 0.0)
+        lit = values[:, 0] > 0.0
+        assert np.allclose(values[lit, 0], values[lit, 3]) and 0.2 < lit.mean() < 0.55
+        assert_sampled_by_its_pdf(drawn[:, :1] * drawn, expected)
+
+
+@pytest.mark.parametrize("roughness", [(0.3, 0.3, 1.0), (0.8, 0.15, 0.4), (0.2, 0.9, 1.0)])
+@pytest.mark.parametrize(("sine", "h"), [(0.0, 0.0), (0.5, 0.6), (-0.8, -0.95)])
+def test_chiang_in_a_white_furnace(context, library, roughness, sine, h):
+    """A fiber that absorbs nothing scatters all light, and just so as it is sampled."""
+    weights, values, drawn, expected = run(context, library, MicrofacetKind.HAIR_CHIANG, sine, h, tint=roughness)
+    assert weights[:, :3].mean() == pytest.approx(1.0, abs=1e-4)
+    noise = values[:, 0].std() / np.sqrt(COUNT)
+    assert values[:, 0].mean() == pytest.approx(1.0, abs=4.5 * noise + 0.005)
+    assert_sampled_by_its_pdf(drawn, expected)
+
+
+def attenuations(sigma, sine, h, ior):
+    """Chiang et al. 2016, section 3: of R, TT, TRT and all that follows."""
+    cosine = np.sqrt(1.0 - sine**2)
+    index = np.sqrt(ior**2 - sine**2) / cosine
+    length = 2.0 * np.sqrt(1.0 - (h / index) ** 2) / np.sqrt(1.0 - (sine / ior) ** 2)
+    passed = np.exp(-sigma * length)
+    cosine *= np.sqrt(1.0 - h**2)
+    inside = np.sqrt(1.0 - (1.0 - cosine**2) / ior**2)
+    parallel = (ior * cosine - inside) / (ior * cosine + inside)
+    across = (cosine - ior * inside) / (cosine + ior * inside)
+    f = 0.5 * (parallel**2 + across**2)
+    tt = (1.0 - f) ** 2 * passed
+    return f, tt, tt * passed * f, tt * (passed * f) ** 2 / (1.0 - passed * f)
+
+
+@pytest.mark.parametrize(("sine", "h"), [(0.0, 0.3), (0.6, -0.7)])
+def test_chiang_absorbs_as_in_closed_form(context, library, sine, h):
+    sigma = np.array([0.2, 1.0, 4.0])
+    _, values, drawn, expected = run(context, library, MicrofacetKind.HAIR_CHIANG, sine, h, sigma, offset=0.05)
+    for channel in range(3):
+        albedo = sum(attenuations(sigma[channel], sine, h, 1.55))
+        noise = values[:, channel].std() / np.sqrt(COUNT)
+        assert values[:, channel].mean() == pytest.approx(albedo, abs=4.5 * noise + 0.005)
+    assert_sampled_by_its_pdf(drawn, expected)
+
+
+def test_chiang_sends_light_around_the_fiber(context, library):
+    """Met at the middle of a narrow fiber, R goes back and TT goes on; met beside it, R is mirrored by the normal."""
+    smooth = (0.05, 0.05, 1.0)
+    _, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_CHIANG, 0.0, 0.0, (1e3, 1e3, 1e3), smooth)
+    assert drawn[:, 2].mean() < 0.01  # y^2
+    _, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_CHIANG, 0.0, np.sqrt(0.5), (1e3, 1e3, 1e3), smooth)
+    assert drawn[:, 2].mean() > 0.97
+
+
+def test_chiang_tilts_what_it_reflects(context, library):
+    """Scales turn R by twice their angle toward the root."""
+    smooth, offset = (0.3, 0.05, 1.0), 0.1
+    _, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_CHIANG, 0.0, 0.0, (1e3, 1e3, 1e3), smooth, offset=offset)
+    assert drawn[:, 1].mean() == pytest.approx(-np.sin(2.0 * offset), abs=0.01)
+
+
+@pytest.mark.parametrize("shape", [(1.0, 0.3, 1.0), (0.7, 0.5, 1.0), (1.0, 0.2, 0.1)])
+@pytest.mark.parametrize(("sine", "h"), [(0.0, 0.0), (-0.5, 0.4)])
+def test_huang_is_sampled_as_it_is_evaluated(context, library, shape, sine, h):
+    """Sampling and evaluation are two formulas of Huang et al. 2022, which agree but for what Simpson's rule misses and
+    for light that is reflected within more than once, which both guess: little where a fiber absorbs."""
+    sigma = (1.0, 1.0, 1.0)
+    weights, values, drawn, expected = run(context, library, MicrofacetKind.HAIR_HUANG, sine, h, sigma, shape)
+    albedo = weights[:, 1].mean()
+    assert values[:, 1].mean() == pytest.approx(albedo, rel=0.08)
+    for moment in range(4):
+        assert drawn[:, moment].mean() == pytest.approx(expected[:, moment].mean(), abs=0.08 * albedo)
+
+
+def test_huang_in_a_white_furnace(context, library):
+    """A fiber that absorbs nothing scatters as much as comes to it, whatever its roughness, as energy that microfacets
+    lose is given back."""
+    for roughness in (0.1, 0.3, 0.5):
+        for sine in (0.0, 0.6):
+            weights, *_ = run(context, library, MicrofacetKind.HAIR_HUANG, sine, tint=(1.0, roughness, 1.0))
+            assert weights[:, 1].mean() == pytest.approx(1.0, abs=0.03)
+
+
+def test_huang_reflects_as_a_cylinder_does(context, library):
+    """R of a smooth cylinder seen across sends light by twice the angle of its normal, evenly over its width, times
+    Fresnel's reflectance."""
+    weights, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_HUANG, 0.0, 0.0, (1e3, 1e3, 1e3), (1.0, 0.01, 1.0))
+    h = (np.arange(4096) + 0.5) / 4096
+    cosine = np.sqrt(1.0 - h**2)
+    inside = np.sqrt(1.0 - h**2 / 1.55**2)
+    parallel = (1.55 * cosine - inside) / (1.55 * cosine + inside)
+    across = (cosine - 1.55 * inside) / (cosine + 1.55 * inside)
+    reflectance = 0.5 * (parallel**2 + across**2)
+    assert weights[:, 1].mean() == pytest.approx(reflectance.mean(), rel=0.02)
+    sideways = np.sin(2.0 * np.arcsin(h)) ** 2
+    assert drawn[:, 2].mean() == pytest.approx((reflectance * sideways).mean(), rel=0.03)
