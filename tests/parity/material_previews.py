@@ -188,6 +188,7 @@ def main() -> None:
     parser.add_argument("--iterations", type=int, default=16, help="RPPM's for each seed")
     parser.add_argument("--samples", type=int, default=32, help="Cycles' for each seed")
     parser.add_argument("--path-length", type=int, default=0, help="RPPM's of all paths; 0 is the default of each")
+    parser.add_argument("--specular-roughness", type=float, help="RPPM's")
     arguments = parser.parse_args()
     import rppm_addon
 
@@ -198,6 +199,8 @@ def main() -> None:
     settings = {"iterations": arguments.iterations}
     if arguments.path_length:
         settings |= {"camera_path_length": arguments.path_length, "photon_path_length": arguments.path_length}
+    if arguments.specular_roughness is not None:
+        settings["specular_roughness"] = arguments.specular_roughness
     lines = []
     with Renderer() as renderer:
         for first in range(arguments.first, len(previews), COLUMNS * ROWS):
