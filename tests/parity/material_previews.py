@@ -107,7 +107,7 @@ def _floor() -> None:
     tree.links.new(coordinates.outputs["Object"], checker.inputs["Vector"])
     tree.links.new(checker.outputs["Color"], diffuse.inputs["Color"])
     tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
-    bpy.ops.mesh.primitive_plane_add(size=60.0, location=(0.0, 0.0, -RADIUS - 0.001))
+    bpy.ops.mesh.primitive_plane_add(size=30.0, location=(0.0, 0.0, -RADIUS - 0.001))
     bpy.context.object.data.materials.append(surface)
 
 
@@ -128,7 +128,7 @@ def build(previews: list[Preview]) -> None:
         made.data.shade_smooth()
         made.data.materials.clear()
         made.data.materials.append(surface)
-    light("AREA", 6000.0, place((-8.0, -9.0, 14.0), (35.0, -25.0, 0.0)), size=5.0)
+    light("AREA", 6000.0, place((-8.0, -9.0, 14.0), (35.0, -25.0, 0.0)), size=14.0)
     away = 30.0
     made = camera((0.0, -away * np.cos(TILT), away * np.sin(TILT)), (0.0, 0.0, 0.0))
     made.data.type, made.data.ortho_scale = "ORTHO", COLUMNS * SPACING
