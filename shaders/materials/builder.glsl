@@ -45,7 +45,8 @@ void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
 }
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice, false, 0);
+    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice,
+                                            false, 0);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
 }
