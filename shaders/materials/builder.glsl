@@ -12,7 +12,6 @@ struct ClosureBuilder {
     vec3 viewer;       // unit vector to where the path comes from
     vec3 geometric;
     vec3 shading;      // the normal that shaders have without one of their own
-    vec3 smooth_normal;  // the same without bump
     bool backfacing;
     float u_choice;    // a random number in [0, 1), renewed by each choice
     bool seen_by_camera;  // by its ray, at most through what is transparent
@@ -46,7 +45,7 @@ void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
 }
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, shading, backfacing, u_choice,
+    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice,
                                             false, 0);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
@@ -71,13 +70,12 @@ vec3 given_normal(ClosureBuilder builder, vec3 normal) {
     return length2 > 1e-12 ? normal * inversesqrt(length2) : builder.shading;
 }
 
-// A mapped or bumped normal may mirror the viewer's direction to below the surface, where nothing is seen. As in Cycles
-// it is then bent toward the geometric normal g until the mirrored direction rises to `least` above the surface: with
-// q = cos^2 of the angle of both normals, and the viewer at (x, z) in their plane,
+// A smooth, mapped or bumped normal may mirror the viewer's direction to below the surface, where nothing is seen. As
+// in Cycles it is then bent toward the geometric normal g until the mirrored direction rises to `least` above the
+// surface: with q = cos^2 of the angle of both normals, and the viewer at (x, z) in their plane,
 // (x^2 + z^2) q^2 - (x^2 + z^2 + z least) q + (z + least)^2 / 4 = 0.
 vec3 reflecting_normal(ClosureBuilder builder, vec3 normal) {
     normal = given_normal(builder, normal);
-    if (normal == builder.smooth_normal) return normal;
     vec3 g = builder.geometric, viewer = builder.viewer;
     float z = dot(viewer, g), least = min(0.9 * z, 0.01);
     if (dot(2.0 * dot(normal, viewer) * normal - viewer, g) >= least) return normal;

@@ -31,7 +31,7 @@ vec3 sharp_share(MicrofacetLobe lobe, bool transmitted, vec3 viewer, vec3 light)
 }
 
 // Sum of all lobes that may send light this way, as is their probability. ior: of a sharp refraction.
-// Seen from the other side, the BSDF of a refraction is that times the squared index: its root is left to each side.
+// Seen from the other side, the BSDF of a refraction is that over the squared index: its root is left to each side.
 vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
     bool transmitted = part == PART_TRANSMITTING || part == PART_SHARP_TRANSMITTING;
     vec3 share = vec3(0.0);
@@ -48,7 +48,7 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
 #endif
         else if (part <= PART_TRANSMITTING)
             share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
-                   * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? lobe.ior : 1.0));
+                   * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? 1.0 / lobe.ior : 1.0));
         else if (!transmitted || abs(lobe.ior - ior) <= 1e-3 * ior)
             share += sharp_share(lobe, transmitted, viewer, light);
     }

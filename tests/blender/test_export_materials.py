@@ -205,6 +205,35 @@ def test_a_group_that_is_used_twice_gives_each_use_its_inputs(scene):
     assert [node.inputs["color"] for node, _ in shaders(graph)] == [RED[:3], OCHRE[:3]]
 
 
+@pytest.mark.parametrize(("kind", "name", "hidden"), [
+    ("ShaderNodeTexNoise", "Vector", False),
+    ("ShaderNodeTexNoise", "Vector", True),
+    ("ShaderNodeFresnel", "Normal", False),
+    ("ShaderNodeFresnel", "Normal", True),
+])  # fmt: skip
+def test_the_value_of_a_group_feeds_inputs_that_are_the_surface_own_without(scene, kind, name, hidden):
+    """As in Cycles; normals only where the group shows its value."""
+    group = bpy.data.node_groups.new("Group", "ShaderNodeTree")
+    group.interface.new_socket("Place", in_out="INPUT", socket_type="NodeSocketVector").hide_value = hidden
+    group.interface.new_socket("Value", in_out="OUTPUT", socket_type="NodeSocketFloat")
+    inside, outside = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    node = add_node(group, kind)
+    link(group, inside.outputs[0], node.inputs[name])
+    link(group, node.outputs[0], outside.inputs[0])
+    material, diffuse = surface("ShaderNodeBsdfDiffuse")
+    used = add_node(material.node_tree, "ShaderNodeGroup")
+    used.node_tree = group
+    used.inputs[0].default_value = (0.25, 0.5, 0.75)
+    link(material.node_tree, used.outputs[0], diffuse.inputs["Roughness"])
+    graph, _ = export_graph(scene, material)
+    ((shader, _),) = shaders(graph)
+    inputs = source(graph, shader, "roughness").inputs
+    if name == "Normal" and hidden:
+        assert "normal" not in inputs
+    else:
+        assert inputs[name.lower()] == (0.25, 0.5, 0.75)
+
+
 def test_value_nodes_stay_nodes(scene):
     material, diffuse = surface("ShaderNodeBsdfDiffuse")
     tree = material.node_tree

@@ -73,7 +73,8 @@ def through(layers: Sequence[Layer], sine: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def refracted_irradiance(spot: Spot, layers: Sequence[Layer], points: np.ndarray) -> np.ndarray:
-    """Irradiance of a level floor at points (..., 3) below a point-like spot, through layers from the light down.
+    """Irradiance of a level floor at points (..., 3) below a point-like spot, through layers from the light down: as
+    the renderer has it, over the squared index of the floor's layer by the light's.
 
     The flux of a ring of directions lands on a ring of the floor, whose width comes from differentiating where rays
     land; the direction that lands at a point is bracketed by bisection.
@@ -91,15 +92,16 @@ def refracted_irradiance(spot: Spot, layers: Sequence[Layer], points: np.ndarray
     widening = (through(layers, np.sin(angle + step))[0] - through(layers, np.sin(angle - step))[0]) / (2 * step)
     sideways = np.sin(angle)[..., None] * offset / aside[..., None]
     directions = np.concatenate([sideways, -np.cos(angle)[..., None]], -1)
-    return spot.along(directions) * passed * np.sin(angle) / (aside * widening)
+    ratio = layers[0].index / layers[-1].index
+    return spot.along(directions) * passed * np.sin(angle) / (aside * widening) * ratio**2
 
 
 def seen_through(
     layers: Sequence[Layer], origin: np.ndarray, directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Where camera rays that start downwards or upwards in the first layer leave the last one, the directions
-    (..., 3) with which they do, and the share of radiance that comes back along them: the transmittance times the
-    squared index of the first layer over that of the last."""
+    (..., 3) with which they do, and the share of radiance over the squared index that comes back along them: the
+    transmittance."""
     sine = np.linalg.norm(directions[..., :2], axis=-1)
     aside, passed = through(layers, sine)
     level = directions[..., :2] / np.maximum(sine, 1e-12)[..., None]
@@ -109,4 +111,4 @@ def seen_through(
     ratio = layers[0].index / layers[-1].index
     last = sine * ratio
     leaving = np.concatenate([last[..., None] * level, (side * np.sqrt(1 - last**2))[..., None]], -1)
-    return ends, leaving, passed * ratio**2
+    return ends, leaving, passed

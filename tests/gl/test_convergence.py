@@ -109,9 +109,9 @@ _LENS_ENTRY = CubicSpline(lens_landing(_ENTRIES), _ENTRIES)  # the landing grows
 
 
 def lens_radiance(distance: np.ndarray) -> np.ndarray:
-    """The caustic is the beam's area on entry over that on landing."""
+    """The caustic is the beam's area on entry over that on landing; within the lens, over its squared index."""
     distance = np.maximum(distance, 1e-4)
-    return _LENS_ENTRY(distance) * _LENS_ENTRY(distance, 1) / (distance * np.pi)
+    return _LENS_ENTRY(distance) * _LENS_ENTRY(distance, 1) / (distance * np.pi * LENS_INDEX**2)
 
 
 CEILING, SPOT = 0.5, 0.3

@@ -2,10 +2,12 @@
 """Pictures of materials from .blend files, RPPM beside Cycles: ``python -m tests.parity.material_previews FOLDER OUT``.
 
 FOLDER holds .blend files with materials; OUT gets the sheets sheet_01.png, ... and table.txt. As many materials as
---count says are drawn at random, always the same ones for a --seed, and put on monkeys with texture coordinates over
-a checkered floor, under an area light and a gray world, ten in a picture. Each sheet has RPPM's row of pictures above
-Cycles'. The table says for each material RPPM's mean over Cycles' by channel, the difference of 8x8 blocks as a
-share of Cycles' mean, and the warnings. --names renders the materials of those names only (with commas between them).
+--count says are drawn at random, always the same ones for a --seed, and put on balls with texture coordinates over
+a checkered floor, under an area light and a gray world, twenty in a picture. Each sheet has RPPM's row of pictures
+above Cycles'. The table says for each material RPPM's mean over Cycles' on the ball, by channel, the standard error of
+both together as --seeds independent pictures tell it, the difference of 8x8 blocks of the whole picture as a share of
+Cycles' mean, and the warnings. --names renders the materials of those names only (with commas between them), --first
+leaves out what earlier pieces have rendered.
 """
 
 import argparse
@@ -23,15 +25,18 @@ from rppm_addon.session.renderer import Renderer
 from .comparison import block_means
 from .scenes import camera, light, new_scene, place, render_cycles
 
-COLUMNS, ROWS = 5, 2
-CELL = 64
+COLUMNS, ROWS = 5, 4
+CELL = 32
 SPACING = 3.2
+RADIUS = 1.1
 LABEL = 12
+TILT = np.radians(35.0)
+"""Of the camera above the floor."""
 
 
 @dataclass
 class Preview:
-    """A material in both engines' pictures: (CELL, CELL, 3), row 0 at the bottom."""
+    """A material in both engines' pictures: (seeds, CELL, CELL, 3), row 0 at the bottom."""
 
     file: str
     name: str
@@ -41,11 +46,30 @@ class Preview:
 
     @property
     def ratio(self) -> np.ndarray:
-        return self.rppm.mean(axis=(0, 1)) / self.cycles.mean(axis=(0, 1))
+        """(3,) means on the ball, RPPM's over Cycles'."""
+        return _on_ball(self.rppm).mean(axis=0) / _on_ball(self.cycles).mean(axis=0)
+
+    @property
+    def error(self) -> float:
+        """Standard error of the ratio of the channels' sums."""
+        return float(np.hypot(*(_relative_error(_on_ball(pictures)) for pictures in (self.rppm, self.cycles))))
 
     @property
     def difference(self) -> float:
-        return float(np.abs(block_means(self.rppm) - block_means(self.cycles)).mean() / self.cycles.mean())
+        rppm, cycles = self.rppm.mean(axis=0), self.cycles.mean(axis=0)
+        return float(np.abs(block_means(rppm) - block_means(cycles)).mean() / cycles.mean())
+
+
+def _on_ball(pictures: np.ndarray) -> np.ndarray:
+    """(seeds, 3) means of the pixels that the ball fills."""
+    at = (np.arange(CELL) + 0.5) / CELL * SPACING - 0.5 * SPACING
+    inside = np.hypot(*np.meshgrid(at, at)) < RADIUS - SPACING / CELL
+    return pictures[:, inside].mean(axis=1)
+
+
+def _relative_error(means: np.ndarray) -> float:
+    sums = means.sum(axis=1)
+    return sums.std(ddof=1) / np.sqrt(len(sums)) / sums.mean()
 
 
 def chosen(folder: Path, count: int, seed: int, names: set[str]) -> list[Preview]:
@@ -83,7 +107,7 @@ def _floor() -> None:
     tree.links.new(coordinates.outputs["Object"], checker.inputs["Vector"])
     tree.links.new(checker.outputs["Color"], diffuse.inputs["Color"])
     tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
-    bpy.ops.mesh.primitive_plane_add(size=60.0, location=(0.0, 0.0, -1.001))
+    bpy.ops.mesh.primitive_plane_add(size=30.0, location=(0.0, 0.0, -RADIUS - 0.001))
     bpy.context.object.data.materials.append(surface)
 
 
@@ -92,39 +116,38 @@ def build(previews: list[Preview]) -> None:
     scene = new_scene(world=0.25)
     scene.render.resolution_x, scene.render.resolution_y = COLUMNS * CELL, ROWS * CELL
     _floor()
-    tilt = np.radians(35.0)
     for number, surface in enumerate(_append(previews)):
         column, row = number % COLUMNS, number // COLUMNS
         x = (column - (COLUMNS - 1) / 2) * SPACING
-        y = ((ROWS - 1) / 2 - row) * SPACING / np.sin(tilt)
-        bpy.ops.mesh.primitive_monkey_add(size=2.2, location=(x, y, 0.0), rotation=(-0.4, 0.0, 0.4))
+        y = ((ROWS - 1) / 2 - row) * SPACING / np.sin(TILT)
+        # Turned so that neither a pole nor the seam of its texture coordinates is looked at.
+        bpy.ops.mesh.primitive_uv_sphere_add(
+            segments=48, ring_count=24, radius=RADIUS, location=(x, y, 0.0), rotation=(-0.4, 0.0, 0.4)
+        )
         made = bpy.context.object
         made.data.shade_smooth()
-        made.modifiers.new("Subdivision", "SUBSURF").render_levels = 1
-        made.modifiers["Subdivision"].levels = 1
         made.data.materials.clear()
         made.data.materials.append(surface)
-    light("AREA", 6000.0, place((-8.0, -9.0, 14.0), (35.0, -25.0, 0.0)), size=5.0)
+    light("AREA", 6000.0, place((-8.0, -9.0, 14.0), (35.0, -25.0, 0.0)), size=14.0)
     away = 30.0
-    made = camera((0.0, -away * np.cos(tilt), away * np.sin(tilt)), (0.0, 0.0, 0.0))
+    made = camera((0.0, -away * np.cos(TILT), away * np.sin(TILT)), (0.0, 0.0, 0.0))
     made.data.type, made.data.ortho_scale = "ORTHO", COLUMNS * SPACING
 
 
-def render(renderer: Renderer, previews: list[Preview], seconds: float, samples: int) -> None:
-    """Fill in both pictures and the warnings of materials that share a scene."""
+def render(renderer: Renderer, previews: list[Preview], seeds: int, samples: int, settings: dict) -> None:
+    """Fill in both engines' pictures and the warnings of materials that share a scene."""
     build(previews)
     scene = export_scene(bpy.context.evaluated_depsgraph_get())
-    scene.settings = scene.settings.with_values(iterations=100000, time_limit=seconds, photons=8192)
-    # Programs are compiled first, so that they take nothing of the time.
-    compiling = scene.settings
-    scene.settings = compiling.with_values(iterations=1)
-    renderer.render(scene)
-    scene.settings = compiling
-    result = renderer.render(scene)
-    rppm, cycles = result.frame.combined[..., :3], render_cycles(samples, seeds=1)[0]
+    rppm, cycles = [], render_cycles(samples, seeds)
+    for seed in range(seeds):
+        scene.settings = scene.settings.with_values(seed=seed, photons=8192, **settings)
+        result = renderer.render(scene)
+        rppm.append(result.frame.combined[..., :3].astype(np.float64))
     for number, preview in enumerate(previews):
         x, y = number % COLUMNS * CELL, (ROWS - 1 - number // COLUMNS) * CELL
-        preview.rppm, preview.cycles = (picture[y : y + CELL, x : x + CELL] for picture in (rppm, cycles))
+        preview.rppm, preview.cycles = (
+            np.array(pictures)[:, y : y + CELL, x : x + CELL] for pictures in (rppm, cycles)
+        )
         preview.warnings = [text for text in result.statistics.warnings if f'"{preview.name}"' in text]
     others = [text for text in result.statistics.warnings if not any(text in p.warnings for p in previews)]
     print(f"{result.statistics.iterations} iterations", *others, sep="\n  ")
@@ -136,7 +159,7 @@ def _encoded(picture: np.ndarray) -> Image.Image:
     return Image.fromarray(np.rint(coded * 255.0).astype(np.uint8))
 
 
-def sheet(previews: list[Preview], scale: int = 3) -> Image.Image:
+def sheet(previews: list[Preview], scale: int = 4) -> Image.Image:
     """Labeled pictures: rows of RPPM's and of Cycles' in turn."""
     side = CELL * scale
     rows = -(-len(previews) // COLUMNS)
@@ -144,11 +167,11 @@ def sheet(previews: list[Preview], scale: int = 3) -> Image.Image:
     draw = ImageDraw.Draw(made)
     for number, preview in enumerate(previews):
         x, row = number % COLUMNS * (side + 2), number // COLUMNS
-        for part, picture in enumerate((preview.rppm, preview.cycles)):
+        for part, pictures in enumerate((preview.rppm, preview.cycles)):
             y = (2 * row + part) * (side + LABEL)
             text = preview.name[:30] if part == 0 else f"Cycles; ratio {preview.ratio.mean():.3f}"
             draw.text((x + 2, y), text, fill="black")
-            made.paste(_encoded(picture).resize((side, side), Image.Resampling.NEAREST), (x, y + LABEL))
+            made.paste(_encoded(pictures.mean(axis=0)).resize((side, side), Image.Resampling.NEAREST), (x, y + LABEL))
     return made
 
 
@@ -160,8 +183,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--names", default="")
-    parser.add_argument("--seconds", type=float, default=40.0, help="RPPM's for a picture of ten")
-    parser.add_argument("--samples", type=int, default=64, help="Cycles'")
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--iterations", type=int, default=16, help="RPPM's for each seed")
+    parser.add_argument("--samples", type=int, default=32, help="Cycles' for each seed")
+    parser.add_argument("--path-length", type=int, default=0, help="RPPM's of all paths; 0 is the default of each")
+    parser.add_argument("--specular-roughness", type=float, help="RPPM's")
     arguments = parser.parse_args()
     import rppm_addon
 
@@ -169,18 +196,25 @@ def main() -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     names = {name for name in arguments.names.split(",") if name}
     previews = chosen(arguments.folder, arguments.count, arguments.seed, names)
+    settings = {"iterations": arguments.iterations}
+    if arguments.path_length:
+        settings |= {"camera_path_length": arguments.path_length, "photon_path_length": arguments.path_length}
+    if arguments.specular_roughness is not None:
+        settings["specular_roughness"] = arguments.specular_roughness
     lines = []
     with Renderer() as renderer:
-        for first in range(0, len(previews), COLUMNS * ROWS):
+        for first in range(arguments.first, len(previews), COLUMNS * ROWS):
             group = previews[first : first + COLUMNS * ROWS]
-            render(renderer, group, arguments.seconds, arguments.samples)
+            render(renderer, group, arguments.seeds, arguments.samples, settings)
             sheet(group).save(arguments.out / f"sheet_{first // (COLUMNS * ROWS) + 1:02d}.png")
+            before = len(lines)
             for preview in group:
                 ratio = " ".join(f"{value:6.3f}" for value in preview.ratio)
-                lines.append(f"{preview.name[:44]:44s} {ratio}  {preview.difference:.3f}")
+                error = f"{preview.error:.3f}"
+                lines.append(f"{preview.name[:44]:44s} {ratio} +- {error}  {preview.difference:.3f}")
                 lines += [f"    {text}" for text in preview.warnings]
             (arguments.out / "table.txt").write_text("\n".join(lines) + "\n")
-            print("\n".join(lines[-len(group) * 3 :]), flush=True)
+            print("\n".join(lines[before:]), flush=True)
 
 
 if __name__ == "__main__":

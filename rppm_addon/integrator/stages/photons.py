@@ -213,7 +213,8 @@ class Photons(BufferSet):
         """Where the flux of the last iteration went, W summed over the channels.
 
         ``deposited`` is what the paths still carried to their last vertex, where they are cut off; ``absorbed`` is what
-        the vertices before kept. ``lost`` is flux on a ray of which no segment tells: it must be zero.
+        the vertices before kept, changes of index included. ``lost`` is flux on a ray of which no segment tells: it
+        must be zero.
         Russian roulette makes single events absorb more or less than their share, the sum being right.
         """
         groups = -(-self.photon_count // FLUX_GROUP)

@@ -118,8 +118,9 @@ LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, f
     result.direction = normalize(reflected ? 2.0 * cosine * h - wo : (cosine / lobe.ior - sqrt(k)) * h - wo / lobe.ior);
     result.weight = reflected ? lobe.weight * shares.reflectance / probability
                               : shares.transmittance / (1.0 - probability);
-    // radiance shrinks with the beam's solid angle; flux does not (Veach 1997, section 5.2)
-    if (radiance && !reflected) result.weight /= lobe.ior * lobe.ior;
+    // Both over the squared index of where they are (basic radiance): a refracted beam keeps that of its radiance, and
+    // flux, which stays what it is, is over another index (Veach 1997, section 5.2).
+    if (!radiance && !reflected) result.weight /= lobe.ior * lobe.ior;
     float side = dot(result.direction, n);
     if (!scattered || (reflected ? side <= 0.0 : side >= 0.0)) result.weight = vec3(0.0);
     if (!smooth_lobe) {
@@ -189,7 +190,7 @@ bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, o
 
 // What a lobe gives of a pair of directions, unit vectors away from the surface.
 struct LobeValue {
-    vec3 bsdf;  // for radiance that arrives from wi and leaves to wo, 1/sr
+    vec3 bsdf;  // for radiance over the squared index that arrives from wi and leaves to wo, 1/sr
     float pdf;  // with which sample_lobe gives wi, 1/sr
 };
 
@@ -208,13 +209,14 @@ LobeValue microfacet_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     bool reflected = cosine_i > 0.0;
     float spread = lobe.ior * ih + oh;
     float spread2 = max(spread * spread, 1e-12);
+    float ior2 = lobe.ior * lobe.ior;
     float factor = reflected ? distribution * masking / (4.0 * cosine_o * cosine_i)
-                             : distribution * masking * abs(ih) * oh / (cosine_o * abs(cosine_i) * spread2);
+                             : distribution * masking * ior2 * abs(ih) * oh / (cosine_o * abs(cosine_i) * spread2);
     FacetShares shares = facet_shares(lobe, oh);
     LobeValue value;
     value.bsdf = factor * (reflected ? lobe.weight * shares.reflectance : shares.transmittance);
     value.pdf = reflected ? visible * shares.reflected / (4.0 * oh)
-                          : visible * (1.0 - shares.reflected) * lobe.ior * lobe.ior * abs(ih) / spread2;
+                          : visible * (1.0 - shares.reflected) * ior2 * abs(ih) / spread2;
     if (!linked) return LobeValue(vec3(0.0), 0.0);
     return value;
 }

@@ -154,6 +154,12 @@ class GraphExporter:
         """Whether a node's output feeds an input."""
         return isinstance(find_source(socket, path, self._links), Source)
 
+    def is_given(self, socket: bpy.types.NodeSocket, path: Path, shown: bool = False) -> bool:
+        """Whether an input gets another value than without links: from a node's output, or from a socket of a group
+        (as in Cycles, normals only from one that shows its value)."""
+        source = find_source(socket, path, self._links)
+        return isinstance(source, Source) or (source.socket != socket and not (shown and source.socket.hide_value))
+
     def _output(self, source: Source) -> object:
         """The value of an output, None when nothing is known."""
         if self._open:
@@ -240,10 +246,10 @@ class GraphExporter:
                 if name in _own_properties(node):
                     inputs[name] = float(getattr(node, name))
                 continue  # or another version of Blender
-            linked = self.is_linked(socket, path)
-            if not linked and isinstance(default, str):
+            given = self.is_given(socket, path, shown=isinstance(default, str))
+            if not given and isinstance(default, str):
                 continue  # the surface's own
-            if not linked and socket_type is VECTOR and socket.hide_value and _is_placed(node):
+            if not given and socket_type is VECTOR and socket.hide_value and _is_placed(node):
                 inputs[name] = self.implicit_coordinates(node)
                 continue
             inputs[name] = self.value(socket, path)
@@ -265,7 +271,7 @@ class GraphExporter:
     def coordinates_of(self, node: bpy.types.Node, path: Path) -> object:
         """What the Vector input of a texture node gets."""
         socket = next((socket for socket in node.inputs if socket.identifier == "Vector"), None)
-        if socket is None or not self.is_linked(socket, path):
+        if socket is None or not self.is_given(socket, path):
             return self.implicit_coordinates(node)
         return self.value(socket, path)
 

@@ -191,7 +191,7 @@ def _environment_texture(
 def _ies_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     vector = next(socket for socket in node.inputs if socket.identifier == "Vector")
     inputs = {}
-    if not exporter.is_linked(vector, path):
+    if not exporter.is_given(vector, path):
         incoming = exporter.shared("new_geometry", "incoming")
         inputs["vector"] = exporter.graph.add(
             "vector_transform", "vector", name=exporter.name_of(node), vector=incoming,
