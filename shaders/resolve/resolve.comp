@@ -153,6 +153,20 @@ void store(uint index, Closure closure) {
 #endif
 }
 
+#ifdef MATERIAL_SUBSURFACE
+void hold_subsurface_of(ShadingInstance instance, inout ClosureBuilder builder) {
+#ifdef ROUND_SHAPES
+    // Rays do not see strands and points from within; Cycles loses what goes there.
+    if (instance.shape != SHAPE_SURFACE && largest(material_subsurface.weight) > 0.0) {
+        add_diffuse_parts(builder, material_subsurface.weight, vec3(0.0),
+                          unpack_unit_vector(material_subsurface.normal), 0u);
+        material_subsurface.weight = vec3(0.0);
+    }
+#endif
+    hold_subsurface(builder);
+}
+#endif
+
 void main() {
     uint place = invocation_index();
     if (place >= range_length(parameters.program)) return;
@@ -189,15 +203,7 @@ void main() {
         && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
 #ifdef MATERIAL_SUBSURFACE
-#ifdef ROUND_SHAPES
-    // Rays do not see strands and points from within; Cycles loses what goes there.
-    if (instance.shape != SHAPE_SURFACE && largest(material_subsurface.weight) > 0.0) {
-        add_diffuse_parts(builder, material_subsurface.weight, vec3(0.0),
-                          unpack_unit_vector(material_subsurface.normal), 0u);
-        material_subsurface.weight = vec3(0.0);
-    }
-#endif
-    hold_subsurface(builder);
+    hold_subsurface_of(instance, builder);
 #endif
 #ifdef MATERIAL_AOVS
     // As in Cycles: of what is seen up to the first surface that the passes are of.
