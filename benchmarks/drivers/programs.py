@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from rppm_addon.gl.sources import Source
-from tests.support.every_node import programs as node_programs
 from tests.support.shader_declarations import Variant, variants
 
 
@@ -37,17 +36,14 @@ class Program:
 def all_programs() -> list[Program]:
     """Compute programs and draws: a fragment shader is drawn with the only vertex shader in its folder."""
     checked = variants()
-    graphs = {text: source.removesuffix(".glsl") for source, text in node_programs().items()}
     vertices = {PurePosixPath(variant.name).parent: variant for variant in checked if variant.name.endswith(".vert")}
-    return list(_programs(checked, graphs, vertices))
+    return list(_programs(checked, vertices))
 
 
-def _programs(
-    checked: list[Variant], graphs: dict[str, str], vertices: dict[PurePosixPath, Variant]
-) -> Iterator[Program]:
+def _programs(checked: list[Variant], vertices: dict[PurePosixPath, Variant]) -> Iterator[Program]:
     for variant in checked:
         path = PurePosixPath(variant.name)
-        words = [variant.name, *sorted(variant.defines), *([graphs[variant.generated]] if variant.generated else [])]
+        words = [variant.name, *sorted(variant.defines), *([variant.kinds] if variant.kinds else [])]
         if path.suffix == ".comp":
             yield Program(" ".join(words), {"comp": variant.expand()})
         elif path.suffix == ".frag":

@@ -16,7 +16,7 @@ layout(std430, binding = 0) buffer NodeRays;
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 2) readonly buffer Hits;
 layout(std430, binding = 3) readonly buffer Attributes;
-layout(std430, binding = 4) readonly buffer HitOrder { uint hit_order[]; };
+layout(std430, binding = 4) readonly buffer HitOrder;
 
 const uint ALL_INSTANCES = 0xffffffffu;
 uint traced_instance;  // that rays may hit

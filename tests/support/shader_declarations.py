@@ -34,6 +34,8 @@ class Variant:
     defines: dict[str, object] = field(default_factory=dict)
     generated: str = ""
     """Of a node graph."""
+    kinds: str = ""
+    """Which kinds of nodes the graph has: the name of their file."""
 
     def expand(self, reads_texels: bool = False, large: Collection[str] = ()) -> Source:
         """Its text; raises ShaderError."""
@@ -41,13 +43,12 @@ class Variant:
         return expand(self.name, self.defines, inserts, reads_texels, large)
 
 
-def _graphs_of(text: str) -> list[str]:
-    """What the compiler of node graphs writes for a stage file with this text."""
+def _graphs_of(text: str) -> dict[str, str]:
+    """What the compiler of node graphs writes for a stage file with this text, by the file of the nodes' kinds."""
     if GENERATED not in text:
-        return [""]
+        return {"": ""}
     # Worlds and lights trace no rays.
-    texts = displacements() if "material_displacement" in text else programs(traces_rays="path_of_node_rays" in text)
-    return list(texts.values())
+    return displacements() if "material_displacement" in text else programs(traces_rays="path_of_node_rays" in text)
 
 
 def variants() -> list[Variant]:
@@ -60,6 +61,8 @@ def variants() -> list[Variant]:
             name = path.relative_to(SHADER_FOLDER).as_posix()
             for line in _LINT.findall(text) or [""]:
                 defines: dict[str, object] = dict(item.partition("=")[::2] for item in line.split())
-                graphs = _graphs_of(text)
-                found += [Variant(name, defines, graph) for graph in graphs]
+                found += [
+                    Variant(name, defines, graph, kinds.removesuffix(".glsl"))
+                    for kinds, graph in _graphs_of(text).items()
+                ]
     return found

@@ -47,6 +47,8 @@ HIT = Record("Hit", triangle="uint", b1="float", b2="float", distance="float")
 """What any kind of visibility yields; triangle NO_TRIANGLE is a miss.
 The point is (1 - b1 - b2) v0 + b1 v1 + b2 v2."""
 StorageBlock("Hits", "Hit hits[];")
+StorageBlock("HitOrder", "uint hit_order[];")
+"""Numbers of hits by the program that evaluates their material (shaders/resolve/ranges.glsl)."""
 StorageBlock("Visibility", "uint visibility[];")
 """Of shadow rays: 1 where nothing is in the way."""
 
