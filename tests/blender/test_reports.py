@@ -130,9 +130,9 @@ def test_warnings_name_what_can_be_selected(facing):
     """Real warnings of an export: of a node of a material on two objects, a light, an object and the world."""
     material = new_material("Odd")
     tree = material.node_tree
-    subsurface = add_node(tree, "ShaderNodeBsdfDiffuse")
-    link(tree, add_node(tree, "ShaderNodeAmbientOcclusion", "Shade").outputs["Color"], subsurface.inputs["Color"])
-    to_surface(material, subsurface)
+    diffuse = add_node(tree, "ShaderNodeBsdfDiffuse")
+    link(tree, add_node(tree, "ShaderNodeShaderToRGB", "Shade").outputs["Color"], diffuse.inputs["Color"])
+    to_surface(material, diffuse)
     first, second = (add_mesh(facing, name, location=(0, 0, -1)) for name in ("First", "Second"))
     other = bpy.data.materials.new("Other")
     first.data.materials.append(other)

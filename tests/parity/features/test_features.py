@@ -11,11 +11,9 @@ import pytest
 
 from . import displacement, fibers, metallic, ray_nodes, strands, zones_and_closures
 from .flip import flip
-from .measure import measure, shortcomings
+from .row_tests import assert_near_cycles
 from .suite import ROWS
 
-PART = 0.5
-"""Of the iterations that `make parity` takes: as many as the limits ask for."""
 DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", "Driven: Normal by a bump")
 
 
@@ -42,14 +40,9 @@ def parameters():
         yield pytest.param(row, id=row.id, marks=[pytest.mark.long] if long else [])
 
 
-@pytest.mark.parametrize("row", parameters())
+@pytest.mark.parametrize("row", list(parameters()))
 def test_feature(renderer, row):
-    found = measure(row, renderer, PART)
-    print(
-        f"{row.id}: mean {found.mean:.2%} +- {found.mean_error:.2%}, block {found.block:.2%}, "
-        f"pixels that differ {found.wrong:.2%}"
-    )
-    assert not shortcomings(row, found)
+    assert_near_cycles(row, renderer)
 
 
 def test_flip_is_that_of_its_authors():

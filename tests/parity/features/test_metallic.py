@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Metallic BSDF against Cycles; films over conductors with the long tests."""
+"""The Metallic BSDF against Cycles; but for one row, with the long tests."""
 
 import pytest
 
-from .measure import measure, shortcomings
 from .metallic import GROUP
-from .suite import ROWS
-from .test_features import PART
+from .row_tests import assert_near_cycles, parameters
 
-OWN = [row for row in ROWS if row.group == GROUP]
+SHORT = ("Metallic: thin film, F82",)
 
 
-@pytest.mark.parametrize(
-    "row", [pytest.param(row, id=row.name, marks=[] if row is OWN[-1] else [pytest.mark.long]) for row in OWN]
-)
+@pytest.mark.parametrize("row", parameters([GROUP], SHORT))
 def test_metallic(renderer, row):
-    found = measure(row, renderer, PART)
-    print(f"{row.id}: mean {found.mean:.2%} +- {found.mean_error:.2%}, block {found.block:.2%}")
-    assert not shortcomings(row, found)
+    assert_near_cycles(row, renderer)

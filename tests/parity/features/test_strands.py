@@ -3,21 +3,12 @@
 
 import pytest
 
-from .measure import measure, shortcomings
+from .row_tests import assert_near_cycles, parameters
 from .strands import GROUPS
-from .suite import ROWS
-from .test_features import PART
 
 SHORT = ("Hair Curves: curly", "Point Cloud: of geometry nodes", "Particle Hair: Intercept", "Hair Info: Thickness")
 
 
-def parameters():
-    for row in (row for row in ROWS if row.group in GROUPS):
-        yield pytest.param(row, id=row.id, marks=[] if row.id in SHORT else [pytest.mark.long])
-
-
-@pytest.mark.parametrize("row", list(parameters()))
+@pytest.mark.parametrize("row", parameters(GROUPS, SHORT))
 def test_strands(renderer, row):
-    found = measure(row, renderer, PART)
-    print(f"{row.id}: mean {found.mean:.2%} +- {found.mean_error:.2%}, block {found.block:.2%}")
-    assert not shortcomings(row, found)
+    assert_near_cycles(row, renderer)
