@@ -207,9 +207,7 @@ class MaterialTables(BufferSet):
         traces_rays: bool = True,
     ) -> tuple[CompiledGraph, Emits]:
         try:
-            compiled = compile_graph(
-                graph, aovs, abbe_number, on_round_shapes=on_round_shapes, traces_rays=traces_rays
-            )
+            compiled = compile_graph(graph, aovs, abbe_number, on_round_shapes=on_round_shapes, traces_rays=traces_rays)
             return compiled, emits(graph)
         except GraphError as error:
             self._scene.warn(f"{owner}: {error}; {remedy}")

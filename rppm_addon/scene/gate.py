@@ -19,7 +19,7 @@ import numpy as np
 from .camera import Camera, Texels
 from .declared import FLOAT_MAX, Declared, declared_of
 from .errors import SceneError
-from .meshes import AttributeDomain, Mesh
+from .meshes import SMOOTH_NORMALS, AttributeDomain, Mesh
 from .motion import CameraMovement, Deformation, Movement, Shutter
 from .node_graphs import Link, NodeGraph
 from .scene import Scene
@@ -300,6 +300,8 @@ def _check_mesh(mesh: Mesh, label: str) -> None:
             raise SceneError(
                 f'{label}: attributes["{_escaped(name)}"] has the shape {shape}; there are {count} {domain}s'
             )
+        if name == SMOOTH_NORMALS and (attribute.domain is not AttributeDomain.CORNER or shape[1] != _MOST_CHANNELS):
+            raise SceneError(f'{label}: attributes["{name}"] must have {_MOST_CHANNELS} numbers for each corner')
 
 
 def _check_graph(graph: NodeGraph, label: str) -> None:

@@ -24,6 +24,12 @@
 #include "common/light_sets.glsl"
 #endif
 
+#ifdef TRACES_INSTANCES
+// Rays may hit triangles of one instance only, or of all. The includer declares before the block Attributes.
+const uint ALL_INSTANCES = 0xffffffffu;
+uint traced_instance = ALL_INSTANCES;
+#endif
+
 // What stays the same along a ray.
 struct CubemapWalk {
     DeepCubemapState cubemap;
@@ -46,11 +52,11 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
     vec4 vertex0 = triangle_vertex(3u * triangle);
 #ifdef TRACES_INSTANCES
-    if (traced_instance != ALL_INSTANCES) {
-        if (attributes[triangle].instance != traced_instance) return;
-    } else
+    bool of_all = traced_instance == ALL_INSTANCES;
+#else
+    const bool of_all = true;
 #endif
-    if (walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
+    if (of_all && walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
 #ifdef ONE_SIDED_TRIANGLES
     vec3 vertex1 = triangle_vertex(3u * triangle + 1u).xyz, vertex2 = triangle_vertex(3u * triangle + 2u).xyz;
     bool from_within = dot(cross(vertex1 - vertex0.xyz, vertex2 - vertex0.xyz), walk.direction) > 0.0;
@@ -62,15 +68,16 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
 #ifdef DEEP_CUBEMAP_COUNT
     ++walk_counts.y;
 #endif
-#ifdef WALKS_WITHIN_INSTANCE
+#ifdef TRACES_INSTANCES
     Hit before = best;
 #endif
     intersect_triangle(
         walk.test, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz,
         triangle_vertex(3u * triangle + 2u).xyz,
         best);
-#ifdef WALKS_WITHIN_INSTANCE
-    if (best.triangle == triangle && attributes[triangle].instance != walk_instance) best = before;
+#ifdef TRACES_INSTANCES
+    // Asked last, as few triangles are hit.
+    if (!of_all && best.triangle == triangle && attributes[triangle].instance != traced_instance) best = before;
 #endif
 }
 

@@ -36,11 +36,16 @@ float smoothest_lit(bool gathered) {
     return gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha);
 }
 
+// Whether a lobe is. What fibers scatter after a gathering ray is left to photons, as of all that store none.
+bool lobe_is_lit(MicrofacetLobe lobe, bool gathered) {
+    return lobe.kind != LOBE_NONE && lobe.alpha > smoothest_lit(gathered) && !(gathered && lobe_is_hair(lobe.kind));
+}
+
 // Whether any part of a closure is.
 bool can_be_lit(uint index, Closure closure, bool gathered) {
     bool lit = largest(closure.diffuse) > 0.0 || largest(closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        lit = lit || lobe_stores(stored_lobe(index, k), smoothest_lit(gathered));
+        lit = lit || lobe_is_lit(stored_lobe(index, k), gathered);
     return lit;
 }
 
@@ -66,7 +71,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         MicrofacetLobe lobe = stored_lobe(index, k);
         vec3 normal = lobe_normal(lobe);
         float cosine = dot(normal, wi);
-        if (!lobe_stores(lobe, smoothest_lit(gathered)) || !lobe_faces(lobe, cosine, front)) continue;
+        if (!lobe_is_lit(lobe, gathered) || !lobe_faces(lobe, cosine, front)) continue;
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = specular ? 1.0 : by_rays;

@@ -177,7 +177,7 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     event.normal = lobe_normal(lobe);
     LobeSample sampled = sample_lobe(lobe, event.normal, viewer, disk, u_event, true);
     event.pdf = 0.0;
-    if (parameters.next_event != 0u && lobe_stores(lobe, SMOOTHEST_LIT))
+    if (parameters.next_event != 0u && lobe.kind != LOBE_NONE && lobe.alpha > SMOOTHEST_LIT)
         event.pdf = lobe_probability(shares, total, chosen)
                       * lobe_pdf(lobe, event.normal, viewer, sampled.direction);
     event.direction = sampled.direction;

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { FirstHitsParameters parameters; };
 #include "common/invocation.glsl"
 #include "common/intersection.glsl"
+#include "common/light_sets.glsl"
 #include "lights/light_table.glsl"
 #define TEXELS_ACCESS readonly
 #include "light_gbuffer/views.glsl"
@@ -44,9 +45,10 @@ bool find_hit(Ray ray, uvec2 range, out Hit hit) {
     WatertightRay test = make_watertight_ray(ray.origin, ray.direction);
     for (uint place = texel.end - texel.count; place < texel.end; ++place) {
         uint triangle = texel_triangles[place];
-        intersect_triangle(test, triangle, triangle_vertices[3u * triangle].xyz,
-                           triangle_vertices[3u * triangle + 1u].xyz,
-                           triangle_vertices[3u * triangle + 2u].xyz, hit);
+        vec4 v0 = triangle_vertices[3u * triangle];
+        vec3 v1 = triangle_vertices[3u * triangle + 1u].xyz, v2 = triangle_vertices[3u * triangle + 2u].xyz;
+        if (is_one_sided(v0.w) && dot(cross(v1 - v0.xyz, v2 - v0.xyz), ray.direction) > 0.0) continue;
+        intersect_triangle(test, triangle, v0.xyz, v1, v2, hit);
     }
     if (hit.triangle == NO_TRIANGLE) return false;
     float depth = view_point(view, ray.origin + hit.distance * ray.direction).z;

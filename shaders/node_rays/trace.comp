@@ -18,8 +18,6 @@ layout(std430, binding = 2) readonly buffer Hits;
 layout(std430, binding = 3) readonly buffer Attributes;
 layout(std430, binding = 4) readonly buffer HitOrder;
 
-const uint ALL_INSTANCES = 0xffffffffu;
-uint traced_instance;  // that rays may hit
 #define TRACES_INSTANCES
 #include "deep_cubemap/traverse.glsl"
 #include <NodeQuestions>

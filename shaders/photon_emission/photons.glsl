@@ -3,6 +3,7 @@
 // the caller shares it out.
 
 #include "lights/lights.glsl"
+#include "common/light_sets.glsl"
 #include "photon_emission/aim.glsl"
 #include "lights/guide.glsl"
 
@@ -70,7 +71,9 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
     float cosine = dot(direction, normal);
     if (both_sides) cosine = abs(cosine);
     Emission none = Emission(origin, triangle, direction, vec3(0.0), 0.0);
-    if (cosine <= 0.0) return none;
+    // Rays do not see strands and points from within: what shone there would get out.
+    bool within = both_sides && dot(direction, normal) < 0.0 && is_one_sided(triangle_vertices[3u * triangle].w);
+    if (cosine <= 0.0 || within) return none;
     float plain = both_sides ? cosine / (2.0 * PI) : cosine / PI;
     if (narrow) plain = cosine >= light.cosine_cone ? 1.0 / (2.0 * PI * (1.0 - light.cosine_cone)) : 0.0;
     bool front = dot(direction, normal) > 0.0;

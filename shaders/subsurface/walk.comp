@@ -17,8 +17,7 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 layout(std140, binding = 0) uniform Parameters { WalkParameters parameters; };
 layout(std430, binding = 1) readonly buffer Attributes;
-uint walk_instance;  // whose triangles are met
-#define WALKS_WITHIN_INSTANCE
+#define TRACES_INSTANCES
 #include "deep_cubemap/traverse.glsl"
 
 layout(std430, binding = 2) writeonly buffer ExitHits;
@@ -144,8 +143,8 @@ void main() {
     if (index == NO_PATH) return;
     SubsurfaceWalk walk = subsurface_walks[index];
     Ray ray = walk_rays[index];
-    walk_instance = parameters.first_step == 0u ? attributes[ray.source_triangle].instance : walk.instance;
-    walk.instance = walk_instance;
+    if (parameters.first_step == 0u) walk.instance = attributes[ray.source_triangle].instance;
+    traced_instance = walk.instance;
     RandomSequence start = random_sequence(parameters.seed, parameters.iteration, parameters.stage, parameters.segment,
                                            parameters.first_path + index);
     Hit hit = Hit(NO_TRIANGLE, 0.0, 0.0, 0.0);

@@ -2,6 +2,7 @@
 """Vertices that are moved by what nodes give."""
 
 import dataclasses
+import weakref
 
 import numpy as np
 import pytest
@@ -334,8 +335,42 @@ def test_meshes_are_divided_before(displaced):
     assert near > far == mesh.triangle_count
 
 
-def test_divided_meshes_are_no_larger_than_they_may_be(displaced, monkeypatch):
+def test_divided_meshes_are_no_larger_than_they_may_be(mapper, monkeypatch):
+    """Which is told as long as it is so, and no longer."""
     monkeypatch.setattr("rppm_addon.integrator.surfaces.dicing.MOST_TRIANGLES", 512)
-    scene = scene_of(waves(), meshes=[dataclasses.replace(grid(4), dicing=Dicing(0.05, False, True))])
-    assert displaced(scene).meshes[0].triangle_count == 32 * 16
-    assert any("Adaptive Subdivision leaves edges" in text for text in scene.warnings)
+
+    def told(edge_length: float) -> list[str]:
+        mesh = dataclasses.replace(grid(4), dicing=Dicing(edge_length, False, True))
+        changed = dataclasses.replace(scene, meshes=[mesh], warnings=[])
+        mapper.update(changed)
+        assert mapper.scene.warnings is changed.warnings
+        return [text for text in changed.warnings if "Adaptive Subdivision leaves edges" in text]
+
+    scene = scene_of(waves())
+    (first,), (second,) = told(0.05), told(0.06)
+    assert mapper.triangle_count == 32 * 16 and first != second
+    assert told(0.5) == []
+
+
+def test_what_is_divided_may_have_no_triangles(displaced):
+    mesh, none = grid(4), np.zeros((0, 3), np.int32)
+    mesh = dataclasses.replace(mesh, triangle_corners=none, triangle_slots=none[:, 0], dicing=Dicing(0.05, False, True))
+    (moved,) = displaced(scene_of(waves(), meshes=[mesh])).meshes
+    np.testing.assert_array_equal(moved.positions, mesh.positions)
+
+
+def test_what_moves_leaves_nothing_behind(displaced):
+    """Of objects and shapes that are others in each scene, those of scenes before are forgotten."""
+    mesh = grid(8)
+    scene = scene_of(waves(), plain(), meshes=[mesh])
+    left = []
+    for place in range(3):
+        keys = np.stack([mesh.positions, mesh.positions + np.float32(place)])
+        bent = Deformation(0, np.array([0.0, 1.0]), keys, np.stack([mesh.corner_normals] * 2))
+        left += [weakref.ref(bent), weakref.ref(keys)]
+        matrix = placed(place, 0.0, 0.0)
+        left.append(weakref.ref(matrix))
+        instances = [Instance(0, matrix, [0]), Instance(0, np.eye(4), [1])]
+        displaced(dataclasses.replace(scene, instances=instances, shutter=Shutter(np.ones(4), meshes=[bent])), False)
+    del bent, keys, matrix, instances
+    assert [found() is None for found in left] == [True] * 6 + [False] * 3

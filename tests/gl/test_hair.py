@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scenes
 
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator.common.records import MicrofacetKind
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene
 
 Record(
     "HairTestParameters",
@@ -144,3 +146,26 @@ def test_huang_reflects_as_a_cylinder_does(context, library):
     assert weights[:, 1].mean() == pytest.approx(reflectance.mean(), rel=0.02)
     sideways = np.sin(2.0 * np.arcsin(h)) ** 2
     assert drawn[:, 2].mean() == pytest.approx((reflectance * sideways).mean(), rel=0.03)
+
+
+def test_fibers_store_no_photons_however_smooth_lobes_must_be_to_be_followed(mapper):
+    """A hairy wall beside a floor is the same bit for bit."""
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_hair", "bsdf", color=(0.9, 0.6, 0.3), roughnessu=0.3, roughnessv=0.5)
+    floor = scenes.rectangle("floor", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
+    wall = scenes.rectangle("wall", (-1, 1, 0), (1, 1, 0), (1, 1, 1), (-1, 1, 1))
+    scene = Scene(
+        Camera(scenes.looking((0, -0.2, 2), (0, 0.4, 0)), (-0.3, 0.3, -0.3, 0.3), 8, 8),
+        [floor, wall],
+        [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])],
+        [scenes.diffuse(0.5, 0.5, 0.5), Material("hair", graph)],
+        [Light("light", LightKind.AREA, scenes.looking((0, -1.5, 1.2), (0, 1, 0.4)), np.full(3, 3.0), size=(2.0, 2.0))],
+    )
+    found = []
+    for roughness in (0.5, 0.0):
+        scene.settings = RenderSettings(photons=1024, specular_roughness=roughness)
+        mapper.build(scene)
+        for _ in range(2):
+            mapper.iterate()
+        found.append(mapper.film.read_radiance())
+    np.testing.assert_array_equal(*found)

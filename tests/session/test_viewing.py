@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a viewport sees before the renderer's first frame."""
 
+import copy
 import dataclasses
 
 import numpy as np
@@ -11,6 +12,7 @@ from rppm_addon.denoising.denoiser import Denoiser
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.scene import Panorama, PanoramaKind
+from rppm_addon.scene.meshes import Dicing
 from rppm_addon.session.process.known_programs import MOST_TRIANGLES, KnownPrograms
 from rppm_addon.session.process.viewing import Viewing
 
@@ -112,6 +114,17 @@ def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewing):
     glossy = dataclasses.replace(scene.materials[0], graph=dataclasses.replace(scene.materials[0].graph))
     glossy.graph.nodes = [dataclasses.replace(node, kind="bsdf_glossy") for node in glossy.graph.nodes]
     assert not viewing._programs.cover(dataclasses.replace(scene, materials=[glossy]))
+    raised = dataclasses.replace(scene.materials[0], graph=copy.deepcopy(scene.materials[0].graph))
+    raised.graph.displacement = raised.graph.add("displacement", "displacement", height=0.5)
+    displaced = scene_of(materials=[raised])
+    assert not viewing._programs.cover(displaced)
+    other, _ = open_viewing()
+    other.show(displaced, 1, False)
+    run(other)
+    assert viewing._programs.cover(displaced)
+    divided = dataclasses.replace(scene.meshes[0], dicing=Dicing(1.0, True, False))
+    assert viewing._programs.cover(scene_of(meshes=[divided]))
+    assert not viewing._programs.cover(dataclasses.replace(displaced, meshes=[divided]))
     many = MOST_TRIANGLES // scene.meshes[0].triangle_count + 1
     assert not viewing._programs.cover(dataclasses.replace(scene, instances=scene.instances * many))
 

@@ -27,7 +27,7 @@ from rppm_addon.scene import (
     Scene,
     Shutter,
 )
-from rppm_addon.scene.meshes import RayVisibility
+from rppm_addon.scene.meshes import Dicing, MeshShape, RayVisibility
 from support.lobes import Lobe, LobeKind, image_world, material
 
 
@@ -40,6 +40,7 @@ def graph_of_everything() -> NodeGraph:
     ramp = graph.add("val_to_rgb", "color", table=table, options={"constant": True}, fac=image)
     graph.surface = graph.add("bsdf_diffuse", "bsdf", color=ramp)
     graph.normal = graph.add("bump", "normal", height=0.5, normal=(0.0, 0.0, 1.0))
+    graph.displacement = ramp
     graph.aovs = [AovOutput("Mask", color=ramp, value=0.25), AovOutput("Tint", (0.1, 0.2, 0.3))]
     return graph
 
@@ -55,8 +56,9 @@ def full_scene() -> Scene:
         np.array([0, 1], np.int32),
         rng.random((4, 2), np.float32),
         attributes={"heat": MeshAttribute(AttributeDomain.CORNER, rng.random((4, 3), np.float32))},
+        dicing=Dicing(2.0, True, False),
     )
-    bare = dataclasses.replace(mesh, name="bare", corner_uv=None)
+    bare = dataclasses.replace(mesh, name="bare", corner_uv=None, dicing=None, shape=MeshShape.STRANDS)
     return Scene(
         camera=Camera(np.eye(4), (-1, 1, -0.5, 0.5), 64, 32, True, 0.2, 50.0, (1, 2, 30, 31)),
         meshes=[mesh, bare],
@@ -72,7 +74,7 @@ def full_scene() -> Scene:
         ],
         materials=[
             material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0])),
-            Material("b", graph_of_everything(), abbe_number=30.0),
+            Material("b", graph_of_everything(), abbe_number=30.0, on_round_shapes=True),
         ],
         lights=[
             Light(
@@ -89,6 +91,7 @@ def full_scene() -> Scene:
         images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],
         settings=RenderSettings(iterations=7, direct_light=DirectLight.PHOTONS),
         exposure=2.0,
+        dicing_rate=0.5,
         shutter=Shutter(
             np.linspace(0, 1, 5),
             [Movement(0, np.array([0, 0.5, 1]), rng.random((3, 4, 4)))],

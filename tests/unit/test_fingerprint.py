@@ -10,6 +10,7 @@ from support.full_scene import full_scene
 
 from rppm_addon.scene import DirectLight, RenderSettings, load_scene, save_scene
 from rppm_addon.scene.fingerprint import UNSEEN, plain_settings, scene_digests
+from rppm_addon.scene.meshes import Dicing, MeshShape
 
 
 def test_a_scene_that_was_saved_is_the_same(tmp_path):
@@ -39,6 +40,11 @@ def smallest_change(array: np.ndarray) -> np.ndarray:
         ("camera", lambda scene: setattr(scene.camera, "matrix", smallest_change(scene.camera.matrix))),
         ("meshes", lambda scene: setattr(scene.meshes[0], "positions", smallest_change(scene.meshes[0].positions))),
         ("meshes", lambda scene: setattr(scene.meshes[0], "positions", scene.meshes[0].positions.astype(np.float64))),
+        ("meshes", lambda scene: setattr(scene.meshes[0], "dicing", Dicing(2.5, True, False))),
+        ("meshes", lambda scene: setattr(scene.meshes[1], "shape", MeshShape.POINTS)),
+        ("materials", lambda scene: setattr(scene.materials[1].graph, "displacement", None)),
+        ("materials", lambda scene: setattr(scene.materials[1], "on_round_shapes", False)),
+        ("dicing_rate", lambda scene: setattr(scene, "dicing_rate", np.nextafter(scene.dicing_rate, 9.0))),
         ("instances", lambda scene: setattr(scene.instances[0], "holdout", not scene.instances[0].holdout)),
         ("lights", lambda scene: setattr(scene.lights[0], "strength", smallest_change(scene.lights[0].strength))),
         ("exposure", lambda scene: setattr(scene, "exposure", np.nextafter(scene.exposure, 9.0))),

@@ -7,10 +7,19 @@ import numpy as np
 import pytest
 from support.full_scene import full_scene, graph_of_everything
 
-from rppm_addon.scene import Link, NodeGraph, ShaderNode, Texels, load_scene, save_scene
+from rppm_addon.scene import (
+    AttributeDomain,
+    Link,
+    MeshAttribute,
+    NodeGraph,
+    ShaderNode,
+    Texels,
+    load_scene,
+    save_scene,
+)
 from rppm_addon.scene.errors import SceneError
 from rppm_addon.scene.gate import check_record, check_scene
-from rppm_addon.scene.meshes import RayVisibility
+from rppm_addon.scene.meshes import SMOOTH_NORMALS, Dicing, RayVisibility
 from rppm_addon.session.process.sessions import SessionStatus
 
 NAN, INF = float("nan"), float("inf")
@@ -26,6 +35,10 @@ def linking(node, output="bsdf"):
     graph = graph_of_everything()
     graph.surface = Link(node, output)
     return graph
+
+
+def displacing(node):
+    return dataclasses.replace(graph_of_everything(), displacement=Link(node, "vector"))
 
 
 def texels(scene, triangle):
@@ -74,6 +87,21 @@ BROKEN = [
     ("meshes.0.positions", lambda scene: np.zeros((3, 3), np.float32), "index 3; there are 3 vertices"),
     ("meshes.0.corner_normals", lambda scene: np.zeros((5, 3), np.float32), "of 4 vertices, 4 corners"),
     ("meshes.0.attributes.heat.values", lambda scene: np.zeros((3, 3), np.float32), "there are 4 corners"),
+    (
+        "meshes.0.attributes",
+        lambda scene: {SMOOTH_NORMALS: scene.meshes[0].attributes["heat"]},
+        "must have 4 numbers for each corner",
+    ),
+    (
+        "meshes.0.attributes",
+        lambda scene: {SMOOTH_NORMALS: MeshAttribute(AttributeDomain.POINT, np.zeros((4, 4), np.float32))},
+        "must have 4 numbers for each corner",
+    ),
+    ("meshes.0.dicing", lambda scene: Dicing(NAN, True, False), "dicing: edge_length is nan"),
+    ("meshes.0.dicing", lambda scene: Dicing(0.0, True, False), "dicing: edge_length is 0.0; it must be 1e-06 or more"),
+    ("meshes.0.dicing", lambda scene: Dicing(1.0, 1, False), "dicing: in_pixels is 1; it must be a bool"),
+    ("meshes.1.shape", lambda scene: "STRANDS", "shape is 'STRANDS'; it must be a MeshShape"),
+    ("dicing_rate", lambda scene: -1.0, "dicing_rate is -1.0; it must be 1e-06 or more"),
     ("instances.0.mesh", lambda scene: 2, 'instances.0. "object": mesh is 2; .* one of 2 meshes'),
     ("instances.0.mesh", lambda scene: -1, "mesh is -1"),
     ("instances.0.materials", lambda scene: [0, 2], r"materials\[1\] is 2; it must be the index of one of 2 materials"),
@@ -90,6 +118,8 @@ BROKEN = [
     ("materials.1.graph", lambda scene: NodeGraph([ShaderNode("a", inputs={"x": [[1]]})]), "must be a number"),
     ("materials.1.graph", lambda scene: NodeGraph([ShaderNode("a", inputs={"x": (1.0, ())})]), "must be a number"),
     ("materials.1.graph", lambda scene: NodeGraph([ShaderNode("a", inputs={"x": 1 << 400})]), "must be finite"),
+    ("materials.1.graph", lambda scene: displacing(99), "links to node 99; there are"),
+    ("materials.1.on_round_shapes", lambda scene: 1, "on_round_shapes is 1; it must be a bool"),
     ("materials.1.abbe_number", lambda scene: 0.0, "abbe_number is 0.0; it must be 1 or more"),
     ("materials.1.abbe_number", lambda scene: NAN, "abbe_number is nan"),
     ("shutter.instances.0.member", lambda scene: 2, "shutter: instances.0.: member is 2; there are 2 instances"),

@@ -92,7 +92,9 @@ class DeviceScene:
         self._build_materials(changes)
         with self._collect_warnings("displacement") if changes.materials else contextlib.nullcontext():
             displaced = self.displacement.displaced(scene, self.materials, changes.materials)
+        self._warnings["dicing"] = self.displacement.warnings
         if displaced is not scene:
+            displaced.warnings = scene.warnings  # not those that were collected meanwhile
             scene = displaced
             changes = changes_between(before, scene)
             self._take(scene)

@@ -13,7 +13,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...materials.emitted import Emits, asks_for_path
 from ...materials.tables import MaterialTables
-from ...scene.meshes import RayVisibility
+from ...scene.meshes import MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
@@ -83,21 +83,23 @@ class Emitters(BufferSet):
             for placement in geometry.placements
             if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
         ]
-        kinds_of_parts: tuple[DTypeLike, ...] = EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool, np.int64
-        records, corners, kinds, varying, reflected, numbers = (
+        kinds_of_parts: tuple[DTypeLike, ...] = (
+            EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool, np.int64, np.int64
+        )  # fmt: skip
+        records, corners, kinds, varying, reflected, numbers, sides = (
             np.concatenate([parts[k] for parts in found]) if found else np.zeros((0,), kind)
             for k, kind in enumerate(kinds_of_parts)
         )
         self._ask(records, corners, kinds, varying, resolve)
         bright = records["radiance"].max(axis=1, initial=0.0) > 0
-        records, varying, reflected = records[bright], varying[bright], reflected[bright]
+        records, varying, reflected, sides = records[bright], varying[bright], reflected[bright], sides[bright]
         self.links = numbers[bright]
         self.leaves = triangle_leaves(records, corners[bright].reshape(-1, 3, 3))
         self._varying = bool(varying.any())
         self._world_triangles = geometry.triangles.buffer
         self.count = len(records)
         weights = records["radiance"].mean(axis=1, dtype=np.float64) * records["area"]
-        self.power = 2 * math.pi * (records["radiance"].T.astype(np.float64) @ records["area"])
+        self.power = math.pi * (records["radiance"].T.astype(np.float64) @ (sides * records["area"]))
         if self.count:
             steps = chances(weights)
             records["share"] = steps / _STEPS
@@ -233,8 +235,8 @@ def _may_emit(
     scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int], links: LightLinkTable
 ) -> tuple[np.ndarray, ...]:
     """Of one instance: records without radiance, corners (n, 3, 3) in meters, material, whether it varies, whether
-    smooth surfaces may look for it, and its link: what its emission depends on must be known without the path that
-    comes there."""
+    smooth surfaces may look for it, its link, and how many sides shine: what its emission depends on must be known
+    without the path that comes there."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
     slots = np.array([m if 0 <= m < len(scene.materials) else -1 for m in instance.materials] or [-1])
@@ -254,4 +256,5 @@ def _may_emit(
     seen = instance.visibility & _SEEN_REFLECTED == _SEEN_REFLECTED
     reflected = seen & np.isin(kinds, list(by_path), invert=True)
     link = links.of_emitter(instance.linking) if len(records) else NO_LINK
-    return records, corners, kinds, varying, reflected, np.full(len(records), link)
+    sides = np.full(len(records), 2 if mesh.shape is MeshShape.SURFACE else 1)
+    return records, corners, kinds, varying, reflected, np.full(len(records), link), sides

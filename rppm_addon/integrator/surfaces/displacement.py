@@ -3,6 +3,7 @@
 
 import dataclasses
 import functools
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -57,6 +58,11 @@ class _Shape:
         displaced, bumped = by_slot[np.minimum(self.mesh.triangle_slots, len(by_slot) - 1)].T
         return displaced_normals(self.mesh, displaced & ~bumped, bumped, before, after, normals)
 
+    def keep(self, members: set[int]) -> None:
+        """Forget what was made of instances and deformations whose ids are not among these."""
+        self.deformations = {key: made for key, made in self.deformations.items() if key in members}
+        self.placed = {key: made for key, made in self.placed.items() if key in members}
+
 
 class Displacement:
     """Displaces the meshes of scenes. What did not change is the same object from one scene to the next."""
@@ -67,19 +73,23 @@ class Displacement:
         """By the id of the mesh, and materials."""
         self._slots: dict[int, tuple[int, bool]] = {}
         """Of the materials of the last scene that displace."""
+        self.warnings: list[str] = []
+        """Of the last scene, what is divided less than is asked for; this follows from camera and meshes."""
 
     def displaced(self, scene: Scene, materials: MaterialTables, renewed: bool) -> Scene:
         """The scene with its meshes displaced, and their shapes at other times; itself where nothing is displaced.
 
-        materials: built for the scene; renewed: since the scene before. Raises DeviceError.
+        materials: built for the scene; renewed: since the scene before. Programs that the driver refuses are told in
+        scene.warnings. Raises DeviceError.
         """
+        self.warnings = []
         self._slots = {index: (index, graph.keeps_normals) for index, graph in materials.displacing.items()}
         users = _users(scene, self._slots)
         known, self._shapes = self._shapes, {}
         stale = []
         for mesh, slots, members in _displaced(users):
             source, first = scene.meshes[mesh], scene.instances[members[0]]
-            parts, shape = _parts(scene, source, members), known.get((id(source), slots))
+            parts, shape = self._parts(scene, source, members), known.get((id(source), slots))
             if shape is None or shape.parts != parts:
                 shape = _Shape(source, slots, first, parts)
             if renewed or shape.displaced is None or shape.instance is not first:
@@ -111,6 +121,22 @@ class Displacement:
                 shape.offsets, shape.displaced = offsets, _moved(shape, offsets)
                 shape.deformations, shape.placed = {}, {}
 
+    def _parts(self, scene: Scene, mesh: Mesh, members: list[int]) -> int:
+        """Into how many parts the edges of a mesh are divided that these instances have."""
+        triangles = mesh.triangle_count * len(members)
+        if mesh.dicing is None or triangles == 0 or scene.camera.texels is not None:  # texels know them by number
+            return 1
+        instances = [scene.instances[member] for member in members]
+        wanted = parts_of_edges(mesh, instances, scene.camera, scene.dicing_rate)
+        parts = rounded_parts(wanted, triangles)
+        if parts < wanted:
+            self.warnings.append(
+                f'Object "{instances[0].object_name}": Adaptive Subdivision leaves edges {wanted / parts:.1f} times as '
+                f"long as it is asked for, as it makes no more than {MOST_TRIANGLES} triangles; raise its Pixel Size "
+                "or the Dicing Rate"
+            )
+        return parts
+
     def _with_shapes(self, scene: Scene, users: "_Users") -> Scene:
         meshes, instances = list(scene.meshes), list(scene.instances)
         places: dict[int, list[tuple[int, _Shape]]] = {}
@@ -125,13 +151,18 @@ class Displacement:
             for member in members:
                 instances[member] = _placed(shape, instances[member], len(meshes))
             meshes.append(shape.displaced)
-        return dataclasses.replace(
+        result = dataclasses.replace(
             scene,
             meshes=meshes,
             instances=instances,
             shutter=_with_displaced(scene.shutter, places, users),
             neighbors=_with_displaced(scene.neighbors, places, users),
         )
+        bent = [shutter.meshes for shutter in (scene.shutter, scene.neighbors) if shutter is not None]
+        known = set(map(id, itertools.chain(scene.instances, *bent)))
+        for shape in self._shapes.values():
+            shape.keep(known)
+        return result
 
 
 _Users = dict[int, dict[_Slots, list[int]]]
@@ -159,22 +190,6 @@ def _displaced(users: _Users) -> Iterator[tuple[int, _Slots, list[int]]]:
         for slots, members in by_slots.items():
             if any(slots):
                 yield mesh, slots, members
-
-
-def _parts(scene: Scene, mesh: Mesh, members: list[int]) -> int:
-    """Into how many parts the edges of a mesh are divided that these instances have."""
-    if mesh.dicing is None or scene.camera.texels is not None:  # whose triangles are known by number
-        return 1
-    instances = [scene.instances[member] for member in members]
-    wanted = parts_of_edges(mesh, instances, scene.camera, scene.dicing_rate)
-    parts = rounded_parts(wanted, mesh.triangle_count * len(instances))
-    if parts < wanted:
-        scene.warn(
-            f'Object "{instances[0].object_name}": Adaptive Subdivision leaves edges {wanted / parts:.1f} times as '
-            f"long as it is asked for, as it makes no more than {MOST_TRIANGLES} triangles; raise its Pixel Size or "
-            "the Dicing Rate"
-        )
-    return parts
 
 
 def _placed(shape: _Shape, instance: Instance, mesh: int) -> Instance:

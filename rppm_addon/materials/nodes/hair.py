@@ -45,6 +45,5 @@ KINDS = {
         outputs=_BSDF,
         options={"model": ("CHIANG", "HUANG"), "parametrization": ("ABSORPTION", "MELANIN", "COLOR")},
         surface=True,
-        function_option="model",
     ),
 }

@@ -47,8 +47,7 @@ const float SMOOTHEST_LIT = 1e-4;
 // Lobes above the cut-off store photons; the others are traced on. alpha is roughness squared. Fibers are too thin to
 // store any.
 bool lobe_stores(MicrofacetLobe lobe, float specular_alpha) {
-    return lobe.kind != LOBE_NONE && lobe.alpha > specular_alpha
-        && (!lobe_is_hair(lobe.kind) || specular_alpha <= SMOOTHEST_LIT);
+    return lobe.kind != LOBE_NONE && lobe.alpha > specular_alpha && !lobe_is_hair(lobe.kind);
 }
 bool lobe_is_specular(MicrofacetLobe lobe, float specular_alpha) {
     return lobe.kind != LOBE_NONE && (lobe.alpha <= specular_alpha || lobe_is_hair(lobe.kind));

@@ -63,26 +63,6 @@ vec3 hair_absorption(int parametrization, vec3 color, float melanin, float redne
     return max(melanin * pigments, 0.0) + absorption_of_color(tint, radial_roughness);
 }
 
-// strand_random: of a strand, in place of random; less than 0 where that is given.
-void node_bsdf_hair_principled_chiang(Surface surface, inout ClosureBuilder builder, float weight, int parametrization,
-                                      vec3 color, float melanin, float redness, vec3 tint, vec3 absorption,
-                                      float aspect_ratio, float roughness, float radial_roughness, float coat,
-                                      float ior, float offset, float random_color, float random_roughness,
-                                      float random, float r_lobe, float tt_lobe, float trt_lobe,
-                                      float strand_random) {
-    bool on_strand;
-    vec3 tangent = fiber_tangent(surface, 1, on_strand), n = builder.geometric;
-    if (on_strand && strand_random >= 0.0) random = strand_random;
-    float randomness = 1.0 + 2.0 * (random - 0.5) * random_roughness;
-    roughness *= randomness;
-    radial_roughness *= randomness;
-    vec3 sigma = hair_absorption(parametrization, color, melanin, redness, tint, absorption, radial_roughness,
-                                 random_color, random);
-    add_lobe(builder, MicrofacetLobe(vec3(weight), LOBE_HAIR_CHIANG, sigma, HAIR_ALPHA,
-                                     clamp(vec3(radial_roughness, roughness, 1.0 - coat), 0.0, 1.0), max(ior, 1e-3),
-                                     pack_unit_vector(n), pack_hair(n, tangent, offset, on_strand)));
-}
-
 // Half of what a pixel covers over the radius of a strand that the camera sees, at most 1: means are over that width.
 // Elsewhere over all of it.
 float pixel_over_radius(Surface surface) {
@@ -95,21 +75,27 @@ float pixel_over_radius(Surface surface) {
     return 1.0;
 }
 
-void node_bsdf_hair_principled_huang(Surface surface, inout ClosureBuilder builder, float weight, int parametrization,
-                                     vec3 color, float melanin, float redness, vec3 tint, vec3 absorption,
-                                     float aspect_ratio, float roughness, float radial_roughness, float coat,
-                                     float ior, float offset, float random_color, float random_roughness,
-                                     float random, float r_lobe, float tt_lobe, float trt_lobe,
-                                     float strand_random) {
-    bool on_strand;
+// model: Chiang's, Huang's. strand_random: of a strand, in place of random; less than 0 where that is given.
+void node_bsdf_hair_principled(Surface surface, inout ClosureBuilder builder, float weight, int model,
+                               int parametrization, vec3 color, float melanin, float redness, vec3 tint,
+                               vec3 absorption, float aspect_ratio, float roughness, float radial_roughness, float coat,
+                               float ior, float offset, float random_color, float random_roughness, float random,
+                               float r_lobe, float tt_lobe, float trt_lobe, float strand_random) {
+    bool on_strand, huang = model == 1;
     vec3 tangent = fiber_tangent(surface, 1, on_strand), n = builder.geometric;
     if (on_strand && strand_random >= 0.0) random = strand_random;
-    roughness *= 1.0 + 2.0 * (random - 0.5) * random_roughness;
-    vec3 sigma = hair_absorption(parametrization, color, melanin, redness, tint, absorption, roughness, random_color,
-                                 random);
-    float aspect = max(aspect_ratio, 0.05);
-    vec3 shape = clamp(vec3(min(aspect, 1.0 / aspect), roughness, pixel_over_radius(surface)), 0.0, 1.0);
-    add_lobe(builder, MicrofacetLobe(weight * max(vec3(r_lobe, tt_lobe, trt_lobe), 0.0), LOBE_HAIR_HUANG, sigma,
-                                     HAIR_ALPHA, shape, max(ior, 1e-3), pack_unit_vector(n),
+    float randomness = 1.0 + 2.0 * (random - 0.5) * random_roughness;
+    roughness *= randomness;
+    radial_roughness *= randomness;
+    vec3 sigma = hair_absorption(parametrization, color, melanin, redness, tint, absorption,
+                                 huang ? roughness : radial_roughness, random_color, random);
+    vec3 lobes = vec3(1.0), shape = vec3(radial_roughness, roughness, 1.0 - coat);
+    if (huang) {
+        float aspect = max(aspect_ratio, 0.05);
+        lobes = max(vec3(r_lobe, tt_lobe, trt_lobe), 0.0);
+        shape = vec3(min(aspect, 1.0 / aspect), roughness, pixel_over_radius(surface));
+    }
+    add_lobe(builder, MicrofacetLobe(weight * lobes, huang ? LOBE_HAIR_HUANG : LOBE_HAIR_CHIANG, sigma, HAIR_ALPHA,
+                                     clamp(shape, 0.0, 1.0), max(ior, 1e-3), pack_unit_vector(n),
                                      pack_hair(n, tangent, offset, on_strand)));
 }
