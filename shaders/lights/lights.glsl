@@ -204,16 +204,17 @@ bool is_on_area_light(Light light, vec2 coordinates) {
 
 // A narrow spread leaves of an area light what lies on a disk around the point's foot on its plane, as Cycles'
 // area_light_spread_clamp_light: the light becomes the least that holds this, the whole or a parallelogram, which is
-// empty where nothing shines. True where the disk is less, and not so wide that its rim is much farther away.
+// empty where nothing shines. True where the disk itself is to be sampled: by what shines from there, which pays where
+// at most half of that misses the light, unless the disk is so wide that its rim is much farther away.
 bool narrow_to_spread(inout Light light, vec3 point) {
-    const float WIDEST_TANGENT = 2.0;
+    const float WIDEST_TANGENT = 2.0, LEAST_WITHIN = 2.2;  // of the square around the disk, which has 4
     float radius = max(dot(point - light.position, light.normal), 0.0) * light.spread_tangent;
     float spanned = length(cross(light.axis_u, light.axis_v));
     vec2 foot = area_light_coordinates(light, point - light.position);
     vec2 reach = radius / spanned * vec2(length(light.axis_v), length(light.axis_u));
     vec2 low = max(foot - reach, -1.0), high = min(foot + reach, 1.0), extent = max(0.5 * (high - low), 0.0);
     float within = 4.0 * extent.x * extent.y * spanned;
-    if (light.spread_tangent <= WIDEST_TANGENT && PI * radius * radius < min(within, light.area)) return true;
+    if (light.spread_tangent <= WIDEST_TANGENT && within > LEAST_WITHIN * radius * radius) return true;
     if (within >= light.area) return false;
     light.kind = LIGHT_RECTANGLE;
     light.position = area_light_corner(light, 0.5 * (low.x + high.x), 0.5 * (low.y + high.y));
