@@ -26,11 +26,15 @@ float spot_attenuation(Light light, vec3 direction) {
     return x * x * (3.0 - 2.0 * x);
 }
 
-// Cycles' spread of area lights: linear in the tangent, zero beyond half the spread.
-float spread_attenuation(Light light, float cosine) {
+// Cycles' spread of area lights: linear in the tangent to the normal, zero beyond half the spread.
+float spread_attenuation(Light light, float tangent) {
     if (light.spread_tangent <= 0.0) return 1.0;
-    float tangent = sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-6);
     return max(0.0, (light.spread_tangent - tangent) * light.spread_scale);
+}
+
+// Toward a point that sees the light along to_light, of any length. The cosine would tell little of small angles.
+float attenuation_toward(Light light, vec3 to_light) {
+    return spread_attenuation(light, length(cross(to_light, light.normal)) / -dot(to_light, light.normal));
 }
 
 // Light Falloff nodes: what a light gives may grow with a power of the distance, and be weakened near it.
@@ -193,8 +197,52 @@ float pdf_by_area(Light light, vec3 to_light) {
     return distance2 * sqrt(distance2) / (abs(dot(to_light, light.normal)) * light.area);
 }
 
+bool is_on_area_light(Light light, vec2 coordinates) {
+    return light.kind == LIGHT_ELLIPSE ? dot(coordinates, coordinates) <= 1.0
+                                       : max(abs(coordinates.x), abs(coordinates.y)) <= 1.0;
+}
+
+// A narrow spread leaves of an area light what lies on a disk around the point's foot on its plane, as Cycles'
+// area_light_spread_clamp_light: the light becomes the least that holds this, the whole or a parallelogram, which is
+// empty where nothing shines. True where the disk itself is to be sampled: by what shines from there, which pays where
+// at most half of that misses the light, unless the disk is so wide that its rim is much farther away.
+bool narrow_to_spread(inout Light light, vec3 point) {
+    const float WIDEST_TANGENT = 2.0, LEAST_WITHIN = 2.2;  // of the square around the disk, which has 4
+    float radius = max(dot(point - light.position, light.normal), 0.0) * light.spread_tangent;
+    float spanned = length(cross(light.axis_u, light.axis_v));
+    vec2 foot = area_light_coordinates(light, point - light.position);
+    vec2 reach = radius / spanned * vec2(length(light.axis_v), length(light.axis_u));
+    vec2 low = max(foot - reach, -1.0), high = min(foot + reach, 1.0), extent = max(0.5 * (high - low), 0.0);
+    float within = 4.0 * extent.x * extent.y * spanned;
+    if (light.spread_tangent <= WIDEST_TANGENT && within > LEAST_WITHIN * radius * radius) return true;
+    if (within >= light.area) return false;
+    light.kind = LIGHT_RECTANGLE;
+    light.position = area_light_corner(light, 0.5 * (low.x + high.x), 0.5 * (low.y + high.y));
+    light.axis_u *= extent.x;
+    light.axis_v *= extent.y;
+    return false;
+}
+
+// From the point to a place on the disk, by what shines from there: within r of its radius 3 r^2 - 2 r^3.
+vec3 sample_spread_disk(Light light, vec3 point, vec2 u) {
+    vec3 t, b;
+    tangent_frame(light.normal, t, b);
+    vec2 place = sample_disk(u);
+    float share = clamp(dot(place, place), 1e-20, 1.0);
+    place *= light.spread_tangent * (0.5 - sin(asin(1.0 - 2.0 * share) / 3.0)) * inversesqrt(share);
+    return dot(point - light.position, light.normal) * (place.x * t + place.y * b - light.normal);
+}
+
+float spread_disk_pdf(Light light, vec3 to_light) {
+    float height = -dot(to_light, light.normal), radius = height * light.spread_tangent;
+    float straight_on = light.spread_tangent * light.spread_scale, distance2 = dot(to_light, to_light);
+    return 3.0 * attenuation_toward(light, to_light) / (PI * radius * radius * straight_on)
+         * distance2 * sqrt(distance2) / height;
+}
+
 // Pdf in 1/sr with which sample_surface_light gives the direction to a place on an area light.
 float area_light_pdf(Light light, vec3 point, vec3 to_light) {
+    if (light.spread_tangent > 0.0 && narrow_to_spread(light, point)) return spread_disk_pdf(light, to_light);
     if (!sampled_by_solid_angle(light, point)) return pdf_by_area(light, to_light);
     vec2 angles = area_light_solid_angles(light, point);
     return angles.x + angles.y > 0.0 ? 1.0 / (angles.x + angles.y) : 0.0;
@@ -206,9 +254,14 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
     result.triangle = NO_TRIANGLE;
     bool mesh = light.kind == LIGHT_MESH;
     vec3 to_light, radiance = vec3(0.0), offset = light.position - point;
-    if (mesh || sampled_by_solid_angle(light, point)) {
-        vec3 v0 = area_light_corner(light, 1.0, -1.0), v1 = area_light_corner(light, -1.0, 1.0),
-             v2 = area_light_corner(light, -1.0, -1.0), other = area_light_corner(light, 1.0, 1.0);
+    Light part = light;
+    if (!mesh && light.spread_tangent > 0.0 && narrow_to_spread(part, point)) {
+        to_light = sample_spread_disk(light, point, u);
+        bool hit = is_on_area_light(light, area_light_coordinates(light, to_light - offset));
+        result.pdf = hit ? spread_disk_pdf(light, to_light) : 0.0;
+    } else if (mesh || sampled_by_solid_angle(part, point)) {
+        vec3 v0 = area_light_corner(part, 1.0, -1.0), v1 = area_light_corner(part, -1.0, 1.0),
+             v2 = area_light_corner(part, -1.0, -1.0), other = area_light_corner(part, 1.0, 1.0);
         if (mesh) {
             EmissiveTriangle emissive = emissive_triangles[emissive_triangle];
             triangle_corners(emissive.triangle, v0, v1, v2);
@@ -229,7 +282,7 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
         to_light = offset + place.x * light.axis_u + place.y * light.axis_v;
         result.pdf = pdf_by_area(light, to_light);
     }
-    if (!mesh) radiance = light.strength * spread_attenuation(light, -dot(normalize(to_light), light.normal));
+    if (!mesh) radiance = light.strength * attenuation_toward(light, to_light);
     result.distance = length(to_light);
     result.direction = to_light / result.distance;
     result.weight = radiance / result.pdf;
@@ -352,9 +405,10 @@ vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_
     distance = dot(origin - light.position, light.normal) / cosine;
     if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
     vec2 at = area_light_coordinates(light, origin + distance * direction - light.position);
-    if (light.kind == LIGHT_ELLIPSE ? dot(at, at) > 1.0 : max(abs(at.x), abs(at.y)) > 1.0) return vec3(0.0);
-    pdf = area_light_pdf(light, origin, distance * direction);
-    return light.strength * spread_attenuation(light, cosine);
+    if (!is_on_area_light(light, at)) return vec3(0.0);
+    vec3 to_light = distance * direction;
+    pdf = area_light_pdf(light, origin, to_light);
+    return light.strength * attenuation_toward(light, to_light);
 }
 
 // The same of a light that may have nodes.

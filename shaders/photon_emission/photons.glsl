@@ -83,7 +83,8 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
     vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
     float pdf = mixed_pdf(light, plain, place, square,
                                   seen ? target_direction_pdf(origin, cones, direction) : 0.0, seen, choice);
-    if (!both_sides) radiance *= spread_attenuation(light, cosine);
+    float tangent = sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-6);
+    if (!both_sides) radiance *= spread_attenuation(light, tangent);
     return Emission(both_sides ? offset_from_surface(origin, front ? normal : -normal) : origin, triangle, direction,
                     radiance * (cosine / (area_pdf * pdf)), pdf);
 }

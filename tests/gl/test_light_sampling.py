@@ -2,6 +2,7 @@
 """Next-event sampling of emitters: spread in solid angle, densities, and a variance that corners leave bounded."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from test_light_sources import floor_scene
 
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator.common.iteration import Iteration
+from rppm_addon.integrator.lights.light_entry import spread_constants
 from rppm_addon.integrator.lights.lights import LIGHT_PARAMETERS
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Scene
@@ -231,6 +233,78 @@ def test_an_ellipse_gives_the_irradiance_of_its_area(mapper, library, where):
     error = received.std() / math.sqrt(SAMPLES)
     print(f"{where}: {received.mean():.5f} by rings {expected:.5f} +- {error:.5f}")
     assert abs(received.mean() - expected) < 4.5 * error + 1e-3 * expected
+
+
+# Below the middle of the light, its side and its corner, within and beyond them, and farther away than it is wide.
+BELOW = {
+    "middle": (0.1, 0.05, 0.8), "close": (-0.1, 0.05, 0.999), "side": (0.395, 0.05, 0.8), "corner": (0.39, 0.24, 0.8),
+    "half light": (0.41, 0.01, 0.7), "dark": (0.7, -0.3, 0.8), "farther": (0.1, 0.05, -3.0), "far": (0.2, 0.1, -9.0),
+    "behind": (0.1, 0.05, 1.2),
+}  # fmt: skip
+SPREADS = [
+    ("rectangle", 10.0), ("sheared", 10.0), ("ellipse", 10.0), ("sheared ellipse", 10.0), ("rectangle", 0.0),
+    ("ellipse", 100.0), ("rectangle", 140.0), ("ellipse", 140.0),
+]  # fmt: skip
+
+
+def irradiance_of_spread(light: Light, point) -> tuple[float, float, bool]:
+    """By rings around the point's foot on the light at z = 1, W/m^2; the variance if samples were even in the solid
+    angle of the parallelogram around the light; whether all of the rings lie on the light."""
+    tangent, scale = spread_constants(light.spread)
+    height = 1.0 - point[2]
+    ring, angle = np.meshgrid((np.arange(1000) + 0.5) / 1000, 2 * np.pi * (np.arange(1000) + 0.5) / 1000)
+    offset = height * np.stack([tangent * ring * np.cos(angle), tangent * ring * np.sin(angle), np.ones_like(ring)], -1)
+    local = (offset + point - light.matrix[:3, 3]) @ np.linalg.inv(light.matrix[:3, :3]).T / (0.4, 0.25, 1)
+    on_light = (
+        np.hypot(local[..., 0], local[..., 1]) <= 1 if light.shape == "ELLIPSE" else abs(local[..., :2]).max(-1) <= 1
+    )
+    distance2 = (offset**2).sum(-1)
+    cosine = height / np.sqrt(distance2)
+    received = 5 * scale * tangent * (1 - ring) * cosine * on_light
+    ring_angles = cosine / distance2 * (height * tangent) ** 2 * ring * 2 * np.pi / ring.size
+    corners = np.array([(x * 0.4, y * 0.25, 0) for x, y in ((1, -1), (-1, 1), (-1, -1), (1, 1))])
+    corners = corners @ light.matrix[:3, :3].T + light.matrix[:3, 3] - point
+    whole = solid_angles(corners[[[0, 1, 2], [0, 1, 3]]]).sum()
+    mean = (received * ring_angles).sum()
+    return mean, whole * (received**2 * ring_angles).sum() - mean**2, bool(on_light.all())
+
+
+@pytest.mark.parametrize(("name", "degrees"), SPREADS)
+def test_a_narrow_spread_is_sampled_where_it_shines(mapper, library, name, degrees):
+    """Against rings; near the light with half the variance at most of samples of all of the light."""
+    light = replace(EMITTERS[name], spread=math.radians(degrees))
+    tangent, _ = spread_constants(light.spread)
+    mapper.build(floor_scene(light, DirectLight.RAYS))
+    for where, point in BELOW.items():
+        sample = light_samples(mapper, library, point)
+        received = sample["weight"][:, 0] * sample["direction"][:, 2]
+        if where == "behind":
+            assert not received.any()
+            continue
+        expected, variance_of_whole, all_on_light = irradiance_of_spread(light, point)
+        if expected == 0:
+            assert not received.any()
+            continue
+        error = received.std() / math.sqrt(SAMPLES)
+        relative, of_whole = received.var() / expected**2, variance_of_whole / expected**2
+        print(f"{name} {degrees} {where}: {received.mean():.6f} by rings {expected:.6f} +- {error:.6f}")
+        print(f"  relative variance {relative:.5f}, of all the light {of_whole:.3f}")
+        assert abs(received.mean() - expected) < 4.5 * error + 2e-3 * expected
+        if degrees <= 10 and point[2] >= 0.7:
+            assert relative <= 0.5 * of_whole
+        if all_on_light and tangent <= 2:
+            # By the falloff itself: what is left is how much farther the rim is.
+            assert received.min() > received.max() * (1 + tangent**2) ** -2 * (1 - 1e-3)
+        lit = received > 0
+        both = lit & (sample["seen"][:, 0] > 0)
+        assert both.sum() > 0.999 * lit.sum()
+        # Rounding of the direction moves the tangent, and by it what little is left of the falloff at the rim.
+        direction = sample["direction"][both]
+        left = np.maximum(1 - np.hypot(direction[:, 0], direction[:, 1]) / direction[:, 2] / tangent, 1e-7)
+        rounding = 2e-4 + 5e-7 * (tangent + 1 / tangent) / left
+        assert (abs(sample["seen_pdf"][both] / sample["pdf"][both] - 1) < rounding).all()
+        weight = sample["seen"][both, 0] / sample["seen_pdf"][both]
+        assert (abs(weight / sample["weight"][both, 0] - 1) < rounding).all()
 
 
 def walled_scene() -> Scene:
