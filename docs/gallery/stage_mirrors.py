@@ -83,8 +83,6 @@ def build(scene):
     color_world(scene, (0.4, 0.45, 0.9), 0.05)
     camera((-0.15, -4.7, 3.1), (0.0, 0.12, 0.16), 33.0)
     set_up(scene, bounces=12, look="AgX - Punchy")
-    # A point under a flat beam sees but a sliver of its lamp: photons find that, random points of the lamp seldom.
-    scene.rppm.direct_light = "PHOTONS"
 
 
 if __name__ == "__main__":
