@@ -17,6 +17,7 @@ from .export.context import ExportContext
 from .export.images.images import MISSING, ImageTable
 from .export.nodes.materials import export_material
 from .export.report import Report
+from .export.strands.round_meshes import ROUND_TYPES
 
 logger = logging.getLogger(__name__)
 
@@ -51,6 +52,7 @@ class _Preparing:
     def __init__(self) -> None:
         self._context = ExportContext(_NoReport(), viewport=True, images=_NoImages())
         self._names = [material.name for material in bpy.data.materials if material.users > material.use_fake_user]
+        self._round = _materials_of_round_shapes()
         self._materials: list[Material] = []
 
     def go_on(self) -> bool:
@@ -59,7 +61,9 @@ class _Preparing:
         while self._names:
             material = bpy.data.materials.get(self._names.pop())
             if material is not None:
-                self._materials.append(export_material(material, self._context))
+                exported = export_material(material, self._context)
+                exported.on_round_shapes = material.name in self._round
+                self._materials.append(exported)
             if time.monotonic() >= end:
                 break
         if self._names:
@@ -68,6 +72,20 @@ class _Preparing:
         camera = Camera(np.eye(4), _WINDOW, _RESOLUTION, _RESOLUTION)
         renderer_process.renderer_process().prepare(Scene(camera, materials=self._materials, settings=settings))
         return False
+
+
+def _materials_of_round_shapes() -> set[str]:
+    """Names of the materials of objects that are strands or points, or have hair; those that only nodes of geometry
+    make are not known before they are evaluated."""
+    hair = {part.name for part in bpy.data.particles if part.type == "HAIR" and part.render_type == "PATH"}
+    return {
+        slot.material.name
+        for thing in bpy.data.objects
+        if thing.type in ROUND_TYPES
+        or (hair and any(system.settings.name in hair for system in thing.particle_systems))
+        for slot in thing.material_slots
+        if slot.material is not None
+    }
 
 
 _preparing: _Preparing | None = None

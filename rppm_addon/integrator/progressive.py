@@ -64,6 +64,8 @@ class ProgressivePhotonMapper:
         if self._stages is None:  # before the scene, so that their programs are compiled meanwhile
             self._stages = StageSet(self.context, self._library, scene, demands)
         self.device_scene.update(scene, center_tolerance)
+        if demands.traces_rays:
+            self.device_scene.resolve.expect_rays()
         context = self.device_scene.context
         pilot = view_pilot(context, self.stages, follows_rays=may_share_world_light(context))
         self._learning = Learning(context, pilot)
@@ -77,11 +79,12 @@ class ProgressivePhotonMapper:
         self._demands = demands
         self.iteration = self._skipped = 0
 
-    def link_programs(self, scene: Scene) -> None:
-        """Have those programs made, for the first run of which there is nothing to do yet, that pictures of this size
-        and these settings need; there is nothing to iterate then. Raises as build does."""
-        self._begin(scene)
-        self._stages = StageSet(self.context, self._library, scene)
+    def link_programs(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> None:
+        """Have those programs made, for the first run of which there is nothing to do yet, that pictures of this size,
+        these settings and materials need, but for the materials' own; there is nothing to iterate then. Raises as build
+        does."""
+        self._begin(scene, demands)
+        self._stages = StageSet(self.context, self._library, scene, demands)
         self._release_stages()
 
     def iterate(self) -> None:

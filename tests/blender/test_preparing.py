@@ -5,12 +5,12 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_node, export, link, new_material, to_surface
+from blender_scenes import add_mesh, add_node, add_object, export, link, new_material, to_surface
 
 from rppm_addon.blender import preparing, renderer_process
 from rppm_addon.blender.export.images import images
 from rppm_addon.session.process.client import ProcessState
-from rppm_addon.session.process.known_programs import text_of
+from rppm_addon.session.process.known_programs import programs_of
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def add_picture():
 def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepared, monkeypatch):
     add_picture()
     exported = export(lit)
-    expected = {text_of(material) for material in exported.materials}
+    expected = {program for material in exported.materials for program in programs_of(material)}
 
     def read(*_):
         raise AssertionError("an image was read")
@@ -53,8 +53,33 @@ def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepar
     monkeypatch.setattr(preparing, "_SLICE_SECONDS", 1e-9)  # a material at a time
     go_on()
     (scene,) = prepared.scenes
-    assert {text_of(material) for material in scene.materials} == expected
+    assert {program for material in scene.materials for program in programs_of(material)} == expected
     assert (scene.settings.direct_light, scene.warnings) == (exported.settings.direct_light, [])
+
+
+def add_curves(scene):
+    data = bpy.data.hair_curves.new("Curves")
+    data.add_curves([2])
+    data.attributes["position"].data.foreach_set("vector", [0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    return add_object(scene, "Curves", data)
+
+
+def add_particle_hair(scene):
+    source = add_mesh(scene, "Skin")
+    source.modifiers.new("Hair", "PARTICLE_SYSTEM")
+    settings = source.particle_systems[0].settings
+    settings.type, settings.count = "HAIR", 2
+    return source
+
+
+@pytest.mark.parametrize("add_strands", [add_curves, add_particle_hair])
+def test_programs_of_strands_are_those_of_strands(lit, prepared, add_strands):
+    add_strands(lit).data.materials.append(material := new_material("Hair"))
+    to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfHair"))
+    (expected,) = (made for made in export(lit).materials if made.name == material.name)
+    go_on()
+    (found,) = (made for made in prepared.scenes[0].materials if made.name == material.name)
+    assert found.on_round_shapes and programs_of(found) == programs_of(expected)
 
 
 def test_nothing_is_prepared_for_other_engines_or_beside_a_render(lit, prepared):

@@ -59,8 +59,8 @@ class StageSizes:
             scene.settings.use_adaptive_sampling,
             demands.is_filtered,
             _links_lights(scene),
-            any(has_subsurface(material.graph) for material in scene.materials),
-            any(has_hair(material.graph) for material in scene.materials),
+            demands.has_subsurface or any(has_subsurface(material.graph) for material in scene.materials),
+            demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
         )
 
     @property

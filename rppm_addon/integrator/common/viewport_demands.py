@@ -27,6 +27,11 @@ class ViewportDemands:
     """Of each vertex of a camera path. Their lights are stratified, so that several find every kind of light."""
     is_filtered: bool = False
     """Whether the film keeps what the noise filter takes."""
+    has_subsurface: bool = False
+    has_hair: bool = False
+    traces_rays: bool = False
+    """Whether programs are to be ready for light that goes below surfaces, for fibers and for rays of nodes, which
+    materials have that something stands in for as yet."""
 
 
 NO_DEMANDS = ViewportDemands()

@@ -49,6 +49,11 @@ def triangle_materials(mesh: Mesh, instance: Instance) -> np.ndarray:
     return materials[np.minimum(mesh.triangle_slots, len(materials) - 1)]
 
 
+def has_stand_in(library: ProgramLibrary, text: str) -> bool:
+    """Whether the program of a displacement's GLSL is still to be compiled in the background (see ProgramLibrary)."""
+    return library.has_stand_in(_STAGE, _inserts(text))
+
+
 class DisplacedVertices(BufferSet):
     """Runs the programs of graphs on vertices instead of hits. Holds meshes of its own, so it does not live long."""
 

@@ -15,7 +15,7 @@ import moderngl
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...materials.compiler import MOST_NODE_RAYS, NodeRayCounts
@@ -89,6 +89,10 @@ class NodeRays(BufferSet):
             self._rays.clear()
         return self._rays.buffer
 
+    def program(self, traversal: Traversal) -> ComputeProgram:
+        """What traces; where there are cores to spare it is compiled between asking for it and its first run."""
+        return self._library.compute("node_rays/trace.comp", traversal.traversal_defines)
+
     def trace(
         self,
         traversal: Traversal,
@@ -102,7 +106,7 @@ class NodeRays(BufferSet):
         arguments: byte of HitOrder where the groups of the program's dispatch are; buffers: HitOrder, NodeRays, Rays,
         Hits and Attributes among others; counts: of the program; parameters: the others of NodeRaysParameters.
         """
-        program = self._library.compute("node_rays/trace.comp", traversal.traversal_defines)
+        program = self.program(traversal)
         blocks = {**buffers, **traversal.traversal_buffers}
         of_all = {**parameters, "ray_places": counts.places, "samples": counts.samples}
         for first in range(0, counts.samples, _SAMPLES_AT_ONCE):

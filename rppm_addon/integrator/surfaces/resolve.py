@@ -138,6 +138,13 @@ class Resolve(BufferSet):
     def trace_through(self, traversal: Traversal) -> None:
         """Take what rays of nodes run through; from a build until then such nodes find nothing."""
         self._traversal = traversal
+        if self._ray_stride:
+            self.expect_rays()
+
+    def expect_rays(self) -> None:
+        """Have the program made that answers nodes which ask for rays, after trace_through."""
+        if self._traversal is not None:
+            self._node_rays.program(self._traversal)
 
     def look_from(self, camera: Camera, seed: int) -> None:
         """Take the camera that nodes may ask about, and the seed of random choices."""

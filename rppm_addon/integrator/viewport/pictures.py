@@ -2,16 +2,23 @@
 """What a viewport shows of a film: filtered while samples are few, enlarged while pixels are, and with the last view's
 picture beside it while that tells more."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from ...gl.buffer_sets import sum_by_name
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import stride
+from ...materials.hair import has_hair
+from ...materials.node_rays import traces_rays
+from ...materials.subsurface import has_subsurface
+from ...scene.materials import Material
 from ...scene.scene import Scene
 from ..common.known import known
 from ..common.stage_sizes import StageSizes
-from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
+from ..common.viewport_demands import ViewportDemands
 from ..first_look import FirstLook
 from ..stages.film import Film, exposed
 from .noise_filter import NoiseFilter, strength
@@ -25,11 +32,20 @@ _SEEN_PICTURES = (SeenPicture,) * 3
 """That a Reprojection has."""
 
 
-def demands_of(scene: Scene, level: float) -> ViewportDemands:
-    """What a picture of a scene at a share of the side length asks of iterations."""
+def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -> ViewportDemands:
+    """What a picture of a scene at a share of the side length asks of iterations.
+
+    materials: those that come in place of the scene's, for which programs are to be ready: else they would be compiled
+    when these come, while nothing new is shown.
+    """
+    coming = ViewportDemands(
+        has_subsurface=any(has_subsurface(material.graph) for material in materials),
+        has_hair=any(has_hair(material.graph) for material in materials),
+        traces_rays=any(traces_rays(material.graph) for material in materials),
+    )
     if len(scene.settings.passes) == 1:  # a pass is shown as it is
-        return NO_DEMANDS
-    return ViewportDemands(min(MOST_SHADOW_RAYS, round(1.0 / level**2)), is_filtered=True)
+        return coming
+    return replace(coming, shadow_rays=min(MOST_SHADOW_RAYS, round(1.0 / level**2)), is_filtered=True)
 
 
 def expected_bytes(sizes: StageSizes) -> dict[str, int]:

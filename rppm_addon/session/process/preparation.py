@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A session of the renderer's process in which nothing is rendered: programs are compiled ahead of it."""
 
-import dataclasses
+import logging
 from collections.abc import Callable, Iterator
 
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...integrator.progressive import ProgressivePhotonMapper
-from ...integrator.surfaces.resolve import has_stand_in
-from ...scene.errors import DeviceLostError, RppmError
+from ...integrator.viewport.pictures import demands_of
+from ...scene.errors import DeviceLostError
 from ...scene.scene import Scene
-from .known_programs import text_of
+from .known_programs import programs_of
+
+log = logging.getLogger(__name__)
 
 
 class Preparation:
@@ -39,10 +41,11 @@ class Preparation:
         try:
             if self._slices is not None and next(self._slices, self) is not self:
                 return
-        except DeviceLostError:
+        except (BrokenPipeError, DeviceLostError):
             raise
-        except RppmError:  # whoever renders says so
-            pass
+        except Exception:  # whoever renders says so
+            self._context.finish()  # which says so where it is because the device is lost
+            log.info("not all is prepared", exc_info=True)
         self._slices = None
         self._send("prepared")
 
@@ -51,12 +54,13 @@ class Preparation:
         mapper = ProgressivePhotonMapper(self._context, self._library)
         try:
             yield
-            mapper.link_programs(dataclasses.replace(scene, materials=[]))
+            mapper.link_programs(scene, demands_of(scene, 1.0))
         finally:
             mapper.release()
-        for text in dict.fromkeys(text_of(material) for material in scene.materials):
+        for material in scene.materials:
             yield
-            has_stand_in(self._library, text)
+            for program in programs_of(material):
+                program.has_stand_in(self._library)
 
     def release(self) -> None:
         """Do nothing more here; what is being compiled is of use to others."""

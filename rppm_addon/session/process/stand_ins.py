@@ -5,11 +5,10 @@ import dataclasses
 import time
 
 from ...gl.programs import ProgramLibrary
-from ...integrator.surfaces.resolve import has_stand_in
 from ...materials.stand_in import stand_in_graph
 from ...scene.materials import Material
 from ...scene.scene import Scene
-from .known_programs import text_of
+from .known_programs import MaterialProgram, programs_of
 
 FEWEST_PROGRAMS = 2
 """Where fewer are to be compiled, that of the stand-ins is one more."""
@@ -22,12 +21,12 @@ class StandIns:
 
     def __init__(self, library: ProgramLibrary) -> None:
         self._library = library
-        self._texts: dict[int, tuple[Material, str]] = {}
-        """Materials of the scene with their GLSL, by the materials' identity."""
+        self._programs: dict[int, tuple[Material, tuple[MaterialProgram, ...]]] = {}
+        """Materials of the scene with their programs, by the materials' identity."""
         self._made: dict[int, tuple[Material, Material]] = {}
         """Materials of the scene with their stand-ins, likewise."""
-        self._waited_for: set[str] = set()
-        """Texts whose programs are not ready."""
+        self._waited_for: set[MaterialProgram] = set()
+        """Those that are not ready."""
         self._used = False
         """Whether the program of the stand-ins is there."""
         self._exchanged_at = 0.0
@@ -39,10 +38,10 @@ class StandIns:
 
     def replace(self, scene: Scene) -> Scene:
         """The scene, with stand-ins for materials whose programs are compiled in the background from now on."""
-        self._texts = {id(material): (material, self._text(material)) for material in scene.materials}
-        self._made = {key: made for key, made in self._made.items() if key in self._texts}
-        texts = dict.fromkeys(text for _, text in self._texts.values())
-        self._waited_for = {text for text in texts if has_stand_in(self._library, text)}
+        self._programs = {id(material): (material, self._programs_of(material)) for material in scene.materials}
+        self._made = {key: made for key, made in self._made.items() if key in self._programs}
+        programs = dict.fromkeys(program for _, own in self._programs.values() for program in own)
+        self._waited_for = {program for program in programs if program.has_stand_in(self._library)}
         self._exchanged_at = time.perf_counter()
         if not self._used and len(self._waited_for) < FEWEST_PROGRAMS:
             self._waited_for = set()
@@ -53,16 +52,16 @@ class StandIns:
 
     def as_shown(self, scene: Scene) -> Scene:
         """The scene with the stand-ins of the last one that ``replace`` was given, where its materials are the same."""
-        if not self._waited_for or any(id(material) not in self._texts for material in scene.materials):
+        if not self._waited_for or any(id(material) not in self._programs for material in scene.materials):
             return scene
         return dataclasses.replace(scene, materials=[self._shown(material, scene) for material in scene.materials])
 
-    def _text(self, material: Material) -> str:
-        known = self._texts.get(id(material))
-        return text_of(material) if known is None else known[1]
+    def _programs_of(self, material: Material) -> tuple[MaterialProgram, ...]:
+        known = self._programs.get(id(material))
+        return programs_of(material) if known is None else known[1]
 
     def _shown(self, material: Material, scene: Scene) -> Material:
-        if self._texts[id(material)][1] not in self._waited_for:
+        if self._waited_for.isdisjoint(self._programs[id(material)][1]):
             return material
         if id(material) not in self._made:
             graph = stand_in_graph(material.graph, scene.images)
@@ -77,6 +76,6 @@ class StandIns:
         """Whether to begin anew with the programs that are ready: all of them, or some after a while."""
         if not self._waited_for:
             return False
-        left = sum(has_stand_in(self._library, text) for text in self._waited_for)
+        left = sum(program.has_stand_in(self._library) for program in self._waited_for)
         late = time.perf_counter() - self._exchanged_at >= EXCHANGE_SECONDS
         return left == 0 or (late and left < len(self._waited_for))

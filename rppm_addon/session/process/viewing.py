@@ -3,7 +3,7 @@
 
 import math
 import time
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +17,7 @@ from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
 from ...integrator.viewport.pictures import ViewportPictures, demands_of
 from ...scene.errors import DenoiserError, DeviceLostError, RppmError, unforeseen
+from ...scene.materials import Material
 from ...scene.scene import Scene
 from ..frame_passes import frame_passes
 from ..noise_threshold import NoiseThreshold
@@ -175,19 +176,24 @@ class Viewing:
         self._library.hurry(True)
         while True:
             shown = self._stand_ins.replace(scene)
-            done = yield from self._improve(shown, generation, navigating, level)
+            done = yield from self._improve(shown, scene.materials, generation, navigating, level)
             while done and self._stand_ins.count and not self._stand_ins.due:
                 time.sleep(POLL_SECONDS)
                 yield
             if not self._stand_ins.due:
                 return
 
-    def _improve(self, scene: Scene, generation: int, navigating: bool, level: float) -> Generator[None, None, bool]:
-        """Iterations of a scene, until something else is due. Returns whether there are no more."""
+    def _improve(
+        self, scene: Scene, materials: Sequence[Material], generation: int, navigating: bool, level: float
+    ) -> Generator[None, None, bool]:
+        """Iterations of a scene, until something else is due. Returns whether there are no more.
+
+        materials: its own, or those that others stand in for.
+        """
         started = time.perf_counter()
         mapper, settings = self._mapper, scene.settings
         center_tolerance = math.inf if level < 1.0 else 0.0
-        mapper.update(at_level(scene, level), center_tolerance, demands_of(scene, level))
+        mapper.update(at_level(scene, level), center_tolerance, demands_of(scene, level, materials))
         built = time.perf_counter()
         self._pictures += 1
         yield
