@@ -19,7 +19,7 @@ from mathutils import Vector  # noqa: E402
 from rppm_addon.commands.data_paths import set_data_path, split_assignment  # noqa: E402
 from tests.parity.material_previews import Preview, build  # noqa: E402
 
-BALLS = 15
+BALLS = 10
 _WITH_SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 _FROM = Vector((0.45, -1.0, 0.55))
 """Towards a camera that is added, from what it looks at."""
