@@ -100,8 +100,8 @@ docs-images: setup ## Render the pictures of the pages, SECONDS_EACH of the proc
 	.venv/bin/python tools/gallery/render.py --films $(GALLERY)
 	.venv/bin/python tools/setting_pairs.py
 
-pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/
-	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH)
+pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/ (PAIRS=--names: every file there)
+	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH) $(PAIRS)
 
 TESTS ?= tests/parity
 references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/test_lights.py)

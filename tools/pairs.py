@@ -2,11 +2,13 @@
 """Renders .blend files with RPPM and with Cycles, side by side.
 
 Writes out/pairs/NAME.png (RPPM left, Cycles right), out/pairs/NAME.exr and NAME_cycles.exr, a table
-of mean radiance ratios, and a contact sheet of RPPM's pictures alone.
+of mean radiance ratios and of the median of those of 8 x 8 pixels, with RPPM's warnings below each, and a contact sheet
+of RPPM's pictures alone. What a file lacks to be rendered, tools/staging.py adds, in a copy in out/pairs/staged/.
 A scene that fails is reported and the others go on.
 """
 
 import argparse
+import json
 import subprocess
 import sys
 import time
@@ -45,6 +47,9 @@ cycles.samples, cycles.time_limit = 65536, float(seconds)
 cycles.use_adaptive_sampling = cycles.use_denoising = False
 cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
 cycles.caustics_reflective = cycles.caustics_refractive = True
+cycles.light_sampling_threshold = 0.0
+for kind in ("max", "diffuse", "glossy", "transmission", "transparent_max"):  # RPPM's defaults are 7 of any kind
+    setattr(cycles, f"{kind}_bounces", max(getattr(cycles, f"{kind}_bounces"), 8))
 cycles.use_auto_tile = False
 if hasattr(render.image_settings, "media_type"):
     render.image_settings.media_type = "IMAGE"
@@ -95,8 +100,33 @@ def beside(images: list[PIL.Image.Image], columns: int, labels: list[str]) -> PI
     return sheet
 
 
-def render_pair(blend: Path, folder: Path, options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray] | str:
+def median_ratio(ours: np.ndarray, theirs: np.ndarray) -> float:
+    """The median over blocks of 8 x 8 pixels of the ratio of their means, which a few bright spots do not move."""
+
+    def blocks(pixels: np.ndarray) -> np.ndarray:
+        height, width = (length // 8 for length in pixels.shape[:2])
+        return pixels[: 8 * height, : 8 * width, :3].reshape(height, 8, width, 8, 3).mean((1, 3, 4))
+
+    with np.errstate(all="ignore"):
+        ratios = blocks(ours) / blocks(theirs)
+    known = ratios[np.isfinite(ratios)]
+    return float(np.median(known)) if known.size else float("nan")
+
+
+def staged(source: Path, folder: Path, values: list[str]) -> Path | str:
+    """The file, or a copy that has what a render needs and the values PATH=VALUE; or what went wrong."""
+    target = folder / "staged" / source.name
+    target.parent.mkdir(exist_ok=True)
+    target.unlink(missing_ok=True)
+    problem = run([sys.executable, str(ROOT / "tools/staging.py"), str(source), str(target), *values], 120.0)
+    return f"staging: {problem}" if problem else target if target.exists() else source
+
+
+def render_pair(source: Path, folder: Path, options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray] | str:
     """RPPM's and Cycles' picture of a file, or what went wrong."""
+    blend = staged(source, folder, options.set)
+    if isinstance(blend, str):
+        return blend
     ours, theirs = folder / f"{blend.stem}.exr", folder / f"{blend.stem}_cycles.exr"
     width, height = options.resolution
     command = [sys.executable, "-m", "rppm_addon", "render", str(blend), "-o", str(ours)]
@@ -119,7 +149,10 @@ def main() -> int:
     """Render all scenes; returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", type=Path, help="a folder of .blend files")
-    parser.add_argument("--names", nargs="*", default=SCENES, help="files without .blend")
+    parser.add_argument(
+        "--names", nargs="*", default=SCENES, help="files without .blend; none given: all in the folder"
+    )
+    parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="for both, as of rppm render")
     parser.add_argument("--resolution", type=lambda text: tuple(map(int, text.split("x"))), default=(256, 192))
     parser.add_argument("--seconds", type=float, default=60.0, help="time for each renderer and scene")
     parser.add_argument("--keep-cycles", action="store_true", help="use Cycles' pictures of an earlier run")
@@ -128,8 +161,8 @@ def main() -> int:
     folder = ROOT / "out" / "pairs"
     folder.mkdir(parents=True, exist_ok=True)
     sheet, labels, failures = [], [], []
-    print(f"{'scene':24} {'RPPM / Cycles, mean of R, G, B':36} seconds")
-    for name in options.names:
+    print(f"{'scene':24} {'RPPM / Cycles, mean of R, G, B':36} {'median':8} seconds")
+    for name in options.names or sorted(path.stem for path in options.scenes.glob("*.blend")):
         blend = (options.scenes / f"{name}.blend").resolve()
         start = time.monotonic()
         pair = render_pair(blend, folder, options) if blend.exists() else f"{blend.name} is not in {options.scenes}"
@@ -145,7 +178,13 @@ def main() -> int:
         beside(images, 2, ["RPPM", "Cycles"]).save(folder / f"{name}.png")
         sheet.append(images[0])
         labels.append(name)
-        print(f"{name:24} {'  '.join(f'{value:.3f}' for value in ratio):36} {time.monotonic() - start:.0f}", flush=True)
+        means, seconds = "  ".join(f"{value:.3f}" for value in ratio), time.monotonic() - start
+        print(f"{name:24} {means:36} {median_ratio(ours, theirs):<8.3f} {seconds:.0f}")
+        report = json.loads((folder / f"{name}.json").read_text())
+        said = dict.fromkeys(
+            text for part in report.get("pictures", [report]) for text in part["statistics"]["warnings"]
+        )
+        print(*(f"    {text}" for text in said), sep="\n", end="\n" if said else "", flush=True)
     if sheet:
         options.sheet.parent.mkdir(parents=True, exist_ok=True)
         temporary = options.sheet.with_name(f".{options.sheet.name}")

@@ -11,6 +11,7 @@ from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.common.records import TRIANGLE_ATTRIBUTES
 from rppm_addon.integrator.surfaces.geometry import Geometry
 from rppm_addon.scene import Camera, Instance, Scene
+from rppm_addon.scene.errors import DeviceError
 
 
 def unpack(bits: np.ndarray) -> np.ndarray:
@@ -207,3 +208,16 @@ def test_meshes_that_come_and_go_find_their_places(geometry, context, library):
             assert ours.tobytes() == anew.tobytes()
         assert geometry.bounds_low.tobytes() == fresh.bounds_low.tobytes()
         fresh.release()
+
+
+def test_too_many_triangles_are_named(context, geometry, monkeypatch):
+    """With the objects that have the most of them."""
+    ball = scenes.sphere("ball", 9, 5)
+    instances = [Instance(0, np.eye(4), [0], name) for name in ["moss"] + ["grass"] * 9]
+    scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), [ball], instances, [scenes.diffuse(1, 1, 1)])
+    each = ball.triangle_count
+    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 48 * each * 9)
+    monkeypatch.setitem(context.__dict__, "most_texels", 64)
+    said = f'world triangles needs .*Simplify .*of {10 * each} triangles, .* {9 * each} of "grass", {each} of "moss"'
+    with pytest.raises(DeviceError, match=said):
+        geometry.build(scene, 1)

@@ -2,6 +2,7 @@
 """Indexed arrays to world-space triangles, gathered on the GPU."""
 
 import logging
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
@@ -20,6 +22,8 @@ from ..common.records import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 
 log = logging.getLogger(__name__)
 
+_OBJECTS_NAMED = 3
+"""Those of the most triangles, where the device cannot hold all."""
 _NO_UV = 0xFFFFFFFF
 """In place of where a mesh's UV begin."""
 Constants("MeshArrays", NO_UV=_NO_UV)
@@ -120,7 +124,7 @@ class Geometry(BufferSet):
     what they lie in, low and high in meters, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
     """
 
-    remedy = "lower the subdivision, decimate meshes, or remove instances or children of hair"
+    remedy = "lower the subdivision or the children of particles (Simplify does so for all), or decimate meshes"
     triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, texel_bytes=16)
     attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, texel_bytes=16)
 
@@ -193,8 +197,7 @@ class Geometry(BufferSet):
         self._upload_meshes(meshes)
         self._inputs["Instances"].upload(entries)
         self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
-        self.triangles.require_items(self.triangle_count)
-        self.attributes.require_items(self.triangle_count)
+        self._require_triangles(instances, lengths)
         inputs = {name: buffer.buffer for name, buffer in self._inputs.items()}
         for triangles, attributes in zip(
             self.triangles.ranges(self.triangle_count), self.attributes.ranges(self.triangle_count), strict=True
@@ -209,6 +212,23 @@ class Geometry(BufferSet):
                     "instance_count": len(instances),
                 },
             )
+
+    def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> None:
+        """Have room for the triangles of instances, which have so many each (n,). Raises DeviceError, which says whose
+        they are."""
+        try:
+            self.triangles.require_items(self.triangle_count)
+            self.attributes.require_items(self.triangle_count)
+        except DeviceLostError:
+            raise
+        except DeviceError as error:
+            sums: Counter[str] = Counter()
+            for instance, length in zip(instances, lengths.tolist()):
+                sums[instance.object_name] += length
+            most = ", ".join(f'{count:,} of "{name}"' for name, count in sums.most_common(_OBJECTS_NAMED))
+            raise DeviceError(
+                f"{error} (of {self.triangle_count:,} triangles, instances counted each: {most})"
+            ) from error
 
     def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
         """Finite bounds of each mesh, found once for each array of positions."""
