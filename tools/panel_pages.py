@@ -29,6 +29,16 @@ from rppm_addon.blender.panels.base import RppmPanel  # noqa: E402
 from rppm_addon.blender.panels.switches import MEANINGS  # noqa: E402
 from tools.setting_pairs import PAIRS, Pair  # noqa: E402
 
+OF_BLENDER = {
+    "Surface": "The inputs of the shader node that the surface has, as Cycles shows them.",
+    "Volume": "The inputs of the shader node that the volume has, as Cycles shows them.",
+    "Displacement": "The inputs of the node that displaces the surface, as Cycles shows them.",
+    "Preview": "What the world looks like around a few objects.",
+    "Shader AOV": "Names of the values that AOV Output nodes of materials give to pictures of their own.",
+    "Light Groups": "Names of groups of lights, each of which has a picture of what it alone lights.",
+}
+"""What panels hold that Blender draws by itself, by their titles."""
+
 
 @dataclass
 class Shown:
@@ -192,6 +202,8 @@ def _contexts() -> Iterator[SimpleNamespace]:
 def section_text(section: Section, level: int) -> str:
     """A panel in Markdown."""
     parts = [f"{'#' * level} {section.title}\n"] if level > 1 else []
+    if section.title in OF_BLENDER:
+        parts.append(f"{OF_BLENDER[section.title]}\n")
     for shown in section.shown.values():
         parts.append(_entry(shown))
     for text, tooltip in section.buttons.items():

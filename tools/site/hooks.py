@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Takes pages beside docs/ into the site, and links to them; links to other files become names."""
 
+import os
 import re
 from pathlib import Path
 
@@ -10,6 +11,14 @@ from mkdocs.structure.files import File, Files
 ROOT = Path(__file__).parents[2]
 BESIDE = ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
 _OF_CHECKOUT = re.compile(r"\[([^\]]+)\]\((?!docs/|http|#)[^)]+\)")
+_COMMENT = re.compile(r"\A<!--.*?-->\s*", re.DOTALL)
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Only where mike builds are there other versions to ask for."""
+    if "MIKE_DOCS_VERSION" not in os.environ:
+        del config.extra["version"]
+    return config
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
@@ -21,7 +30,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, **_: object) -> str:
-    """Links out of docs/ to them stay in the site."""
+    """Links out of docs/ to them stay in the site; pages begin with their headings, which name them in the menu."""
     for name in BESIDE:
         markdown = markdown.replace(f"](../{name}", f"]({name}")
-    return markdown
+    return _COMMENT.sub("", markdown)
