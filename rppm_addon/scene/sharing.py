@@ -114,7 +114,7 @@ def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Sc
     for name in _MEMBERS:
         old, new = getattr(before, name), getattr(after, name)
         values[name] = old if equal(old, new) else new
-    rest = ("exposure", "dicing_rate", "cubemap_center", "shutter", "neighbors", "asset_names", "warnings")
+    rest = [name for name in field_names(Scene) if name not in values]
     if all(equal(getattr(before, name), getattr(after, name)) for name in rest) and all(
         value is getattr(before, name) for name, value in values.items()
     ):

@@ -61,6 +61,7 @@ def test_what_differs_is_new_and_the_rest_is_not(scene):
         lambda s: setattr(s.settings, "photons", 5),
         lambda s: setattr(s, "exposure", 2.0),
         lambda s: setattr(s, "cubemap_center", np.zeros(3)),
+        lambda s: setattr(s, "stamps", {"Frame": "2"}),  # files of the frame tell of it
         lambda s: s.warnings.append("more"),
         lambda s: s.images.append(Image("b", np.zeros((1, 1, 4), np.uint8), "LINEAR")),
         lambda s: s.meshes.__setitem__(0, copy.deepcopy(s.meshes[0])),  # large: only the same one is equal
