@@ -370,8 +370,11 @@ class _Compiler:
     def _ray_arguments(self, scope: _Scope, index: int) -> list[str]:
         """The place of what a node's rays find, and its level."""
         place, level = self._rays.places, scope.ray_level + self._ray_depths[index] - 1
-        samples = self._graph.nodes[index].inputs.get("samples", 1.0)
-        count = int(np.clip(_finite(samples), 1, MOST_NODE_RAYS)) if isinstance(samples, (int, float)) else 1
+        node = self._graph.nodes[index]
+        samples = node.inputs.get("samples", KINDS[node.kind].inputs["samples"][1])
+        count = MOST_NODE_RAYS  # of what other nodes give, no more than the most
+        if isinstance(samples, int | float):
+            count = int(np.clip(_finite(samples), 1, MOST_NODE_RAYS))
         self._rays = NodeRayCounts(place + 1, max(self._rays.levels, level + 1), max(self._rays.samples, count))
         return [f"{place}u", f"{level}u"]
 

@@ -8,7 +8,7 @@ import pytest
 from support.every_node import programs
 
 from rppm_addon.materials import compiler
-from rppm_addon.materials.compiler import GraphError, NodeRayCounts, Resource, compile_graph
+from rppm_addon.materials.compiler import MOST_NODE_RAYS, GraphError, NodeRayCounts, Resource, compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
 from rppm_addon.scene.passes import aov_passes
 
@@ -282,6 +282,19 @@ def test_rays_that_depend_on_others_are_traced_after_them(normals, expected):
     calls = re.findall(r"node_(?:bevel|ambient_occlusion)\(.*", compiled.text)
     levels = re.findall(r"(\d+)u, (\d+)u, ", "".join(calls))
     assert levels == [(str(place), str(place)) for place in range(expected.places)]
+
+
+@pytest.mark.parametrize(
+    ("samples", "expected"), [(None, 16), (-3.0, 1), (4.9, 4), (1e9, MOST_NODE_RAYS), ("linked", MOST_NODE_RAYS)]
+)
+def test_no_node_asks_for_more_rays_than_are_traced(samples, expected):
+    """Those that are not traced would count as met."""
+    graph = NodeGraph()
+    inputs = {} if samples is None else {"samples": samples}
+    if samples == "linked":
+        inputs = {"samples": graph.add("math", "value", value=9.0)}
+    graph.surface = graph.add("emission", "emission", color=graph.add("ambient_occlusion", "color", **inputs))
+    assert compile_graph(graph).rays.samples == expected
 
 
 def test_nodes_about_a_normal_of_rays_ask_after_it():

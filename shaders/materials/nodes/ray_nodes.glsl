@@ -6,6 +6,10 @@ vec3 direction_or(vec3 direction, vec3 other) {
     return length2 > 1e-20 ? direction * inversesqrt(length2) : other;
 }
 
+#ifdef NODE_RAYS
+uint ray_count(float samples) { return uint(clamp(samples, 1.0, float(MOST_NODE_RAYS))); }
+#endif
+
 // The share of the rays around the normal that come as far as the distance.
 void node_ambient_occlusion(Surface surface, int inside, int only_local, uint place, uint level, vec3 color_in,
                             float reach, vec3 normal, float samples, out vec3 color, out float ao) {
@@ -13,7 +17,7 @@ void node_ambient_occlusion(Surface surface, int inside, int only_local, uint pl
 #ifdef NODE_RAYS
     if (parameters.ray_stride > 0u && reach > 0.0) {
         vec3 direction = direction_or(normal, surface.normal);
-        uint count = clamp(uint(samples), 1u, MOST_NODE_RAYS);
+        uint count = ray_count(samples);
         uint kind = only_local != 0 ? QUESTION_LOCAL_OCCLUSION : QUESTION_OCCLUSION;
         ao = found_by_rays(place, level, kind, count, inside != 0 ? -direction : direction, reach).x / float(count);
     }
@@ -28,7 +32,7 @@ void node_bevel(Surface surface, uint place, uint level, float radius, vec3 norm
 #ifdef NODE_RAYS
     bool blurred = (surface.ray & RAY_DIFFUSE) != 0u;
     if (parameters.ray_stride > 0u && radius > 0.0 && !blurred) {
-        uint count = clamp(uint(samples), 1u, MOST_NODE_RAYS);
+        uint count = ray_count(samples);
         vec3 mean_normal = found_by_rays(place, level, QUESTION_BEVEL, count, surface.geometric, radius);
         vec3 beveled = direction_or(surface.backfacing ? -mean_normal : mean_normal, surface.normal);
         normal = direction_or(normal_in + beveled - surface.normal, normal_in);
