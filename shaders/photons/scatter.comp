@@ -119,14 +119,18 @@ float adjoint_correction(vec3 arrival, vec3 departure, vec3 geometric, vec3 shad
 }
 
 // The ray is turned to look from where the photon goes, and waits where that does not matter (adjoint.comp). Of a
-// closure where one part stands for others, the view from there is no measure.
+// closure where one part stands for others, the view from there is no measure: the query then tells the part alone, for
+// those that go below the surface.
 void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec3 arrival, uint path_flags) {
     bool matters = materials[closure.material].depends_on_view != 0u && (closure.flags & CLOSURE_CROWDED) == 0u;
     AdjointQuery query = AdjointQuery(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
     if (matters) {
         query.part = scattering.part;
         query.share = part_share(index, closure, scattering.part, scattering.ior, arrival, scattering.direction);
-    } else photon_paths[index].flags = path_flags;
+    } else {
+        photon_paths[index].flags = path_flags;
+        if ((closure.flags & CLOSURE_SUBSURFACE) != 0u) query.part = scattering.part;
+    }
     adjoint_queries[index] = query;
     rays[index].direction = -scattering.direction;
     rays[index].maximum_distance = matters ? INFINITY_DISTANCE : 0.0;

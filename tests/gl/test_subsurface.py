@@ -39,6 +39,15 @@ def ball(material: Material, **settings: object) -> Scene:
     return Scene(camera, [scenes.sphere("ball")], instances, [material], [], settings=settings)
 
 
+def crowded(material: Material) -> Material:
+    """With more lobes than closures hold: one part stands for others."""
+    graph = material.graph
+    for _ in range(3):
+        gloss = graph.add("bsdf_glossy", "bsdf", color=(0.02, 0.02, 0.02), roughness=0.5)
+        graph.surface = graph.add("add_shader", "shader", shader=graph.surface, shader_001=gloss)
+    return material
+
+
 def estimate(mapper, scene: Scene, iterations: int) -> tuple[np.ndarray, np.ndarray]:
     """Mean radiance of all pixels, and its standard error."""
     mapper.build(scene)
@@ -126,3 +135,21 @@ def test_photons_leave_where_they_come_out(mapper):
     # All that leave do so on the outside.
     gone = lit & (first["scattered_flux"].max(axis=1) > 0.0)
     assert (second["flags"][gone] & PhotonFlag.ESCAPED != 0).mean() > 0.99
+
+
+def test_photons_go_below_crowded_surfaces(mapper):
+    """A sun above a ball sends light up again; what has gone through the ball comes out below as well."""
+    means, errors = [], []
+    for material in (wax((0.9, 0.9, 0.9), 0.5), crowded(wax((0.9, 0.9, 0.9), 0.5))):
+        scene = ball(
+            material, photons=8192, photon_path_length=2, direct_light=DirectLight.PHOTONS, camera_path_length=1
+        )
+        scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0, 0, 9), (0, 0.001, 0)), np.full(3, 1.0))]
+        mapper.build(scene)
+        mapper.iterate()
+        first, second = mapper.read_photons()
+        gone = first["scattered_flux"].max(axis=1) > 0.0
+        flux, upward = first["scattered_flux"][gone, 0].astype(float), -second["direction"][gone, 2].astype(float)
+        means.append((flux * upward).sum() / flux.sum())
+        errors.append((flux * (upward - means[-1])).std() * np.sqrt(gone.sum()) / flux.sum())
+    assert abs(means[0] - means[1]) < 4 * np.hypot(*errors)

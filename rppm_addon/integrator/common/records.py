@@ -238,7 +238,7 @@ ADJOINT_QUERY = Record(
 )
 """How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
 closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
-the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on."""
+the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on. A share of 0 is not compared."""
 StorageBlock("AdjointQueries", "AdjointQuery adjoint_queries[];")
 
 PHOTON = Record(
