@@ -2,10 +2,10 @@
 // What nodes may ask about the place that is shaded.
 
 #include <ShadingInstance>
-#include "common/geometry.glsl"
 #include "common/ray_kinds.glsl"
 layout(std430, binding = 3) readonly buffer Triangles;
 layout(std430, binding = 4) readonly buffer Attributes;
+#include "common/triangle_normal.glsl"
 layout(std430, binding = 10) readonly buffer ShadingInstances;
 layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
 
@@ -34,12 +34,6 @@ void triangle_points(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
 
 vec2 triangle_uv(uint triangle, vec3 b) {
     return b.x * attributes[triangle].uv0 + b.y * attributes[triangle].uv1 + b.z * attributes[triangle].uv2;
-}
-
-vec3 triangle_normal(uint triangle, vec3 b) {
-    return b.x * unpack_unit_vector(attributes[triangle].normal0)
-           + b.y * unpack_unit_vector(attributes[triangle].normal1)
-         + b.z * unpack_unit_vector(attributes[triangle].normal2);
 }
 
 vec3 point_to_object(Surface surface, vec3 p) {

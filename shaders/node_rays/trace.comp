@@ -16,6 +16,7 @@ layout(std430, binding = 0) buffer NodeRays;
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 2) readonly buffer Hits;
 layout(std430, binding = 3) readonly buffer Attributes;
+#include "common/triangle_normal.glsl"
 layout(std430, binding = 4) readonly buffer HitOrder;
 
 #define TRACES_INSTANCES
@@ -81,9 +82,7 @@ Ray occlusion_ray(vec3 position, vec3 geometric, uint triangle, mat3 axes, float
 // The front's smooth normal where a bevel's ray hits, by its weight.
 vec3 bevel_normal(Hit hit, vec3 position, mat3 axes, int axis, float radius, float r) {
     vec3 geometric = geometric_normal(hit.triangle), b = barycentrics(hit);
-    vec3 normal = b.x * unpack_unit_vector(attributes[hit.triangle].normal0)
-                  + b.y * unpack_unit_vector(attributes[hit.triangle].normal1)
-                + b.z * unpack_unit_vector(attributes[hit.triangle].normal2);
+    vec3 normal = triangle_normal(hit.triangle, b);
     normal = dot(normal, normal) > 1e-12 ? normalize(normal) : geometric;
     // The power heuristic between the axes.
     vec3 pdfs = AXES * abs(geometric * axes);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a random walk has come out.
 
-#include "common/geometry.glsl"
 #include <Hit>
 #include <SubsurfaceWalk>
 layout(std430, binding = 1) readonly buffer Triangles;
 layout(std430, binding = 2) readonly buffer Attributes;
+#include "common/triangle_normal.glsl"
 layout(std430, binding = 3) readonly buffer ExitHits;
 layout(std430, binding = 4) readonly buffer SubsurfaceWalks;
 layout(std430, binding = 5) readonly buffer WalkRays;
@@ -17,14 +17,12 @@ Exit exit_of(uint index) {
     Hit hit = exit_hits[index];
     vec3 v0 = triangle_vertices[3u * hit.triangle].xyz, v1 = triangle_vertices[3u * hit.triangle + 1u].xyz,
          v2 = triangle_vertices[3u * hit.triangle + 2u].xyz;
-    TriangleAttributes corners = attributes[hit.triangle];
-    float b0 = 1.0 - hit.b1 - hit.b2;
+    vec3 b = vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2);
     Exit found;
-    found.position = b0 * v0 + hit.b1 * v1 + hit.b2 * v2;
+    found.position = b.x * v0 + b.y * v1 + b.z * v2;
     found.geometric = normalize(cross(v1 - v0, v2 - v0));
     if (dot(found.geometric, walk_rays[index].direction) < 0.0) found.geometric = -found.geometric;
-    vec3 shading = b0 * unpack_unit_vector(corners.normal0) + hit.b1 * unpack_unit_vector(corners.normal1)
-                 + hit.b2 * unpack_unit_vector(corners.normal2);
+    vec3 shading = triangle_normal(hit.triangle, b);
     float size = length(shading);
     found.shading = size > 1e-6 ? shading / size : found.geometric;
     if (dot(found.shading, found.geometric) < 0.0) found.shading = -found.shading;

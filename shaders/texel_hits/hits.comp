@@ -8,13 +8,13 @@ layout(local_size_x = 64) in;
 #include <TexelParameters>
 #include <Texel>
 #include "common/invocation.glsl"
-#include "common/geometry.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/camera_path.glsl"
 layout(std140, binding = 0) uniform Parameters { TexelParameters parameters; };
 layout(std430, binding = 0) readonly buffer BakedTexels { Texel baked_texels[]; };
 layout(std430, binding = 1) readonly buffer Triangles;
 layout(std430, binding = 2) readonly buffer Attributes;
+#include "common/triangle_normal.glsl"
 layout(std430, binding = 3) writeonly buffer Rays;
 layout(std430, binding = 4) writeonly buffer Hits;
 layout(std430, binding = 5) writeonly buffer CameraPaths;
@@ -68,9 +68,7 @@ void main() {
         return;
     }
     vec3 geometric = face / max(length(face), 1e-30);
-    TriangleAttributes corners = attributes[triangle];
-    vec3 shading = (1.0 - b.x - b.y) * unpack_unit_vector(corners.normal0) + b.x * unpack_unit_vector(corners.normal1)
-                 + b.y * unpack_unit_vector(corners.normal2);
+    vec3 shading = triangle_normal(triangle, vec3(1.0 - b.x - b.y, b));
     shading = length(shading) > 1e-6 ? normalize(shading) : geometric;
     vec3 above = seen_from(position, shading, geometric);
     // The differentials are those of half a texel. A vertex stands for its share of the triangle.
