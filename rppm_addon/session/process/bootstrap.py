@@ -48,10 +48,10 @@ def main() -> int:
     if hello is None:
         return 0
     sys.path += [folder for folder in hello["path"] if folder not in sys.path]
-    from rppm_addon.session.process.worker import work
     from rppm_addon.wheel_libraries import add_wheel_libraries
 
-    add_wheel_libraries(sys.path)
+    add_wheel_libraries(sys.path)  # before anything is imported that needs them
+    from rppm_addon.session.process.worker import work
 
     return work(hello, reader, writer)
 
