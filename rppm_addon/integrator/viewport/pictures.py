@@ -35,17 +35,18 @@ _SEEN_PICTURES = (SeenPicture,) * 3
 def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -> ViewportDemands:
     """What a picture of a scene at a share of the side length asks of iterations.
 
-    materials: those that come in place of the scene's, for which programs are to be ready: else they would be compiled
-    when these come, while nothing new is shown.
+    materials: one for each of the scene's, those that others stand in for as yet. Programs are to be ready for them:
+    else they would be compiled when these come, while nothing new is shown.
     """
-    coming = ViewportDemands(
-        has_subsurface=any(has_subsurface(material.graph) for material in materials),
-        has_hair=any(has_hair(material.graph) for material in materials),
-        traces_rays=any(traces_rays(material.graph) for material in materials),
+    coming = [material.graph for material, shown in zip(materials, scene.materials) if material is not shown]
+    demands = ViewportDemands(
+        has_subsurface=any(map(has_subsurface, coming)),
+        has_hair=any(map(has_hair, coming)),
+        traces_rays=any(map(traces_rays, coming)),
     )
     if len(scene.settings.passes) == 1:  # a pass is shown as it is
-        return coming
-    return replace(coming, shadow_rays=min(MOST_SHADOW_RAYS, round(1.0 / level**2)), is_filtered=True)
+        return demands
+    return replace(demands, shadow_rays=min(MOST_SHADOW_RAYS, round(1.0 / level**2)), is_filtered=True)
 
 
 def expected_bytes(sizes: StageSizes) -> dict[str, int]:
