@@ -18,13 +18,10 @@ struct ClosureBuilder {
     int lobes;
 };
 
-// By constant numbers: what is indexed by others many drivers keep in memory.
-MicrofacetLobe closure_lobe(Closure closure, int k) {
-    if (k == 0) return unpacked_lobe(closure.lobes[0]);
-    if (k == 1) return unpacked_lobe(closure.lobes[1]);
-    return unpacked_lobe(closure.lobes[2]);
-}
+// The only one that another may take the place of.
+MicrofacetLobe last_lobe(Closure closure) { return unpacked_lobe(closure.lobes[CLOSURE_LOBES - 1]); }
 
+// By constant numbers: what is indexed by others many drivers keep in memory.
 void set_closure_lobe(inout Closure closure, int k, MicrofacetLobe lobe) {
     ClosureLobe made = packed_lobe(lobe);
     if (k == 0) closure.lobes[0] = made;
@@ -32,8 +29,8 @@ void set_closure_lobe(inout Closure closure, int k, MicrofacetLobe lobe) {
     else closure.lobes[2] = made;
 }
 
-// Where LOBES_IN_MEMORY names the array of closures, lobes go to that of the path resolved_path but for the last, which
-// another may take the place of: processors have no registers for them beside what nodes compute.
+// Where LOBES_IN_MEMORY names the array of closures, lobes go to that of the path resolved_path but for the last:
+// processors have no registers for them beside what nodes compute.
 void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
 #ifdef LOBES_IN_MEMORY
     if (k < CLOSURE_LOBES - 1) {
@@ -143,7 +140,7 @@ void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
         builder.lobes += 1;
         return;
     }
-    MicrofacetLobe held = closure_lobe(builder.closure, CLOSURE_LOBES - 1);
+    MicrofacetLobe held = last_lobe(builder.closure);
     float held_brightness = largest(lobe_albedo(held, lobe_cosine(held, builder.viewer)));
     float probability = brightness / max(brightness + held_brightness, 1e-20);
     bool chosen = chance(builder, probability);

@@ -62,7 +62,7 @@ void hold_subsurface(inout ClosureBuilder builder) {
     float brightness = largest(part.weight);
     if (!(brightness > 0.0)) return;
     if (builder.lobes == CLOSURE_LOBES) {
-        MicrofacetLobe last = closure_lobe(builder.closure, CLOSURE_LOBES - 1);
+        MicrofacetLobe last = last_lobe(builder.closure);
         float others = largest(lobe_albedo(last, lobe_cosine(last, builder.viewer)));
         float probability = brightness / (brightness + others);
         if (!chance(builder, probability)) {

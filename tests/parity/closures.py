@@ -52,7 +52,7 @@ void main() {
         bool front = dot(wi, up) > 0.0;
         sum += diffuse_scattered(builder.closure, wo, wi, front);
         for (int k = 0; k < builder.lobes; ++k) {
-            MicrofacetLobe lobe = closure_lobe(builder.closure, k);
+            MicrofacetLobe lobe = unpacked_lobe(builder.closure.lobes[k]);
             float cosine = dot(lobe_normal(lobe), wi);
             if (lobe.kind == LOBE_NONE || (cosine > 0.0) != front) continue;
             sum += abs(cosine) * lobe_shadowing(lobe, builder.closure.shading_normal, wi)

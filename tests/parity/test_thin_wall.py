@@ -46,7 +46,7 @@ void main() {
     vec3 reflected = vec3(0.0), passed = vec3(0.0);
     float bent = 0.0;
     for (int k = 0; k < CLOSURE_LOBES; ++k) {
-        MicrofacetLobe lobe = closure_lobe(builder.closure, k);
+        MicrofacetLobe lobe = unpacked_lobe(builder.closure.lobes[k]);
         LobeSample scattered = sample_lobe(lobe, up, wo, vec2(0.3, 0.6), 0.0, true);
         if (scattered.transmitted) {
             passed += scattered.weight;

@@ -10,6 +10,7 @@ import numpy as np
 from ...scene.camera import Camera
 from ...scene.meshes import SMOOTH_NORMALS, AttributeDomain, Instance, Mesh, MeshAttribute
 from ...scene.motion import Deformation
+from .unit_vectors import unit_vectors
 
 MOST_TRIANGLES = 1 << 20
 """Of all instances of a mesh."""
@@ -103,7 +104,7 @@ class DicedMesh:
 
     def normals(self, corner_normals: np.ndarray) -> np.ndarray:
         """(corners, 3) float32 of the mesh with these."""
-        return _unit(self._of_corners(corner_normals))
+        return unit_vectors(self._of_corners(corner_normals))
 
     def _attribute(self, name: str, attribute: MeshAttribute) -> MeshAttribute:
         values = attribute.values
@@ -114,7 +115,7 @@ class DicedMesh:
             return MeshAttribute(attribute.domain, self._of_vertices(mixed))
         mixed = self._of_corners(values)
         if name == SMOOTH_NORMALS:
-            mixed[:, :3] = _unit(mixed[:, :3])
+            mixed[:, :3] = unit_vectors(mixed[:, :3])
         return MeshAttribute(attribute.domain, mixed)
 
     def _of_corners(self, values: np.ndarray) -> np.ndarray:
@@ -193,9 +194,4 @@ def _vertex_means(mesh: Mesh, corner_normals: np.ndarray) -> np.ndarray:
     """(vertices, 3) unit means of the normals of corners: faces that meet bend alike."""
     count = len(mesh.positions)
     sums = [np.bincount(mesh.corner_vertices, corner_normals[:, axis], count) for axis in range(3)]
-    return _unit(np.stack(sums, axis=-1))
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 1e-30)
+    return unit_vectors(np.stack(sums, axis=-1))

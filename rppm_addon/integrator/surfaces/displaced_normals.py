@@ -4,6 +4,7 @@
 import numpy as np
 
 from ...scene.meshes import SMOOTH_NORMALS, Mesh
+from .unit_vectors import unit_vectors
 
 
 def displaced_normals(
@@ -28,7 +29,7 @@ def displaced_normals(
         return np.zeros_like(normals)
     else:  # corners of a vertex differ where edges are sharp, and all turn by as much
         turn = _vertex_normals(vertices, after) - _vertex_normals(vertices, before)
-        result = _unit(normals + turn[mesh.corner_vertices])
+        result = unit_vectors(normals + turn[mesh.corner_vertices])
     corners = mesh.triangle_corners[bumped]
     result[corners] = normals[corners]
     return result if smooth is None else np.where(smooth.values[:, 3:] > 0.0, result, np.float32(0.0))
@@ -37,12 +38,7 @@ def displaced_normals(
 def _vertex_normals(triangles: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """(vertices, 3) float32 means of the normals of triangles (n, 3), each counted alike; 0 of none."""
     corners = positions[triangles].astype(np.float64)
-    faces = _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    faces = unit_vectors(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     vertices, count = triangles.ravel(), len(positions)
     sums = [np.bincount(vertices, np.repeat(faces[:, axis], 3), count) for axis in range(3)]
-    return _unit(np.stack(sums, axis=-1)).astype(np.float32)
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 1e-30)
+    return unit_vectors(np.stack(sums, axis=-1)).astype(np.float32)

@@ -43,7 +43,7 @@ _AT_ONCE = 1 << 20
 """Vertices of a dispatch, whose buffers any device allows."""
 
 
-def triangle_materials(mesh: Mesh, instance: Instance) -> np.ndarray:
+def _triangle_materials(mesh: Mesh, instance: Instance) -> np.ndarray:
     """(triangles,) indices of the materials that an instance's triangles have, -1 for none."""
     materials = np.array(instance.materials or [-1], np.int64)
     return materials[np.minimum(mesh.triangle_slots, len(materials) - 1)]
@@ -85,7 +85,7 @@ class DisplacedVertices(BufferSet):
         found = [np.zeros((len(mesh.positions), 3), np.float32) for mesh in meshes]
         for placement in self._geometry.placements:
             mesh, offsets = meshes[placement.instance.mesh], found[placement.instance.mesh]
-            wanted = triangle_materials(mesh, placement.instance)
+            wanted = _triangle_materials(mesh, placement.instance)
             first = _first_corners(mesh, np.isin(wanted, list(materials.displacing)))
             vertices = np.flatnonzero(first >= 0)
             given_by = wanted[first[vertices] // 3]
