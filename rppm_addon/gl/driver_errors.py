@@ -18,9 +18,10 @@ class DriverErrors:
 
     def take(self, code: int) -> bool:
         """Whether there has been such an error since this was last asked."""
-        # A lost context tells of its loss again and again.
-        while (error := self._get_error()) and error not in self._found:
-            self._found.add(error)
+        found: set[int] = set()
+        while (error := self._get_error()) and error not in found:  # a lost context tells of its loss again and again
+            found.add(error)
+        self._found |= found
         was_found = code in self._found
         self._found.discard(code)
         return was_found

@@ -71,6 +71,8 @@ def test_who_asks_for_one_error_leaves_the_others():
     errors = DriverErrors(lambda *_: lambda: kept.pop() if kept else 0)
     LossWatch(lambda *_: None, errors, 430, set()).check()
     assert not kept and errors.take(OUT_OF_MEMORY) and not errors.take(OUT_OF_MEMORY)
+    kept += [OUT_OF_MEMORY, 0x0502]  # the other again, which nobody asks for
+    assert errors.take(OUT_OF_MEMORY) and not kept
 
 
 def test_a_render_goes_on_in_another_context(monkeypatch):
