@@ -160,16 +160,15 @@ def rounded_parts(wanted: float, triangles: int) -> int:
 def _lattice(parts: int) -> tuple[np.ndarray, np.ndarray]:
     """(points, 3) barycentrics within a triangle whose edges have so many parts, and (parts^2, 3) the points of the
     triangles in between, turned as the whole is."""
-    rows = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]
-    number = {place: index for index, place in enumerate(rows)}
-    weights = np.array([(parts - i - j, i, j) for i, j in rows], np.float64) / parts
-    triangles = []
-    for i, j in rows:
-        if i + j < parts:
-            triangles.append((number[i, j], number[i + 1, j], number[i, j + 1]))
-        if i + j < parts - 1:
-            triangles.append((number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]))
-    return weights, np.array(triangles)
+    i, j = np.nonzero(np.add.outer(np.arange(parts + 1), np.arange(parts + 1)) <= parts)
+    weights = np.stack([parts - i - j, i, j], axis=-1) / parts
+    number = np.zeros((parts + 1, parts + 1), np.int64)
+    number[i, j] = np.arange(len(i))
+    i, j = i[i + j < parts], j[i + j < parts]
+    right, above = number[i + 1, j], number[i, j + 1]
+    pairs = np.stack([number[i, j], right, above, right, number[i + 1, j + 1], above], axis=-1).reshape(-1, 2, 3)
+    has_both = i + j < parts - 1
+    return weights, pairs[np.stack([np.ones_like(has_both), has_both], axis=-1)]
 
 
 def _curved_points(corners: np.ndarray, normals: np.ndarray, weights: np.ndarray) -> np.ndarray:
