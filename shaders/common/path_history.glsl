@@ -14,6 +14,7 @@ uint first_scatter(uint history) { return history & HISTORY_FIRST; }
 // How a lobe scatters, as Cycles' passes tell it; kind: of the lobe.
 uint lobe_scatter(uint kind, bool transmitted) {
     if (lobe_is_diffuse(kind)) return SCATTER_DIFFUSE;
+    if (lobe_is_hair(kind)) transmitted = kind == LOBE_HAIR_TRANSMISSION;  // light goes all around
     return transmitted ? SCATTER_TRANSMISSION : SCATTER_GLOSSY;
 }
 

@@ -10,11 +10,27 @@ struct LightColors { vec3 diffuse; vec3 glossy; vec3 transmission; };
 
 vec3 not_nothing(vec3 reflectance) { return max(reflectance, vec3(LEAST_REFLECTANCE)); }
 
+#ifdef HAIR_LOBES
+#include "common/bsdf/hair_color.glsl"
+
+// Of Chiang's model about that of many fibers, as Cycles has it by the variance, and what their coats reflect.
+vec3 hair_color(MicrofacetLobe lobe, float cosine) {
+    if (lobe.kind != LOBE_HAIR_CHIANG) return hair_albedo(lobe, cosine);
+    float scale = hair_color_scale(hair_variance(clamp(lobe.tint.y, 0.001, 1.0)));
+    return lobe.weight * (exp(-sqrt(lobe.f0) * scale) + fresnel_dielectric(cosine, lobe.ior));
+}
+#endif
+
 // Energy that single scattering loses is in the weights of those that restore it.
 void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) {
     float cosine = lobe_cosine(lobe, viewer), roughness = sqrt(lobe.alpha);
     uint kind = lobe.kind;
     vec3 reflectance = facet_shares(lobe, cosine).reflectance;
+#ifdef HAIR_LOBES
+    if (kind == LOBE_HAIR_TRANSMISSION) colors.transmission += lobe.weight;
+    else if (lobe_is_hair(kind)) colors.glossy += hair_color(lobe, cosine);
+    else
+#endif
     if (lobe_is_diffuse(kind)) colors.diffuse += lobe.weight * reflectance;
     else if (!lobe_has_facets(kind)) colors.glossy += lobe.weight * reflectance;
     else if (kind == LOBE_REFRACTION) colors.transmission += lobe.weight;

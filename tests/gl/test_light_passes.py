@@ -8,7 +8,7 @@ from path_glass import panes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common import band
-from rppm_addon.scene import Instance, Light, LightKind
+from rppm_addon.scene import Instance, Light, LightKind, Material, NodeGraph
 from rppm_addon.scene.passes import SCATTERED_LIGHT
 from rppm_addon.scene.settings import DensityEstimation, DirectLight
 
@@ -100,6 +100,32 @@ def below_glass(**settings: object):
     scene.lights = [Light("light", LightKind.POINT, scenes.placed(0, 0, 1.4), np.full(3, 5.0))]
     scene.camera.matrix = scenes.looking((0, -0.5, 0.5), (0, 0, 0))
     return scene
+
+
+def fibers(kind: str, **options: str) -> Material:
+    graph = NodeGraph()
+    graph.surface = graph.add(kind, "bsdf", options=options, color=(0.8, 0.5, 0.2))
+    return Material(kind, graph)
+
+
+@pytest.mark.long
+def test_light_of_fibers_is_glossy_but_for_the_transmission_of_the_hair_bsdf(renderer):
+    """As Cycles has it, from wherever light comes: here from behind."""
+    scene = scenes.room(12, iterations=4, photons=64, passes=(*LIGHT, *(f"{kind} Color" for kind in KINDS)))
+    scene.meshes = [scenes.rectangle("sheet", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))]
+    scene.instances = [Instance(0, np.eye(4), [0])]
+    scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0.5, 0.5, -2), (0, 0, 0)), np.full(3, 3.0))]
+    scene.camera.matrix = scenes.looking((0, 0, 2), (0, 0.001, 0))
+    materials = {
+        "Transmission": fibers("bsdf_hair", component="Transmission"),
+        "Glossy": fibers("bsdf_hair_principled", model="CHIANG", parametrization="COLOR"),
+    }
+    for kind, hairy in materials.items():
+        scene.materials = [hairy]
+        frame = renderer.render(scene).frame
+        assert frame.passes[f"{kind} Direct"].mean() > 0.01
+        np.testing.assert_allclose(recombined(frame.passes), frame.combined[..., :3], **ROUNDING)
+        assert not any(frame.passes[f"{other} Direct"].any() for other in KINDS if other != kind)
 
 
 @pytest.mark.parametrize("gathers", [True, False])

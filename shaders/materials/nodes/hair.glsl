@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shaders of fibers as Cycles has them. On meshes fibers run along an edge of each triangle.
 
+#include "common/bsdf/hair_color.glsl"
 #include "materials/builder.glsl"
 #include "materials/surface.glsl"
 
@@ -46,9 +47,7 @@ uint pack_hair(vec3 n, vec3 tangent, float offset, bool on_strand) {
 
 // Absorption over the radius of a fiber that has a color when many are seen together.
 vec3 absorption_of_color(vec3 color, float radial_roughness) {
-    float x = radial_roughness;
-    float scale = ((((0.245 * x + 5.574) * x - 10.73) * x + 2.532) * x - 0.215) * x + 5.969;
-    vec3 root = log(max(color, 1e-6)) / scale;
+    vec3 root = log(max(color, 1e-6)) / hair_color_scale(radial_roughness);
     return root * root;
 }
 
