@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hair curves, hair of particle systems and point clouds as triangles."""
 
+import itertools
+
 import bpy
 import numpy as np
 import pytest
@@ -139,6 +141,45 @@ def test_hair_curves_are_tubes_with_what_nodes_ask_for(scene):
     assert (intercept.min(), intercept.max()) == (0.0, 1.0)
     source.data.materials[0] = asking("Random")
     assert len(np.unique(export(scene).meshes[0].attributes[CURVE_RANDOM].values)) == 5
+
+
+def asking_for(name):
+    """A material that asks for an attribute."""
+    material = new_material(name)
+    attribute, emission = (add_node(material.node_tree, f"ShaderNode{kind}") for kind in ("Attribute", "Emission"))
+    attribute.attribute_name = name
+    link(material.node_tree, attribute.outputs["Fac"], emission.inputs["Strength"])
+    to_surface(material, emission)
+    return material
+
+
+@pytest.mark.parametrize("name", ["uv", "read", "vertices"])
+def test_attributes_of_curves_may_have_any_name(scene, name):
+    source = add_curves(scene, *helices())
+    numbers = np.arange(5, dtype=np.float32)
+    source.data.attributes.new(name, "FLOAT", "CURVE").data.foreach_set("value", numbers)
+    source.data.materials.append(asking_for(name))
+    (mesh,) = export(scene).meshes
+    assert np.array_equal(np.unique(mesh.attributes[name].values), numbers)
+
+
+@pytest.mark.parametrize("name", ["points", "vertices"])
+def test_attributes_of_points_may_have_any_name(scene, name):
+    source = add_mesh(scene, "Points", faces=[])
+    numbers = np.arange(4, dtype=np.float32)
+    source.data.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", numbers)
+    tree = bpy.data.node_groups.new("Points", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    kinds = "NodeGroupInput", "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial", "NodeGroupOutput"
+    nodes = [tree.nodes.new(kind) for kind in kinds]
+    for one, other in itertools.pairwise(nodes):
+        link(tree, one.outputs[0], other.inputs[0])
+    nodes[2].inputs["Material"].default_value = asking_for(name)
+    source.modifiers.new("Points", "NODES").node_group = tree
+    (mesh,) = export(scene).meshes
+    assert mesh.shape is MeshShape.POINTS
+    assert np.array_equal(np.unique(mesh.attributes[name].values), numbers)
 
 
 def test_strands_that_cannot_be_placed_are_left_out(scene):

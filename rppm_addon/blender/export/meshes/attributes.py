@@ -72,7 +72,8 @@ def export_attribute(
     """
     if name in {ISLAND, POINTINESS} or name.startswith(TANGENT):
         return _computed(exported, mesh, name, slices, record)
-    return slices.step(record, name, lambda: _read(exported, mesh, name))
+    # Its name alone may be that of another entry of the record.
+    return slices.step(record, ("attribute", name), lambda: _read(exported, mesh, name))
 
 
 def _computed(
