@@ -247,6 +247,7 @@ def test_slices_export_the_same(scene):
     whole.update(depsgraph, camera)
     while sliced.advance(depsgraph, camera, seconds=0.0) is not None:
         pass
+    assert len(sliced.scene.instances) == len(whole.scene.instances) == 3
     for one, other in zip(whole.scene.meshes, sliced.scene.meshes, strict=True):
         np.testing.assert_array_equal(one.positions, other.positions)
         np.testing.assert_array_equal(one.triangle_corners, other.triangle_corners)

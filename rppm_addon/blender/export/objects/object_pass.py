@@ -111,6 +111,8 @@ class ObjectPass:
         """How many instances have been dealt with."""
         self.count = 0
         """How many there are, once the pass goes on."""
+        self._is_placed = False
+        """Whether only the hair of the next one is to be dealt with."""
         self._reader = reader
         self._report = reader.report
         self._shown: Callable[[bpy.types.Object], bool] | None = None
@@ -175,13 +177,15 @@ class ObjectPass:
             # Only valid inside the loop: Blender reuses the memory for the next instance.
             source = instance.object
             if self._reader.use_surfaces or source.type == "LIGHT":
-                if instance.is_instance:
-                    self._export_multiplied(instance, source, matrices[number])
-                elif instance.show_self:
-                    self._export_alone(instance, source, matrices[number])
+                if not self._is_placed:
+                    if instance.is_instance:
+                        self._export_multiplied(instance, source, matrices[number])
+                    elif instance.show_self:
+                        self._export_alone(instance, source, matrices[number])
                 if has_hair and source.type == "MESH" and instance.show_particles:
+                    self._is_placed = True
                     self._export_hair(instance, source, matrices[number])
-            self.place = number + 1
+            self.place, self._is_placed = number + 1, False
         self.place = self.count
 
     def _export_alone(
