@@ -1,12 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hair curves, hair of particle systems and point clouds as triangles."""
 
-import itertools
-
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_node, add_object, export, link, new_material, to_surface
+from blender_scenes import (
+    add_mesh,
+    add_node,
+    add_object,
+    export,
+    geometry_nodes,
+    link,
+    new_material,
+    to_surface,
+)
 from support.moving import FRAME, animate, blur, taken_scene
 
 from rppm_addon.blender.export.hashing import hashed, hashed_up_to
@@ -168,15 +175,8 @@ def test_attributes_of_points_may_have_any_name(scene, name):
     source = add_mesh(scene, "Points", faces=[])
     numbers = np.arange(4, dtype=np.float32)
     source.data.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", numbers)
-    tree = bpy.data.node_groups.new("Points", "GeometryNodeTree")
-    for way in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-    kinds = "NodeGroupInput", "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial", "NodeGroupOutput"
-    nodes = [tree.nodes.new(kind) for kind in kinds]
-    for one, other in itertools.pairwise(nodes):
-        link(tree, one.outputs[0], other.inputs[0])
-    nodes[2].inputs["Material"].default_value = asking_for(name)
-    source.modifiers.new("Points", "NODES").node_group = tree
+    _, paint = geometry_nodes(source, "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial")
+    paint.inputs["Material"].default_value = asking_for(name)
     (mesh,) = export(scene).meshes
     assert mesh.shape is MeshShape.POINTS
     assert np.array_equal(np.unique(mesh.attributes[name].values), numbers)
@@ -225,6 +225,18 @@ def test_hair_is_there_without_its_emitter(scene):
     source.show_instancer_for_render = source.show_instancer_for_viewport = False
     (instance,) = export(scene).instances
     assert instance.object_name == "Skin"
+
+
+@pytest.mark.parametrize(("scale", "shown"), [((0.0, 0.0, 0.0), 0), ((1.0, 1.0, 0.0), 2)])
+def test_hair_may_be_scaled_to_nothing(scene, scale, shown):
+    source = add_hair(scene)
+    source.scale, source.rotation_euler, source.location = scale, (0.4, 0.3, 0.0), (1.0, 2.0, 3.0)
+    exported = export(scene)
+    assert len(exported.instances) == shown
+    assert [("have no extent" in text) for text in exported.warnings] == [True] * (shown == 0)
+    for instance in exported.instances:
+        positions = exported.meshes[instance.mesh].positions @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
+        assert np.abs(positions - np.array(source.location)).max() < 1.5
 
 
 def test_hair_in_memory_is_what_blenders_function_says(scene, monkeypatch):

@@ -16,8 +16,8 @@ from .camera.camera import camera_pose, export_camera
 from .camera.eyes import Eye
 from .context import ExportContext
 from .culling import Culling
+from .matrices import usable_matrices
 from .meshes.meshes import read_shape, read_velocities
-from .objects.matrices import usable_matrices
 from .objects.mesh_table import MeshTable
 from .objects.object_pass import Identity, Placed, identity_of, identity_of_hair
 from .objects.objects import ObjectExporter

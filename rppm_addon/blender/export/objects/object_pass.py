@@ -9,6 +9,7 @@ import numpy as np
 
 from ....scene import Instance, Light
 from ....scene.meshes import SMOOTH_NORMALS
+from ..matrices import usable_matrices
 from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
 from ..omissions import objects_of
 from ..strands.attributes import OF_ROUND_SHAPES
@@ -16,7 +17,6 @@ from ..strands.particle_hair import hair_systems
 from ..strands.round_meshes import ROUND_TYPES, Hair, RoundSource
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
-from .matrices import usable_matrices
 from .object_matrices import instance_matrices
 from .particles import ParticleTable
 

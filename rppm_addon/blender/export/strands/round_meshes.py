@@ -13,6 +13,7 @@ from ....scene.errors import SceneError
 from ....scene.sharing import keep_equal
 from ..curve_settings import CurveSettings
 from ..hashing import hashed_up_to
+from ..matrices import usable_matrices
 from ..meshes.attributes import GENERATED
 from ..meshes.meshes import FARTHEST, NO_MESH
 from ..report import Report
@@ -50,7 +51,9 @@ class Hair:
 
     def read(self) -> Strands:
         """Its strands, in the space of the object."""
-        return particle_hair.read_hair(self.source, self.systems, np.linalg.inv(np.array(self.source.matrix_world)))
+        (matrix,), (is_usable,) = usable_matrices(np.array([self.source.matrix_world], np.float64))
+        # What is scaled to 0 is left out afterwards.
+        return particle_hair.read_hair(self.source, self.systems, np.linalg.inv(matrix) if is_usable else np.eye(4))
 
 
 RoundSource = bpy.types.Curves | bpy.types.PointCloud | Hair
