@@ -11,6 +11,7 @@ from blender_scenes import (
     export,
     geometry_nodes,
     link,
+    multiply_cubes,
     new_material,
     to_surface,
 )
@@ -225,6 +226,14 @@ def test_hair_is_there_without_its_emitter(scene):
     source.show_instancer_for_render = source.show_instancer_for_viewport = False
     (instance,) = export(scene).instances
     assert instance.object_name == "Skin"
+
+
+def test_what_nodes_of_geometry_multiply_has_no_hair(scene):
+    for source in (add_hair(scene), add_hair(scene)):
+        multiply_cubes(source, [((5.0, 0.0, 0.0), 1.0)])
+    exported = export(scene)
+    shapes = [exported.meshes[instance.mesh].shape for instance in exported.instances]
+    assert shapes.count(MeshShape.SURFACE) == 4 and shapes.count(MeshShape.STRANDS) == 2
 
 
 @pytest.mark.parametrize(("scale", "shown"), [((0.0, 0.0, 0.0), 0), ((1.0, 1.0, 0.0), 2)])

@@ -279,6 +279,8 @@ class ObjectPass:
         """What the particle systems of an object bring, whether it is seen itself or not."""
         if len(source.particle_systems) == 0:
             return
+        if instance.is_instance and instance.instance_object.data != source.data:
+            return  # what its nodes of geometry multiply: as in Cycles, without hair
         instancer = instance.parent if instance.is_instance else None
         owner = (instancer or source).original
         if not (self._shown is None or self._shown(owner)) or self._reader.culling.leaves_out(source, matrix):
