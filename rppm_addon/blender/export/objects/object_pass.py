@@ -24,6 +24,8 @@ _AT_ONCE = 32
 """Instances between which nobody looks at the clock."""
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
+SURFACE_TYPES = {"MESH", *CONVERTED_TYPES, *ROUND_TYPES}
+"""Object types that are rendered as surfaces."""
 UNSUPPORTED_TYPES = {"VOLUME": "volumes"}
 
 _PARTS = {"CURVES": -2, "POINTCLOUD": -3}
@@ -340,7 +342,7 @@ class ObjectPass:
             what = UNSUPPORTED_TYPES[kind]
             self._report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
             return
-        if kind not in CONVERTED_TYPES and kind not in ROUND_TYPES and kind != "MESH":
+        if kind not in SURFACE_TYPES:
             return
         if kind == "CURVES" and not self._reader.shows_strands:
             return
