@@ -202,7 +202,7 @@ class MotionExporter:
     ) -> Iterator[tuple[Identity, bpy.types.DepsgraphObjectInstance, bpy.types.Mesh | RoundSource | None, int, bool]]:
         """All that there is now, each with what its mesh is made of, if it has one, and what _flags_for gives; valid
         until the next one only."""
-        may_have_hair = self._context.curves.shown and any(part.type == "HAIR" for part in bpy.data.particles)
+        may_have_hair = self._context.may_have_hair
         for instance in self._depsgraph.object_instances:
             source = instance.object
             owner = instance.parent if instance.is_instance else source
