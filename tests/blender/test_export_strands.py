@@ -183,6 +183,13 @@ def test_attributes_of_points_may_have_any_name(scene, name):
     assert np.array_equal(np.unique(mesh.attributes[name].values), numbers)
 
 
+def test_hair_without_curves_and_clouds_without_points_show_nothing(scene):
+    add_object(scene, "Hair", bpy.data.hair_curves.new("Hair"))
+    add_object(scene, "Points", bpy.data.pointclouds.new("Points"))
+    exported = export(scene)
+    assert exported.instances == [] and exported.warnings == []
+
+
 def test_strands_that_cannot_be_placed_are_left_out(scene):
     places, radii = helices()
     places[2, 3] = np.nan

@@ -14,6 +14,10 @@ DEFAULT_RADIUS = 0.005
 def read_curves(data: bpy.types.Curves) -> Strands:
     """The control points of evaluated hair curves."""
     count = len(data.points)
+    if count == 0:  # and Blender has no offsets, not even the end's
+        return Strands(
+            np.zeros((0, 3), np.float32), np.zeros(0, np.float32), np.zeros(1, np.int32), np.zeros(0, np.int32)
+        )
     starts = np.empty(len(data.curves) + 1, np.int32)
     data.curve_offset_data.foreach_get("value", starts)
     keys = elements(data.attributes["position"].data, "vector", count, 3, np.float32).copy()
