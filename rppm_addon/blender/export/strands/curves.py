@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 
+from ..meshes.attributes import attribute_values
 from ..meshes.element_arrays import elements
 from .tubes import Strands
 
@@ -49,7 +50,5 @@ def surface_uv(data: bpy.types.Curves) -> np.ndarray | None:
     have; None without one."""
     for attribute in data.attributes:
         if (attribute.domain, attribute.data_type) == ("CURVE", "FLOAT2"):
-            values = np.empty(2 * len(data.curves), np.float32)
-            attribute.data.foreach_get("vector", values)
-            return np.nan_to_num(values.reshape(-1, 2), copy=False, posinf=0.0, neginf=0.0)
+            return attribute_values(attribute)
     return None
