@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Short ways to put things into a Blender scene."""
 
+import itertools
+
 import bpy
 
 from rppm_addon.blender.export import export_scene
@@ -71,6 +73,32 @@ def link(tree, output, target):
 
 def to_surface(material, node):
     link(material.node_tree, node.outputs[0], material.node_tree.nodes["Output"].inputs["Surface"])
+
+
+def geometry_nodes(source, *kinds):
+    """New nodes of these kinds, one behind the other, between what an object has and what it is shown as."""
+    tree = bpy.data.node_groups.new("Geometry", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    nodes = [tree.nodes.new(kind) for kind in ("NodeGroupInput", *kinds, "NodeGroupOutput")]
+    for one, other in itertools.pairwise(nodes):
+        link(tree, one.outputs[0], other.inputs[0])
+    source.modifiers.new("Geometry", "NODES").node_group = tree
+    return nodes[1:-1]
+
+
+def multiply_cubes(source, cubes):
+    """An object multiplies cubes beside itself, each given by its place and size."""
+    (join,) = geometry_nodes(source, "GeometryNodeJoinGeometry")
+    tree = join.id_data
+    for place, size in cubes:
+        point, cube, multiply = (
+            tree.nodes.new(f"GeometryNode{kind}") for kind in ("Points", "MeshCube", "InstanceOnPoints")
+        )
+        point.inputs["Position"].default_value, cube.inputs["Size"].default_value = place, (size, size, size)
+        link(tree, point.outputs[0], multiply.inputs["Points"])
+        link(tree, cube.outputs[0], multiply.inputs["Instance"])
+        link(tree, multiply.outputs[0], join.inputs[0])
 
 
 def export(scene) -> Scene:

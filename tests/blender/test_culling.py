@@ -3,7 +3,7 @@
 
 import bpy
 import pytest
-from blender_scenes import add_mesh, export
+from blender_scenes import add_mesh, export, multiply_cubes
 
 from rppm_addon.blender.export.sync import SceneSync
 
@@ -55,6 +55,16 @@ def test_objects_that_do_not_ask_stay(things):
     assert shown(things) == {"seen", "far", "behind"}
     things.render.use_simplify = False
     assert len(shown(things)) == 4
+
+
+def test_what_nodes_of_geometry_multiply_has_boxes_of_its_own(things):
+    """Of cubes beside the view only one is large enough to reach into it."""
+    source = things.objects["seen"]
+    multiply_cubes(source, [((x, 0.0, 0.0), size) for x, size in ((30.0, 1.0), (40.0, 1.0), (50.0, 99.0), (60.0, 1.0))])
+    set_of_cycles(things, use_camera_cull=True)
+    exported = export(things)
+    places = [made.matrix[0, 3] for made in exported.instances if made.object_name == "seen"]
+    assert sorted(places) == [0.0, 50.0]
 
 
 def test_kept_scenes_follow_the_camera(things):

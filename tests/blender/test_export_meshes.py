@@ -221,3 +221,22 @@ def test_one_triangle_and_no_triangle(scene):
     exported = export(scene)
     assert [instance.object_name for instance in exported.instances] == ["Triangle"]
     np.testing.assert_array_equal(exported.meshes[0].triangle_corners, [(0, 1, 2)])
+
+
+def test_only_a_last_modifier_that_is_shown_divides_adaptively(scene):
+    """As in Cycles, which else takes it for a plain one."""
+    source = add_mesh(scene)
+    modifier = source.modifiers.new("Subdivision", "SUBSURF")
+    owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else source.cycles
+    owner.use_adaptive_subdivision = True
+
+    def dicing():
+        source.update_tag()
+        return export(scene).meshes[0].dicing
+
+    assert dicing() is not None
+    modifier.show_viewport = False
+    assert dicing() is None
+    modifier.show_viewport = True
+    source.modifiers.new("Triangulate", "TRIANGULATE")
+    assert dicing() is None

@@ -4,7 +4,17 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_node, add_object, export, link, new_material, to_surface
+from blender_scenes import (
+    add_mesh,
+    add_node,
+    add_object,
+    export,
+    geometry_nodes,
+    link,
+    multiply_cubes,
+    new_material,
+    to_surface,
+)
 from support.moving import FRAME, animate, blur, taken_scene
 
 from rppm_addon.blender.export.hashing import hashed, hashed_up_to
@@ -141,6 +151,45 @@ def test_hair_curves_are_tubes_with_what_nodes_ask_for(scene):
     assert len(np.unique(export(scene).meshes[0].attributes[CURVE_RANDOM].values)) == 5
 
 
+def asking_for(name):
+    """A material that asks for an attribute."""
+    material = new_material(name)
+    attribute, emission = (add_node(material.node_tree, f"ShaderNode{kind}") for kind in ("Attribute", "Emission"))
+    attribute.attribute_name = name
+    link(material.node_tree, attribute.outputs["Fac"], emission.inputs["Strength"])
+    to_surface(material, emission)
+    return material
+
+
+@pytest.mark.parametrize("name", ["uv", "read", "vertices"])
+def test_attributes_of_curves_may_have_any_name(scene, name):
+    source = add_curves(scene, *helices())
+    numbers = np.arange(5, dtype=np.float32)
+    source.data.attributes.new(name, "FLOAT", "CURVE").data.foreach_set("value", numbers)
+    source.data.materials.append(asking_for(name))
+    (mesh,) = export(scene).meshes
+    assert np.array_equal(np.unique(mesh.attributes[name].values), numbers)
+
+
+@pytest.mark.parametrize("name", ["points", "vertices"])
+def test_attributes_of_points_may_have_any_name(scene, name):
+    source = add_mesh(scene, "Points", faces=[])
+    numbers = np.arange(4, dtype=np.float32)
+    source.data.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", numbers)
+    _, paint = geometry_nodes(source, "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial")
+    paint.inputs["Material"].default_value = asking_for(name)
+    (mesh,) = export(scene).meshes
+    assert mesh.shape is MeshShape.POINTS
+    assert np.array_equal(np.unique(mesh.attributes[name].values), numbers)
+
+
+def test_hair_without_curves_and_clouds_without_points_show_nothing(scene):
+    add_object(scene, "Hair", bpy.data.hair_curves.new("Hair"))
+    add_object(scene, "Points", bpy.data.pointclouds.new("Points"))
+    exported = export(scene)
+    assert exported.instances == [] and exported.warnings == []
+
+
 def test_strands_that_cannot_be_placed_are_left_out(scene):
     places, radii = helices()
     places[2, 3] = np.nan
@@ -186,6 +235,26 @@ def test_hair_is_there_without_its_emitter(scene):
     assert instance.object_name == "Skin"
 
 
+def test_what_nodes_of_geometry_multiply_has_no_hair(scene):
+    for source in (add_hair(scene), add_hair(scene)):
+        multiply_cubes(source, [((5.0, 0.0, 0.0), 1.0)])
+    exported = export(scene)
+    shapes = [exported.meshes[instance.mesh].shape for instance in exported.instances]
+    assert shapes.count(MeshShape.SURFACE) == 4 and shapes.count(MeshShape.STRANDS) == 2
+
+
+@pytest.mark.parametrize(("scale", "shown"), [((0.0, 0.0, 0.0), 0), ((1.0, 1.0, 0.0), 2)])
+def test_hair_may_be_scaled_to_nothing(scene, scale, shown):
+    source = add_hair(scene)
+    source.scale, source.rotation_euler, source.location = scale, (0.4, 0.3, 0.0), (1.0, 2.0, 3.0)
+    exported = export(scene)
+    assert len(exported.instances) == shown
+    assert [("have no extent" in text) for text in exported.warnings] == [True] * (shown == 0)
+    for instance in exported.instances:
+        positions = exported.meshes[instance.mesh].positions @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
+        assert np.abs(positions - np.array(source.location)).max() < 1.5
+
+
 def test_hair_in_memory_is_what_blenders_function_says(scene, monkeypatch):
     source = add_hair(scene, "SIMPLE")
     source.particle_systems[0].settings.child_length = 0.6
@@ -206,6 +275,7 @@ def test_slices_export_the_same(scene):
     whole.update(depsgraph, camera)
     while sliced.advance(depsgraph, camera, seconds=0.0) is not None:
         pass
+    assert len(sliced.scene.instances) == len(whole.scene.instances) == 3
     for one, other in zip(whole.scene.meshes, sliced.scene.meshes, strict=True):
         np.testing.assert_array_equal(one.positions, other.positions)
         np.testing.assert_array_equal(one.triangle_corners, other.triangle_corners)

@@ -440,10 +440,14 @@ def test_slices_give_what_is_exported_at_once(synced, monkeypatch):
         ("ShaderNodeTexImage", "Color", "Base Color"),
         ("ShaderNodeNormalMap", "Normal", "Normal"),
         ("ShaderNodeNewGeometry", "Random Per Island", "Roughness"),
+        ("ShaderNodeAttribute", "Fac", "Metallic"),
     ):
         node = tree.nodes.new(kind)
         tree.links.new(node.outputs[output], shader.inputs[socket])
     next(node for node in tree.nodes if node.type == "TEX_IMAGE").image = image
+    name = next(iter(meshes._READERS))  # also that of an array which is read in a step
+    mesh.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", np.random.default_rng(3).random(8))
+    next(node for node in tree.nodes if node.type == "ATTRIBUTE").attribute_name = name
     curve = bpy.data.curves.new("Curve", "CURVE")
     curve.splines.new("POLY").points.add(3)
     curve.extrude = 0.5
@@ -452,7 +456,7 @@ def test_slices_give_what_is_exported_at_once(synced, monkeypatch):
     _add("Curve", curve)
     bpy.context.view_layer.update()
     whole = fresh()
-    assert len(whole.images) == 1 and any(len(mesh.attributes) == 2 for mesh in whole.meshes)
+    assert len(whole.images) == 1 and any(len(mesh.attributes) == 3 for mesh in whole.meshes)
     monkeypatch.setattr(meshes, "_FEW", 0)
     monkeypatch.setattr(meshes, "_COPIED_BYTES", 24)
     monkeypatch.setattr(images, "_LARGE", 1)

@@ -14,7 +14,9 @@ from pathlib import Path
 import bpy
 
 ROOT = Path(__file__).resolve().parents[2]
-MODULE = "bl_ext.user_default.rppm"
+sys.path[:0] = [str(ROOT / "tests" / "blender")]
+from install_extension import MODULE, install  # noqa: E402 (it is no package)
+
 PACKAGE = f"{MODULE}.rppm_addon"
 
 
@@ -53,7 +55,6 @@ def build_scene() -> None:
 
 def draw_panels() -> list[str]:
     """Draw the panels of each tab, by what is selected; their names."""
-    sys.path[:0] = [str(ROOT / "tests" / "blender")]
     from drawing import context_of, drawn, drawn_panels
 
     scene = bpy.context.scene
@@ -77,13 +78,6 @@ def apply_presets() -> dict[str, int]:
             bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RPPM_PT_presets")
             samples[path.stem] = bpy.context.scene.rppm.samples
     return samples
-
-
-def install(archive: str) -> dict:
-    bpy.ops.extensions.package_install_files(filepath=archive, repo="user_default", enable_on_install=True)
-    report = {"enabled": MODULE in bpy.context.preferences.addons}
-    bpy.ops.preferences.addon_disable(module=MODULE)  # an engine still registered at exit crashes or hangs Blender
-    return report
 
 
 def use(folder: str) -> dict:

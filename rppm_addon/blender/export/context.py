@@ -46,6 +46,11 @@ class ExportContext:
         self.images.slices = self.report.slices
 
     @property
+    def may_have_hair(self) -> bool:
+        """Whether any object may have particle systems with hair to be rendered."""
+        return self.curves.shown and any(settings.type == "HAIR" for settings in bpy.data.particles)
+
+    @property
     def untracked_reads(self) -> int:
         """How often something was read that changes without the depsgraph telling."""
         return self.owner_reads + self.images.reads_by_frame

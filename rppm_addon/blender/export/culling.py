@@ -15,8 +15,9 @@ class Culling:
     def __init__(self, scene: bpy.types.Scene | None = None, camera: Camera | None = None) -> None:
         """Of an evaluated scene that a camera looks at. Without them nothing is left out."""
         self._by_camera = self._by_distance = False
-        self._boxes: dict[int, tuple[np.ndarray, bool, bool] | None] = {}
-        """By an object's address, the corners (8, 3) of its box, and by what it is culled."""
+        self._boxes: dict[tuple[int, int], tuple[np.ndarray, bool, bool] | None] = {}
+        """By the addresses of an original object and its data, the corners (8, 3) of the box, and by what it is
+        culled."""
         if scene is None or camera is None or camera.panorama is not None:
             return
         settings = getattr(scene, "cycles", None)
@@ -45,10 +46,11 @@ class Culling:
         """Whether an evaluated object is left out where a matrix (4, 4) places it."""
         if not self.is_used or source.type == "LIGHT":
             return False
-        address = source.as_pointer()
-        if address not in self._boxes:
-            self._boxes[address] = self._box(source)
-        known = self._boxes[address]
+        data = source.data  # of what nodes of geometry multiply, its own
+        key = source.original.as_pointer(), 0 if data is None else data.as_pointer()
+        if key not in self._boxes:
+            self._boxes[key] = self._box(source)
+        known = self._boxes[key]
         if known is None:
             return False
         box, by_camera, by_distance = known

@@ -16,8 +16,8 @@ from .camera.camera import camera_pose, export_camera
 from .camera.eyes import Eye
 from .context import ExportContext
 from .culling import Culling
+from .matrices import usable_matrices
 from .meshes.meshes import read_shape, read_velocities
-from .objects.matrices import usable_matrices
 from .objects.mesh_table import MeshTable
 from .objects.object_pass import Identity, Placed, identity_of, identity_of_hair
 from .objects.objects import ObjectExporter
@@ -202,7 +202,7 @@ class MotionExporter:
     ) -> Iterator[tuple[Identity, bpy.types.DepsgraphObjectInstance, bpy.types.Mesh | RoundSource | None, int, bool]]:
         """All that there is now, each with what its mesh is made of, if it has one, and what _flags_for gives; valid
         until the next one only."""
-        may_have_hair = self._context.curves.shown and any(part.type == "HAIR" for part in bpy.data.particles)
+        may_have_hair = self._context.may_have_hair
         for instance in self._depsgraph.object_instances:
             source = instance.object
             owner = instance.parent if instance.is_instance else source

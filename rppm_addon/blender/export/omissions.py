@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from .meshes.dicing import subdivides_adaptively
+from .meshes.dicing import adaptive_modifier
 from .report import Report, listed
 from .slices import Slices
 
@@ -42,7 +42,7 @@ OF_OBJECTS = (
         "what is displaced is divided evenly, into a million triangles at most; other surfaces are as their modifiers "
         "have them for renders",
         ("cycles.use_adaptive_subdivision", "modifiers"),
-        subdivides_adaptively,
+        lambda source: adaptive_modifier(source) is not None,
     ),
 )
 """By what an evaluated object uses."""

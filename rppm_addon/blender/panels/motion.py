@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..export.objects.object_pass import SURFACE_TYPES
 from .base import RppmPanel
 
 _SHAPES = (
@@ -13,7 +14,7 @@ _SHAPES = (
     ("LINE", "LINCURVE"),
     ("MAX", "NOCURVE"),
 )
-_BLURRED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CAMERA", "LIGHT", "CURVES", "POINTCLOUD"}
+_BLURRED = {*SURFACE_TYPES, "CAMERA", "LIGHT"}
 
 
 class RPPM_PT_motion_blur(RppmPanel, bpy.types.Panel):

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..export.objects.object_pass import SURFACE_TYPES
 from .base import RppmPanel
 from .nodes import RppmNodePanel
 
@@ -97,7 +98,7 @@ class RPPM_PT_shadow_terminator(RppmPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         thing = context.object
-        is_there = thing is not None and thing.type in _VISIBLE_TYPES - {"LIGHT"}
+        is_there = thing is not None and thing.type in SURFACE_TYPES
         return super().poll(context) and is_there and hasattr(thing, "shadow_terminator_shading_offset")
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -160,7 +161,7 @@ class RPPM_PT_world_light_group(RppmPanel, bpy.types.Panel):
         _draw_light_group(self.column(), context.world, context.view_layer)
 
 
-_VISIBLE_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "LIGHT", "CURVES", "POINTCLOUD"}
+_VISIBLE_TYPES = {*SURFACE_TYPES, "LIGHT"}
 """Objects that are rendered."""
 
 

@@ -5,8 +5,7 @@ import bpy
 from bl_ui import properties_render
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
-from ..export.objects.object_pass import CONVERTED_TYPES
-from ..export.strands.round_meshes import ROUND_TYPES
+from ..export.objects.object_pass import SURFACE_TYPES
 from .base import RppmPanel
 
 
@@ -77,7 +76,7 @@ class RPPM_PT_object_culling(RppmPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Of objects with a surface."""
-        seen = context.object is not None and context.object.type in {"MESH", *CONVERTED_TYPES, *ROUND_TYPES}
+        seen = context.object is not None and context.object.type in SURFACE_TYPES
         return super().poll(context) and seen and hasattr(context.object, "cycles")
 
     def draw(self, context: bpy.types.Context) -> None:

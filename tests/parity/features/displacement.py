@@ -6,7 +6,7 @@ import bpy
 from ..scenes import place
 from . import stage
 from .net import Net, material
-from .rows import Kind, Row, add
+from .rows import Kind, Row, add, ground_material
 
 GROUP = "Displacement"
 COLOR = {"Color": (0.8, 0.45, 0.3)}
@@ -18,8 +18,7 @@ def displaced(name, displacement, method="DISPLACEMENT", prepare=None, **members
 
     def build() -> None:
         stage.empty()
-        plain, net = material("Ground")
-        net.output(net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
+        plain = ground_material()
         stage.set_up(surface("Feature", displacement, method), 0.25, plain)
         stage.area_light()
         if prepare is not None:

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shaders of fibers, on a mesh and on strands."""
 
-import bpy
-
-from ..scenes import camera
 from . import stage
 from .net import material
 from .rows import Kind, Row, add, lit
-from .strands import OUTLINES, tuft
+from .strands import OUTLINES, stand, thick_tuft
 
 GROUPS = "Hair", "Principled Hair"
 LONG = {"camera_path_length": 64, "photon_path_length": 24}
@@ -64,15 +61,7 @@ def on_strands(group, name, give, **members):
         stage.empty()
         surface, net = material()
         net.output(give(net))
-        plain, plain_net = material("Ground")
-        plain_net.output(plain_net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
-        camera((0.4, -4.6, 2.3), (0.0, 0.0, 0.9), 34.0)
-        stage.background().inputs["Strength"].default_value = 0.25
-        bpy.context.scene.world.cycles.sampling_method = "MANUAL"
-        bpy.context.scene.world.cycles.sample_map_resolution = 256
-        tuft(surface, count=100, radius=0.03, tip=0.3)
-        stage.ground(plain)
-        stage.area_light()
+        stand(surface, thick_tuft)
 
     settings = {"camera_path_length": 24, "photon_path_length": 12}
     add(Row(group, f"{name}, on strands", build, Kind.LIGHT, OUTLINES, 0.01, 0.06, settings, 2, **members))

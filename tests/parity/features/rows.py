@@ -80,6 +80,13 @@ def value(
     add(Row(group, name, build, Kind.VALUES, **members))
 
 
+def ground_material() -> bpy.types.Material:
+    """That of the ground below what is lit."""
+    plain, net = material("Ground")
+    net.output(net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
+    return plain
+
+
 def lit(
     group: str,
     name: str,
@@ -94,8 +101,7 @@ def lit(
     def build() -> None:
         stage.empty()
         surface, net = material()
-        plain, plain_net = material("Ground")
-        plain_net.output(plain_net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
+        plain = ground_material()
         stage.set_up(surface, world, None if on_ground else plain)
         stage.area_light()
         if prepare is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from ..scenes import camera
 from . import stage
 from .net import Net, material
-from .rows import Kind, Row, add
+from .rows import Kind, Row, add, ground_material
 
 CURVES, POINTS, HAIR = "Hair Curves", "Point Cloud", "Particle Hair"
 GROUPS = CURVES, POINTS, HAIR, "Hair Info", "Point Info"
@@ -96,6 +96,26 @@ def haired(surface: bpy.types.Material) -> bpy.types.Object:
     return made
 
 
+def stand(
+    surface: bpy.types.Material, make: Callable[[bpy.types.Material], bpy.types.Object], glow: bool = False
+) -> None:
+    """What ``make`` makes before the camera, lit on the ground, or else alone and unlit, in an empty scene."""
+    plain = ground_material()
+    camera((0.4, -4.6, 2.3), (0.0, 0.0, 0.9), 34.0)
+    stage.background().inputs["Strength"].default_value = 0.0 if glow else 0.25
+    bpy.context.scene.world.cycles.sampling_method = "MANUAL"
+    bpy.context.scene.world.cycles.sample_map_resolution = 256
+    make(surface)
+    if not glow:
+        stage.ground(plain)
+        stage.area_light()
+
+
+def thick_tuft(surface: bpy.types.Material) -> bpy.types.Object:
+    """Few strands, wide enough to be seen one by one."""
+    return tuft(surface, count=100, radius=0.03, tip=0.3)
+
+
 def _show(
     group: str,
     name: str,
@@ -114,16 +134,7 @@ def _show(
         shown = give(net) if give is not None else (0.6, 0.45, 0.3)
         color = {"Color": shown}
         net.output(net.emission(shown) if glow else net.out("BsdfDiffuse", inputs=color))
-        plain, plain_net = material("Ground")
-        plain_net.output(plain_net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
-        camera((0.4, -4.6, 2.3), (0.0, 0.0, 0.9), 34.0)
-        stage.background().inputs["Strength"].default_value = 0.0 if glow else 0.25
-        bpy.context.scene.world.cycles.sampling_method = "MANUAL"
-        bpy.context.scene.world.cycles.sample_map_resolution = 256
-        make(surface)
-        if not glow:
-            stage.ground(plain)
-            stage.area_light()
+        stand(surface, make, glow)
         for key, value in (curves or {}).items():
             setattr(bpy.context.scene.cycles_curves, key, value)
         if prepare is not None:
@@ -152,10 +163,6 @@ _show(POINTS, "of geometry nodes", cloud)
 _show(HAIR, "children on a ball", haired)
 
 
-def _thick(surface: bpy.types.Material) -> bpy.types.Object:
-    return tuft(surface, count=100, radius=0.03, tip=0.3)
-
-
 def _one(kind: str, output: str, **properties: object) -> Callable[[Net], bpy.types.NodeSocket]:
     return lambda net: net.out(kind, output, **properties)
 
@@ -168,13 +175,13 @@ for _output, _scale, _offset in (
     ("Is Strand", 1.0, 0.0), ("Intercept", 1.0, 0.2), ("Length", 0.5, 0.0), ("Thickness", 5.0, 0.1),
     ("Tangent Normal", 0.5, 0.5), ("Random", 1.0, 0.1),
 ):  # fmt: skip
-    _show("Hair Info", _output, _thick, _bright("HairInfo", _output, _scale, _offset), glow=True)
+    _show("Hair Info", _output, thick_tuft, _bright("HairInfo", _output, _scale, _offset), glow=True)
 for _output, _scale, _offset in (("Position", 0.3, 0.5), ("Radius", 8.0, 0.0), ("Random", 1.0, 0.1)):
     _show("Point Info", _output, cloud, _bright("PointInfo", _output, _scale, _offset), glow=True)
-_show(CURVES, "Normal of Geometry", _thick, _bright("NewGeometry", "Normal", 0.5, 0.5), glow=True)
+_show(CURVES, "Normal of Geometry", thick_tuft, _bright("NewGeometry", "Normal", 0.5, 0.5), glow=True)
 _show(CURVES, "Tangent of Geometry", _curly, _bright("NewGeometry", "Tangent", 0.5, 0.5), glow=True)
-_show(CURVES, "UV of the surface", _thick, _one("TexCoord", "UV"), glow=True)
-_show(CURVES, "an attribute of curves", _thick, _one("Attribute", "Color", attribute_name="tint"), glow=True)
+_show(CURVES, "UV of the surface", thick_tuft, _one("TexCoord", "UV"), glow=True)
+_show(CURVES, "an attribute of curves", thick_tuft, _one("Attribute", "Color", attribute_name="tint"), glow=True)
 _show(POINTS, "an attribute of points", cloud, _one("Attribute", "Color", attribute_name="tint"), glow=True)
 _show(POINTS, "Normal of Geometry", cloud, _bright("NewGeometry", "Normal", 0.5, 0.5), glow=True)
 _show(HAIR, "Intercept", haired, _bright("HairInfo", "Intercept", 1.0, 0.2), glow=True)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..objects.matrices import rigid
+from ..matrices import rigid
 from ..report import Report
 from .eyes import Eye
 from .lens import export_aperture, export_panorama

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..objects.matrices import rigid
+from ..matrices import rigid
 from .camera import frame_shape, frame_size, window
 from .lens import export_aperture, export_panorama
 

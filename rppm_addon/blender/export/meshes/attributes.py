@@ -63,6 +63,26 @@ def attribute_of(owner: bpy.types.bpy_struct | None, name: str) -> tuple[float, 
     return numbers[:4] or None
 
 
+def attribute_values(attribute: bpy.types.Attribute) -> np.ndarray | None:
+    """(elements, components) float32, 0 where they are not finite; None of a type that holds no numbers."""
+    if attribute.data_type not in _FIELDS:
+        return None
+    field, width = _FIELDS[attribute.data_type]
+    count = len(attribute.data)
+    if attribute.data_type in {"INT", "INT8", "INT32_2D"}:
+        kind = np.int32
+    elif attribute.data_type == "BOOLEAN":
+        kind = bool
+    else:
+        kind = np.float32
+    values = np.empty(count * width, kind)
+    attribute.data.foreach_get(field, values)
+    values = values.reshape(count, width).astype(np.float32, copy=False)
+    if not (np.isfinite(values.min(initial=0.0)) and np.isfinite(values.max(initial=0.0))):
+        values = np.nan_to_num(values, copy=False, posinf=0.0, neginf=0.0)
+    return values
+
+
 def export_attribute(
     exported: Mesh, mesh: bpy.types.Mesh, name: str, slices: Slices, record: dict[Hashable, Any]
 ) -> MeshAttribute | None:
@@ -72,7 +92,8 @@ def export_attribute(
     """
     if name in {ISLAND, POINTINESS} or name.startswith(TANGENT):
         return _computed(exported, mesh, name, slices, record)
-    return slices.step(record, name, lambda: _read(exported, mesh, name))
+    # Its name alone may be that of another entry of the record.
+    return slices.step(record, ("attribute", name), lambda: _read(exported, mesh, name))
 
 
 def _computed(
@@ -98,21 +119,9 @@ def _read(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | No
     if name == SMOOTH_NORMALS:
         return _smooth_normals(exported, mesh)
     attribute = _rendered_color(mesh) if name == ACTIVE_COLOR else mesh.attributes.get(name)
-    if attribute is None or attribute.data_type not in _FIELDS:
+    values = None if attribute is None else attribute_values(attribute)
+    if values is None:
         return None
-    field, width = _FIELDS[attribute.data_type]
-    count = len(attribute.data)
-    if attribute.data_type in {"INT", "INT8", "INT32_2D"}:
-        kind = np.int32
-    elif attribute.data_type == "BOOLEAN":
-        kind = bool
-    else:
-        kind = np.float32
-    values = np.empty(count * width, kind)
-    attribute.data.foreach_get(field, values)
-    values = values.reshape(count, width).astype(np.float32, copy=False)
-    if not (np.isfinite(values.min(initial=0.0)) and np.isfinite(values.max(initial=0.0))):
-        values = np.nan_to_num(values, copy=False, posinf=0.0, neginf=0.0)
     if attribute.domain == "POINT":
         return MeshAttribute(AttributeDomain.POINT, values)
     if attribute.domain == "CORNER":

@@ -134,7 +134,7 @@ class InstanceReader:
     @property
     def may_have_hair(self) -> bool:
         """Whether any object may have particle systems with hair to be rendered."""
-        return self.shows_strands and any(settings.type == "HAIR" for settings in bpy.data.particles)
+        return self._context.may_have_hair
 
     @property
     def is_render(self) -> bool:

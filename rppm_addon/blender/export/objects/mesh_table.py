@@ -157,7 +157,7 @@ class MeshTable:
             return
         place = self._places[key] = heapq.heappop(self._free) if self._free else len(self.meshes)
         if exported.shape is MeshShape.SURFACE:
-            exported.dicing = export_dicing(source)
+            exported.dicing = export_dicing(source, self._context.is_render)
         self.meshes[place : place + 1] = [exported]
         self._tried[place] = set()
         self._keys[place] = key

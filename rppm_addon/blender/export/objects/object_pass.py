@@ -9,6 +9,7 @@ import numpy as np
 
 from ....scene import Instance, Light
 from ....scene.meshes import SMOOTH_NORMALS
+from ..matrices import usable_matrices
 from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
 from ..omissions import objects_of
 from ..strands.attributes import OF_ROUND_SHAPES
@@ -16,7 +17,6 @@ from ..strands.particle_hair import hair_systems
 from ..strands.round_meshes import ROUND_TYPES, Hair, RoundSource
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
-from .matrices import usable_matrices
 from .object_matrices import instance_matrices
 from .particles import ParticleTable
 
@@ -24,6 +24,8 @@ _AT_ONCE = 32
 """Instances between which nobody looks at the clock."""
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
+SURFACE_TYPES = {"MESH", *CONVERTED_TYPES, *ROUND_TYPES}
+"""Object types that are rendered as surfaces."""
 UNSUPPORTED_TYPES = {"VOLUME": "volumes"}
 
 _PARTS = {"CURVES": -2, "POINTCLOUD": -3}
@@ -111,6 +113,8 @@ class ObjectPass:
         """How many instances have been dealt with."""
         self.count = 0
         """How many there are, once the pass goes on."""
+        self._is_placed = False
+        """Whether only the hair of the next one is to be dealt with."""
         self._reader = reader
         self._report = reader.report
         self._shown: Callable[[bpy.types.Object], bool] | None = None
@@ -175,13 +179,15 @@ class ObjectPass:
             # Only valid inside the loop: Blender reuses the memory for the next instance.
             source = instance.object
             if self._reader.use_surfaces or source.type == "LIGHT":
-                if instance.is_instance:
-                    self._export_multiplied(instance, source, matrices[number])
-                elif instance.show_self:
-                    self._export_alone(instance, source, matrices[number])
+                if not self._is_placed:
+                    if instance.is_instance:
+                        self._export_multiplied(instance, source, matrices[number])
+                    elif instance.show_self:
+                        self._export_alone(instance, source, matrices[number])
                 if has_hair and source.type == "MESH" and instance.show_particles:
+                    self._is_placed = True
                     self._export_hair(instance, source, matrices[number])
-            self.place = number + 1
+            self.place, self._is_placed = number + 1, False
         self.place = self.count
 
     def _export_alone(
@@ -275,6 +281,8 @@ class ObjectPass:
         """What the particle systems of an object bring, whether it is seen itself or not."""
         if len(source.particle_systems) == 0:
             return
+        if instance.is_instance and instance.instance_object.data != source.data:
+            return  # what its nodes of geometry multiply: as in Cycles, without hair
         instancer = instance.parent if instance.is_instance else None
         owner = (instancer or source).original
         if not (self._shown is None or self._shown(owner)) or self._reader.culling.leaves_out(source, matrix):
@@ -334,7 +342,7 @@ class ObjectPass:
             what = UNSUPPORTED_TYPES[kind]
             self._report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
             return
-        if kind not in CONVERTED_TYPES and kind not in ROUND_TYPES and kind != "MESH":
+        if kind not in SURFACE_TYPES:
             return
         if kind == "CURVES" and not self._reader.shows_strands:
             return

@@ -8,8 +8,8 @@ import numpy as np
 
 from ....scene import Instance, Light
 from ..context import ExportContext
+from ..matrices import usable_matrices
 from .instance_reader import InstanceReader
-from .matrices import usable_matrices
 from .object_matrices import matrices_of
 from .object_pass import ObjectPass, Placed
 

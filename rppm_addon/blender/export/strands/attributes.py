@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from ..hashing import hashed_up_to
+from ..meshes.attributes import attribute_values
 from .tubes import Rings, Strands
 
 INTERCEPT, LENGTH, THICKNESS, CURVE_RANDOM = ".intercept", ".length", ".thickness", ".curve_random"
@@ -13,11 +14,6 @@ POINT_PLACE, POINT_RADIUS, POINT_RANDOM = ".point_position", ".point_radius", ".
 """Names under which is exported what Point Info tells."""
 OF_ROUND_SHAPES = {INTERCEPT, LENGTH, THICKNESS, CURVE_RANDOM, POINT_PLACE, POINT_RADIUS, POINT_RANDOM}
 """Other surfaces have none of them, and nobody is told."""
-
-_FIELDS = {
-    "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
-    "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4),
-}  # fmt: skip
 
 
 def strand_values(strands: Strands, rings: Rings, name: str) -> np.ndarray | None:
@@ -48,11 +44,5 @@ def read_values(data: bpy.types.Curves | bpy.types.PointCloud, name: str) -> tup
     """(n, components) float32 of an attribute of curves or points, 0 where it is not finite, and its domain; None when
     there is none."""
     attribute = data.attributes.get(name)
-    if attribute is None or attribute.data_type not in _FIELDS:
-        return None
-    field, width = _FIELDS[attribute.data_type]
-    kind = {"INT": np.int32, "INT8": np.int32, "BOOLEAN": bool}.get(attribute.data_type, np.float32)
-    values = np.empty(len(attribute.data) * width, kind)
-    attribute.data.foreach_get(field, values)
-    values = values.reshape(-1, width).astype(np.float32, copy=False)
-    return np.nan_to_num(values, copy=False, posinf=0.0, neginf=0.0), attribute.domain
+    values = None if attribute is None else attribute_values(attribute)
+    return None if values is None else (values, attribute.domain)

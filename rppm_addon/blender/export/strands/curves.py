@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 
+from ..meshes.attributes import attribute_values
 from ..meshes.element_arrays import elements
 from .tubes import Strands
 
@@ -14,6 +15,10 @@ DEFAULT_RADIUS = 0.005
 def read_curves(data: bpy.types.Curves) -> Strands:
     """The control points of evaluated hair curves."""
     count = len(data.points)
+    if count == 0:  # and Blender has no offsets, not even the end's
+        return Strands(
+            np.zeros((0, 3), np.float32), np.zeros(0, np.float32), np.zeros(1, np.int32), np.zeros(0, np.int32)
+        )
     starts = np.empty(len(data.curves) + 1, np.int32)
     data.curve_offset_data.foreach_get("value", starts)
     keys = elements(data.attributes["position"].data, "vector", count, 3, np.float32).copy()
@@ -45,7 +50,5 @@ def surface_uv(data: bpy.types.Curves) -> np.ndarray | None:
     have; None without one."""
     for attribute in data.attributes:
         if (attribute.domain, attribute.data_type) == ("CURVE", "FLOAT2"):
-            values = np.empty(2 * len(data.curves), np.float32)
-            attribute.data.foreach_get("vector", values)
-            return np.nan_to_num(values.reshape(-1, 2), copy=False, posinf=0.0, neginf=0.0)
+            return attribute_values(attribute)
     return None

@@ -36,11 +36,6 @@ class HairSystem:
         return self.end - self.first
 
 
-def has_hair(source: bpy.types.Object, render: bool) -> bool:
-    """Whether any system of an evaluated object has hair to be rendered."""
-    return len(source.particle_systems) > 0 and next(hair_systems(source, render), None) is not None
-
-
 def hair_systems(source: bpy.types.Object, render: bool) -> Iterator[HairSystem]:
     """Of an evaluated object, as a render or else a viewport shows it."""
     for modifier in source.modifiers:

@@ -13,6 +13,7 @@ from ....scene.errors import SceneError
 from ....scene.sharing import keep_equal
 from ..curve_settings import CurveSettings
 from ..hashing import hashed_up_to
+from ..matrices import usable_matrices
 from ..meshes.attributes import GENERATED
 from ..meshes.meshes import FARTHEST, NO_MESH
 from ..report import Report
@@ -50,7 +51,9 @@ class Hair:
 
     def read(self) -> Strands:
         """Its strands, in the space of the object."""
-        return particle_hair.read_hair(self.source, self.systems, np.linalg.inv(np.array(self.source.matrix_world)))
+        (matrix,), (is_usable,) = usable_matrices(np.array([self.source.matrix_world], np.float64))
+        # What is scaled to 0 is left out afterwards.
+        return particle_hair.read_hair(self.source, self.systems, np.linalg.inv(matrix) if is_usable else np.eye(4))
 
 
 RoundSource = bpy.types.Curves | bpy.types.PointCloud | Hair
@@ -188,17 +191,19 @@ def export_round_attribute(
     record: dict[Hashable, Any],
 ) -> MeshAttribute | None:
     """An attribute of what export_round exported, None where there is none. Raises Unfinished."""
+    key = "attribute", name  # its name alone may be that of another entry of the record
     if isinstance(data, bpy.types.PointCloud):
-        values = slices.step(record, name, lambda: _point_values(data, name))
+        points = slices.step(record, "points", lambda: read_points(data, FARTHEST))
+        values = slices.step(record, key, lambda: _point_values(data, points, name))
     else:
         strands = _strands(data, settings, slices, record)
         rings = slices.computed(record, "rings", lambda: rings_of(strands, settings.most_parts))
         if name in OF_ROUND_SHAPES:
-            values = slices.computed(record, name, lambda: strand_values(strands, rings, name))
+            values = slices.computed(record, key, lambda: strand_values(strands, rings, name))
         elif isinstance(data, Hair):
-            values = slices.step(record, name, lambda: _hair_values(data, strands, rings, name))
+            values = slices.step(record, key, lambda: _hair_values(data, strands, rings, name))
         else:
-            values = slices.step(record, name, lambda: _curve_values(data, strands, rings, name))
+            values = slices.step(record, key, lambda: _curve_values(data, strands, rings, name))
     return None if values is None else MeshAttribute(AttributeDomain.POINT, values)
 
 
@@ -226,9 +231,8 @@ def _hair_values(data: Hair, strands: Strands, rings: Rings, name: str) -> np.nd
     return rings.per_vertex(rings.of_strands(uv if strands.kept is None else uv[strands.kept]))
 
 
-def _point_values(data: bpy.types.PointCloud, name: str) -> np.ndarray | None:
+def _point_values(data: bpy.types.PointCloud, points: Points, name: str) -> np.ndarray | None:
     """(vertices, components), the same on all of a sphere."""
-    points = read_points(data, FARTHEST)
     if name == POINT_PLACE:
         values = points.places
     elif name == POINT_RADIUS:
