@@ -7,7 +7,7 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 
 from ..session.process.client import ProcessState
-from . import panels, renderer_process
+from . import colored_glasses, panels, renderer_process
 from .subjects import SubjectKind, select
 
 START_SHOWN_EVERY = 0.25
@@ -85,7 +85,37 @@ class RPPM_OT_open_log(bpy.types.Operator):
         return {"FINISHED"}
 
 
-_CLASSES = (RPPM_OT_select_subject, RPPM_OT_start_renderer, RPPM_OT_open_log)
+class RPPM_OT_convert_to_dispersion(bpy.types.Operator):
+    """Replace red, green and blue glass that are added by one glass with dispersion, of the same indices"""
+
+    bl_idname = "rppm.convert_to_dispersion"
+    bl_label = "Convert to Dispersion"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Called by Blender."""
+        material = getattr(context, "material", None)
+        return material is not None and material.library is None and material.override_library is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Called by Blender."""
+        material = context.material
+        found = colored_glasses.colored_glasses(material)
+        if found is None:
+            self.report({"WARNING"}, f'"{material.name}" has no red, green and blue glass that are added')
+            return {"CANCELLED"}
+        ior, abbe_number = found.fitted
+        colored_glasses.convert(material, found)
+        told = f'"{material.name}": one glass, IOR {ior:.3f}, Abbe Number {material.rppm.abbe_number:.1f}'
+        if abbe_number < 0.0:
+            self.report({"WARNING"}, f"{told}; red had the largest index, which no glass has: blue has it now")
+        else:
+            self.report({"INFO"}, told)
+        return {"FINISHED"}
+
+
+_CLASSES = (RPPM_OT_select_subject, RPPM_OT_start_renderer, RPPM_OT_open_log, RPPM_OT_convert_to_dispersion)
 
 
 def register() -> None:

@@ -87,10 +87,22 @@ def mean(values: np.ndarray) -> np.ndarray:
     return 0.5 * (values[1:] + values[:-1]).mean(axis=0)
 
 
+def _channel_means() -> np.ndarray:
+    """(3,) the mean shift of the index of a channel's light."""
+    values = table().astype(float)
+    return mean(values[:, :3] * values[:, 3:])
+
+
 def channel_shifts() -> np.ndarray:
     """(3,) by how much the shift of the index of a channel's light differs from that of all, in the mean."""
-    values = table().astype(float)
-    return mean(values[:, :3] * values[:, 3:]) - mean(values[:, 3])
+    return _channel_means() - mean(table()[:, 3].astype(float))
+
+
+def fitted(indices: np.ndarray) -> tuple[float, float]:
+    """n_d and V_d of a glass in which red, green and blue light have these (3,) indices in the mean, or nearly: by
+    least squares. V_d is infinite where they are the same, and negative where blue has the least."""
+    spread, index = np.polyfit(_channel_means(), indices, 1)
+    return float(index), float((index - 1.0) / spread) if abs(spread) > 1e-9 else float("inf")
 
 
 Constants(

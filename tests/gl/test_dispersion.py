@@ -15,6 +15,8 @@ from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Ma
 
 INDEX, ABBE_NUMBER = 1.6, 30.0
 WEDGE = np.radians(30.0)
+OUTWARD = -np.array([np.sin(WEDGE), 0.0, np.cos(WEDGE)])
+"""Of the wedge's lower face."""
 
 
 def glass(kind: LobeKind = LobeKind.GLASS, **inputs: float) -> Material:
@@ -53,6 +55,24 @@ def test_a_prism_bends_each_wavelength_by_its_own_index(mapper, kind):
     colors = np.stack([np.interp(shift, table[::-1, 3], channel) for channel in table[::-1, :3].T], axis=1)
     found = through["flux"] / through["flux"].sum(axis=1, keepdims=True)
     np.testing.assert_allclose(found, colors / colors.sum(axis=1, keepdims=True), atol=0.01)
+
+
+def test_three_glasses_are_three_indices(mapper):
+    """Glasses of red, green and blue that are added: a photon is of one color from the first of them on, and bends by
+    that one's index at the second face, too."""
+    indices = np.array([1.5, 1.6, 1.7])
+    glasses = [Lobe(LobeKind.GLASS, color=color, ior=ior) for color, ior in zip(np.eye(3), indices, strict=True)]
+    settings = {"photons": 16384, "photon_path_length": 3, "direct_light": DirectLight.PHOTONS}
+    mapper.build(prism(material("glasses", *glasses), **settings))
+    mapper.iterate()
+    photons = mapper.read_photons()[2]
+    flags = photons["flags"] & (PhotonFlag.STORED | PhotonFlag.AFTER_ROUGH_BOUNCE)
+    through = photons[flags == PhotonFlag.STORED]
+    colors, channels = through["flux"] > 0.0, through["flux"].argmax(axis=1)
+    counts = np.bincount(channels, minlength=3)
+    assert (colors.sum(axis=1) == 1).all() and counts.min() > 100
+    index = np.linalg.norm(np.cross(through["direction"].astype(float), OUTWARD), axis=1) / np.sin(WEDGE)
+    np.testing.assert_allclose(index, indices[channels], rtol=1e-3)
 
 
 def test_white_stays_white(mapper):

@@ -51,3 +51,15 @@ def test_only_what_refracts_has_a_program_of_its_own():
     assert dispersing.text != compile_graph(graph).text
     assert dispersing.text == compile_graph(graph, abbe_number=64.0).text
     assert set(dispersing.constants) - set(compile_graph(graph).constants) == {1 / 30}
+
+
+def test_a_glass_is_found_by_the_indices_of_three_colors():
+    """Light of the channels has in the mean the index of the table, by which it is found again."""
+    values = dispersion.table().astype(float)
+    index, abbe_number = 1.62, 36.0
+    by_wavelength = index + (index - 1.0) / abbe_number * values[:, 3:]
+    of_channels = dispersion.mean(values[:, :3] * by_wavelength)
+    assert of_channels[0] < of_channels[1] < of_channels[2]
+    assert dispersion.fitted(of_channels) == pytest.approx((index, abbe_number), rel=1e-5)
+    assert dispersion.fitted(of_channels[::-1])[1] < 0.0
+    assert dispersion.fitted(np.full(3, 1.5)) == pytest.approx((1.5, float("inf")))

@@ -3,9 +3,15 @@
 
 import bpy
 
+from ..colored_glasses import colored_glasses
 from ..export.objects.object_pass import SURFACE_TYPES
-from .base import RppmPanel
+from .base import RppmPanel, letters_across, paragraph
 from .nodes import RppmNodePanel
+
+_COLORED_GLASSES = (
+    "Red, green and blue glass are added, which gives three colors. One glass with an Abbe number gives the whole "
+    "spectrum, with less noise"
+)
 
 
 class RppmMaterialPanel(RppmNodePanel):
@@ -49,6 +55,9 @@ class RPPM_PT_material_settings(RppmMaterialPanel, bpy.types.Panel):
         row = column.row()
         row.active = material.rppm.use_dispersion
         row.prop(material.rppm, "abbe_number")
+        if colored_glasses(material) is not None:
+            paragraph(column, _COLORED_GLASSES, letters_across(context), icon="INFO")
+            column.operator("rppm.convert_to_dispersion")
 
 
 class RppmWorldPanel(RppmNodePanel):
