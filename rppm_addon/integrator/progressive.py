@@ -65,7 +65,7 @@ class ProgressivePhotonMapper:
             self._stages = StageSet(self.context, self._library, scene, demands)
         self.device_scene.update(scene, center_tolerance)
         if demands.traces_rays:
-            self.device_scene.resolve.expect_rays()
+            self.device_scene.resolve.expect_rays(demands.casts_rays)
         context = self.device_scene.context
         pilot = view_pilot(context, self.stages, follows_rays=may_share_world_light(context))
         self._learning = Learning(context, pilot)

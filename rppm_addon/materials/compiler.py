@@ -6,7 +6,7 @@ constants in a buffer, so graphs that differ in those only have the same text an
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,7 @@ from ..scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ..scene.passes import PassKind, RenderPass
 from .dispersion import disperses
 from .node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
+from .node_rays import RAYCAST
 from .nodes import KINDS
 from .pieces import in_pieces
 from .subsurface import has_subsurface
@@ -28,8 +29,11 @@ LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
 MIX_SHADER, ADD_SHADER, BUMP = "mix_shader", "add_shader", "bump"
 """Kinds that the compiler itself knows: two share out weights, one evaluates its input three times."""
 
-
-_IMPLICIT = {"normal": "surface.normal", "tangent": "default_tangent(surface)"}
+_IMPLICIT = {
+    "normal": "surface.normal",
+    "position": "surface.position",
+    "tangent": "default_tangent(surface)",
+}
 """What inputs stand for whose default is a name."""
 
 
@@ -58,10 +62,12 @@ class NodeRayCounts:
     """How many times rays are traced: those of a node may depend on what those of another found."""
     samples: int = 0
     """Rays of a place, at most."""
+    casts: bool = False
+    """Whether there are rays from any place, as of Raycast nodes."""
 
     def united(self, other: "NodeRayCounts") -> "NodeRayCounts":
         """Of graphs that have their text in common."""
-        return NodeRayCounts(self.places, self.levels, max(self.samples, other.samples))
+        return replace(self, samples=max(self.samples, other.samples))
 
 
 MOST_NODE_RAYS = 128
@@ -368,14 +374,21 @@ class _Compiler:
         return 0 if normal is None or not 0 <= normal.node < len(self._ray_depths) else self._ray_depths[normal.node]
 
     def _ray_arguments(self, scope: _Scope, index: int) -> list[str]:
-        """The place of what a node's rays find, and its level."""
+        """The first place of what a node's rays find, and its level."""
         place, level = self._rays.places, scope.ray_level + self._ray_depths[index] - 1
-        node = self._graph.nodes[index]
-        samples = node.inputs.get("samples", KINDS[node.kind].inputs["samples"][1])
-        count = MOST_NODE_RAYS  # of what other nodes give, no more than the most
-        if isinstance(samples, int | float):
-            count = int(np.clip(_finite(samples), 1, MOST_NODE_RAYS))
-        self._rays = NodeRayCounts(place + 1, max(self._rays.levels, level + 1), max(self._rays.samples, count))
+        node, kind = self._graph.nodes[index], self._kind(index)
+        count = 1
+        if "samples" in kind.inputs:
+            samples = node.inputs.get("samples", kind.inputs["samples"][1])
+            count = MOST_NODE_RAYS  # of what other nodes give, no more than the most
+            if isinstance(samples, int | float):
+                count = int(np.clip(_finite(samples), 1, MOST_NODE_RAYS))
+        self._rays = NodeRayCounts(
+            place + kind.ray_places,
+            max(self._rays.levels, level + 1),
+            max(self._rays.samples, count),
+            self._rays.casts or node.kind == RAYCAST,
+        )
         return [f"{place}u", f"{level}u"]
 
     def _bump(self, scope: _Scope, index: int) -> None:

@@ -31,7 +31,7 @@ class NodeKind:
     The function takes, in this order: ``Surface surface`` if ``surface`` says so; of shader nodes ``inout
     ClosureBuilder builder, float weight``; an int for each option, the place of its value in the option's tuple
     (always a literal, so that the compiler folds it); a uint for each resource; of nodes that trace rays a uint for the
-    place of what they find and one for its level; the inputs; ``out`` the outputs.
+    first place of what they find and one for its level; the inputs; ``out`` the outputs.
 
     Inputs and outputs are named as the identifiers of Blender's sockets, in lower case with underscores for blanks;
     options as the properties of its nodes, with Blender's own values.
@@ -47,14 +47,19 @@ class NodeKind:
     """What the node needs besides: "table", where its table starts in material_data; "image", the number of its
     image; "attribute", the number of its mesh attribute."""
     surface: bool = False
-    traces_rays: bool = False
-    """Whether rays that it asks for are traced before its value is known (shaders/materials/node_rays.glsl). Such a
-    kind has an input "samples": how many rays."""
+    ray_places: int = 0
+    """Of rays that it asks for, which are traced before its value is known (shaders/materials/node_rays.glsl), how many
+    NODE_RAY hold what is asked and found. An input "samples" says how many rays; without it, it is one."""
     fallbacks: dict[str, str] = field(default_factory=dict)
     """What is rendered in place of the node where an option has a value, or "" for any: users are told."""
     function_option: str = ""
     """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
     passed: drivers take long to fold a choice among many at every call."""
+
+    @property
+    def traces_rays(self) -> bool:
+        """Whether it asks for rays."""
+        return self.ray_places > 0
 
     def call(self, name: str, options: dict[str, Any]) -> tuple[str, list[str]]:
         """The GLSL function of a node of this kind, which has a name, and its literals for options.

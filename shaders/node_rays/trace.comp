@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: TEXEL_BUFFERS=1
+// lint: RAYCASTS=1
 // What the nodes of a program's materials ask of rays, some samples of each at a time.
 
 layout(local_size_x = 64) in;
@@ -79,11 +80,16 @@ Ray occlusion_ray(vec3 position, vec3 geometric, uint triangle, mat3 axes, float
     return Ray(origin, triangle, direction, reach);
 }
 
-// The front's smooth normal where a bevel's ray hits, by its weight.
+// The front's.
+vec3 smooth_normal(Hit hit, vec3 geometric, vec3 b) {
+    vec3 normal = triangle_normal(hit.triangle, b);
+    return dot(normal, normal) > 1e-12 ? normalize(normal) : geometric;
+}
+
+// Of where a bevel's ray hits, by its weight.
 vec3 bevel_normal(Hit hit, vec3 position, mat3 axes, int axis, float radius, float r) {
     vec3 geometric = geometric_normal(hit.triangle), b = barycentrics(hit);
-    vec3 normal = triangle_normal(hit.triangle, b);
-    normal = dot(normal, normal) > 1e-12 ? normalize(normal) : geometric;
+    vec3 normal = smooth_normal(hit, geometric, b);
     // The power heuristic between the axes.
     vec3 pdfs = AXES * abs(geometric * axes);
     float pdf = axis == 0 ? pdfs.x : axis == 1 ? pdfs.y : pdfs.z;
@@ -91,6 +97,31 @@ vec3 bevel_normal(Hit hit, vec3 position, mat3 axes, int axis, float radius, flo
     weight *= bevel_pdf(length(point_of(hit.triangle, b) - position) / radius) / max(bevel_pdf(r), 1e-20);
     return weight * normal;
 }
+
+#ifdef RAYCASTS
+bool is_raycast(uint kind) { return kind == QUESTION_RAYCAST || kind == QUESTION_LOCAL_RAYCAST; }
+bool meets_all(uint kind) { return kind == QUESTION_OCCLUSION || kind == QUESTION_RAYCAST; }
+
+Ray cast_ray(NodeRay asked, uint beside, uint triangle) {
+    uint source = (asked.question & QUESTION_FROM_SURFACE) != 0u ? triangle : NO_TRIANGLE;
+    return Ray(node_rays[beside].direction, source, asked.direction, asked.reach);
+}
+
+// What a Raycast finds: the normal on the ray's side, and beside it the rest.
+vec3 keep_cast(uint beside, Hit hit, vec3 direction, uint instance) {
+    node_rays[beside].found = vec3(0.0);
+    if (hit.triangle == NO_TRIANGLE) return vec3(0.0);
+    node_rays[beside].direction = vec3(hit.b1, hit.b2, float(hit.triangle & 0xffffu));
+    node_rays[beside].reach = float(hit.triangle >> 16u);
+    vec3 geometric = geometric_normal(hit.triangle);
+    vec3 normal = smooth_normal(hit, geometric, barycentrics(hit));
+    bool itself = attributes[hit.triangle].instance == instance;
+    node_rays[beside].found = vec3(hit.distance, 1.0, float(itself));
+    return dot(geometric, direction) > 0.0 ? -normal : normal;
+}
+#else
+bool meets_all(uint kind) { return kind == QUESTION_OCCLUSION; }
+#endif
 
 void main() {
     uint place = invocation_index();
@@ -110,7 +141,7 @@ void main() {
         uvec4 set = pcg4d(uvec4(index, parameters.iteration, parameters.seed,
                                 STAGE_NODE_RAYS << 24u | parameters.segment << 12u | k));
         bool bevel = kind == QUESTION_BEVEL;
-        traced_instance = kind == QUESTION_OCCLUSION ? ALL_INSTANCES : instance;
+        traced_instance = meets_all(kind) ? ALL_INSTANCES : instance;
         mat3 axes;
         axes[0] = asked.direction;
         differential_frame(axes[0], axes[1], axes[2]);
@@ -122,9 +153,20 @@ void main() {
             Ray ray;
             if (bevel) ray = bevel_ray(position, axes, asked.reach, u, axis, r);
             else ray = occlusion_ray(position, geometric, seen.triangle, axes, asked.reach, u);
+            bool any_hit = !bevel;
+#ifdef RAYCASTS
+            if (is_raycast(kind)) ray = cast_ray(asked, at + 1u, seen.triangle);
+            any_hit = any_hit && !is_raycast(kind);
+#endif
             int most_hits = bevel ? MOST_BEVEL_HITS : 1;
             for (int hit_number = 0; hit_number < most_hits; ++hit_number) {
-                Hit hit = trace_deep_cubemap(ray, !bevel);
+                Hit hit = trace_deep_cubemap(ray, any_hit);
+#ifdef RAYCASTS
+                if (is_raycast(kind)) {
+                    found = keep_cast(at + 1u, hit, ray.direction, instance);
+                    break;
+                }
+#endif
                 if (hit.triangle == NO_TRIANGLE) {
                     if (!bevel) found.x += 1.0;
                     break;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ambient Occlusion and Bevel nodes against closed forms."""
+"""Ambient Occlusion, Bevel and Raycast nodes against closed forms."""
 
 import math
 
@@ -118,6 +118,25 @@ def test_a_bevel_turns_the_normal_where_the_fold_is_near(renderer, radius, flat)
     expected = normal[1] / np.linalg.norm(normal)
     assert 0.8 < expected < 0.99
     assert values.mean() == pytest.approx(expected, abs=0.01)
+
+
+def test_a_cast_begins_where_another_ended(renderer):
+    """Up to a ceiling, and from there by three times its normal through the floor to what lies below it; distances are
+    in lengths of the direction. The first begins on the floor, which it does not meet."""
+    graph = NodeGraph()
+    up = graph.add("raycast", "hit_position", length=2.0)
+    normal = graph.add("vector_math", "vector", options={"operation": "SCALE"}, scale=3.0,
+                       vector=Link(up.node, "hit_normal"))  # fmt: skip
+    below = graph.add("mapping", "vector", vector=up, location=(0.0, 0.0, -0.81))
+    down = graph.add("raycast", "hit_distance", length=1.0, position=below, direction=normal)
+    found = [Link(up.node, "hit_distance"), down, Link(down.node, "self_hit")]
+    graph.surface = graph.add("emission", "emission", color=graph.add(
+        "combine_xyz", "vector", **dict(zip("xyz", found, strict=True))))  # fmt: skip
+    scene = seen_from_above(Material("casting", graph), [ceiling(0.8), ceiling(-0.31)])
+    seen = renderer.render(scene).frame.combined[..., :3]
+    np.testing.assert_allclose(seen, np.broadcast_to((0.8, 0.1, 0.0), seen.shape), atol=1e-5)
+    local = glowing("raycast", "is_hit", options={"only_local": True}, length=2.0)
+    assert (renderer.render(seen_from_above(local, [ceiling(0.8)])).frame.combined[..., 0] == 0.0).all()
 
 
 def test_a_render_goes_on_bit_for_bit(mapper):

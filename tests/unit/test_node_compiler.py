@@ -307,6 +307,16 @@ def test_nodes_about_a_normal_of_rays_ask_after_it():
     assert "node_ambient_occlusion(surface, 0, 0, 1u, 1u," in compiled.text
 
 
+def test_a_ray_from_anywhere_takes_two_places_of_what_is_found():
+    """And has the program that traces it know of such rays, which that of others does not."""
+    graph = occluded()
+    graph.normal = graph.add("raycast", "hit_normal")
+    compiled = compile_graph(graph)
+    assert compiled.rays == NodeRayCounts(3, 2, 5, True) and not compile_graph(occluded()).rays.casts
+    assert "node_raycast(surface, 0, 0u, 0u, surface.position, surface.normal," in compiled.text
+    assert "node_ambient_occlusion(surface, 0, 0, 2u, 1u," in compiled.text
+
+
 def test_worlds_trace_no_rays():
     compiled = compile_graph(occluded("bevel"), traces_rays=False)
     assert compiled.rays == NodeRayCounts() and "node_rays.glsl" not in compiled.text

@@ -80,6 +80,32 @@ def apply_presets() -> dict[str, int]:
     return samples
 
 
+def raycast() -> list[str]:
+    """What is read of a Raycast node, where there is one: kinds of nodes, and what is exported with a mesh that comes
+    before the material that samples it."""
+    if not hasattr(bpy.types, "ShaderNodeRaycast"):
+        return []
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module=MODULE)
+    bpy.ops.object.camera_add()
+    bpy.context.scene.camera = bpy.context.object
+    for name in ("Asked", "Asking"):
+        bpy.ops.mesh.primitive_plane_add()
+        bpy.context.object.name = name
+        bpy.context.object.data.attributes.new("Heat", "FLOAT", "POINT")
+    material = bpy.data.materials.new("Asking")
+    bpy.context.object.data.materials.append(material)
+    tree = material.node_tree
+    tree.nodes.clear()
+    node, output = tree.nodes.new("ShaderNodeRaycast"), tree.nodes.new("ShaderNodeOutputMaterial")
+    node.sample_attribute_items.new("FLOAT", "Heat")
+    node.inputs["Heat"].default_value = "Heat"
+    tree.links.new(node.outputs["Heat"], output.inputs["Surface"])
+    scene = module("blender.export").export_scene(bpy.context.evaluated_depsgraph_get())
+    meshes = [name for mesh in scene.meshes for name in mesh.attributes]
+    return [node.kind for material in scene.materials for node in material.graph.nodes] + meshes + scene.warnings
+
+
 def use(folder: str) -> dict:
     bpy.ops.preferences.addon_enable(module=MODULE)
     build_scene()
@@ -91,6 +117,7 @@ def use(folder: str) -> dict:
     report["device"] = process.renderer_process().device.name
     process.close()
     report["presets"] = apply_presets()
+    report["raycast"] = raycast()
     import moderngl
 
     report["moderngl"] = moderngl.__file__

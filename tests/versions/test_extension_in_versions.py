@@ -63,6 +63,11 @@ def test_the_zip_is_installed_and_renders_the_same(version, used):
     assert np.abs(blocks[0] - blocks[1]).mean() < 0.03 * blocks[1].mean()
 
 
+def test_a_raycast_samples_meshes_that_come_before_it(used):
+    found = used("5.2.3")[0]["raycast"]
+    assert sorted(found) == ["Heat", "Heat", "bsdf_principled", "cast_attribute", "emission", "raycast"]
+
+
 @pytest.mark.parametrize("version", WHEELS)
 def test_what_the_window_needs_is_there(version, used):
     report, _ = used(version)

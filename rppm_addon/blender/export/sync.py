@@ -346,7 +346,7 @@ class SceneSync:
 
     def _patch(self, depsgraph: bpy.types.Depsgraph, edits: Edits) -> bool:
         """Put changed objects in their places; False when that is not enough."""
-        placed, changed = self._placed, []
+        placed, changed, sampled = self._placed, [], self._objects.materials.sampled
         for uid, source in edits.objects.items():
             if source.is_instancer or len(source.particle_systems) > 0:
                 return False
@@ -364,6 +364,9 @@ class SceneSync:
                 return False
         before = [None if uid in self._pending.looks else placed.instances[placed.alone[uid]] for uid in changed]
         instances = self._objects.instances(depsgraph, [edits.objects[uid] for uid in changed], before)
+        if sampled != self._objects.materials.sampled:  # new materials ask for attributes of all meshes
+            self._pending.attributes = True
+            return False
         if any(instance is None for instance in instances):
             return False
         for uid, instance in zip(changed, instances, strict=True):

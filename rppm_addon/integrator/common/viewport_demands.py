@@ -30,8 +30,9 @@ class ViewportDemands:
     has_subsurface: bool = False
     has_hair: bool = False
     traces_rays: bool = False
-    """Whether programs are to be ready for light that goes below surfaces, for fibers and for rays of nodes, which
-    materials have that something stands in for as yet."""
+    casts_rays: bool = False
+    """Whether programs are to be ready for light that goes below surfaces, for fibers, for rays of nodes, and among
+    these for such as begin anywhere, which materials have that something stands in for as yet."""
 
 
 NO_DEMANDS = ViewportDemands()

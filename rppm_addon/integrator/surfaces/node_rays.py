@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rays that nodes of materials ask for: what Ambient Occlusion and Bevel find around the places that are resolved.
+"""Rays that nodes of materials ask for: what Ambient Occlusion and Bevel find around the places that are resolved, and
+Raycast from anywhere.
 
 Programs of materials only ask, and one program traces for all of them: with the traversal inside, each would take as
 long to compile, and more storage blocks than devices have. A hit on such a material is evaluated once more for each
@@ -35,7 +36,10 @@ Record(
 )
 NODE_RAY = Record("NodeRay", direction="vec3", question="uint", found="vec3", reach="float")
 """What a node asks: the unit vector around which rays go and how far they reach, meters; and what they found so far:
-how many met nothing, or the weighted sum of normals. No question: 0."""
+how many met nothing, or the weighted sum of normals. No question: 0. Of a Raycast, which finds a normal, another
+follows. First its ``direction`` is where the ray begins; then it holds two barycentric coordinates of the hit and the
+lower 16 bits of the triangle, ``reach`` the others, and ``found`` the distance, meters, whether anything was met, and
+whether the object itself."""
 StorageBlock("NodeRays", "NodeRay node_rays[];")
 
 
@@ -46,12 +50,16 @@ class _Question(enum.IntEnum):
     LOCAL_OCCLUSION = 2
     """By the object itself."""
     BEVEL = 3
+    RAYCAST = 4
+    """The nearest along a ray from anywhere."""
+    LOCAL_RAYCAST = 5
 
 
 Constants(
     "NodeQuestions",
     QUESTION=_Question,
-    QUESTION_KIND=0xF,
+    QUESTION_KIND=0x7,
+    QUESTION_FROM_SURFACE=0x8,
     QUESTION_LEVEL=0xFFF,
     QUESTION_LEVEL_SHIFT=4,
     QUESTION_SAMPLES_SHIFT=16,
@@ -89,13 +97,15 @@ class NodeRays(BufferSet):
             self._rays.clear()
         return self._rays.buffer
 
-    def program(self, traversal: Traversal) -> ComputeProgram:
-        """What traces; where there are cores to spare it is compiled between asking for it and its first run."""
-        return self._library.compute("node_rays/trace.comp", traversal.traversal_defines)
+    def program(self, traversal: Traversal, casts: bool) -> ComputeProgram:
+        """What traces; where there are cores to spare it is compiled between asking for it and its first run. casts:
+        also rays that begin anywhere, of which the program without knows nothing."""
+        defines = {**traversal.traversal_defines, **({"RAYCASTS": 1} if casts else {})}
+        return self._library.compute("node_rays/trace.comp", defines)
 
     def trace(
         self,
-        traversal: Traversal,
+        program: ComputeProgram,
         arguments: int,
         buffers: Mapping[str, moderngl.Buffer],
         counts: NodeRayCounts,
@@ -103,16 +113,15 @@ class NodeRays(BufferSet):
     ) -> None:
         """Answer what the nodes of a program ask at a level.
 
-        arguments: byte of HitOrder where the groups of the program's dispatch are; buffers: HitOrder, NodeRays, Rays,
-        Hits and Attributes among others; counts: of the program; parameters: the others of NodeRaysParameters.
+        program: ``program``'s; arguments: byte of HitOrder where the groups of the dispatch are; buffers: HitOrder,
+        NodeRays, Rays, Hits, Attributes and those of the traversal among others; counts: of the program that asks;
+        parameters: the others of NodeRaysParameters.
         """
-        program = self.program(traversal)
-        blocks = {**buffers, **traversal.traversal_buffers}
         of_all = {**parameters, "ray_places": counts.places, "samples": counts.samples}
         for first in range(0, counts.samples, _SAMPLES_AT_ONCE):
             program.run_indirect(
                 buffers["HitOrder"],
                 arguments,
-                {name: blocks[name] for name in program.blocks},
+                {name: buffers[name] for name in program.blocks},
                 {**of_all, "first_sample": first, "sample_count": _SAMPLES_AT_ONCE},
             )

@@ -100,6 +100,8 @@ class Resolve(BufferSet):
         self._ray_counts: list[NodeRayCounts] = []
         self._ray_stride = 0
         """What nodes ask of rays at a hit, at most."""
+        self._casts_rays = False
+        """Whether nodes ask for rays that begin anywhere."""
         self._traversal: Traversal | None = None
         self._buffers: dict[str, moderngl.Buffer] = {}
         self._parameters: dict[str, object] = {}
@@ -126,6 +128,7 @@ class Resolve(BufferSet):
         self._programs = [self._program(text, scene, materials) for text in materials.programs]
         self._ray_counts = [materials.rays[text] for text in materials.programs]
         self._ray_stride = max((counts.places for counts in self._ray_counts), default=0)
+        self._casts_rays = any(counts.casts for counts in self._ray_counts)
         self._traversal = None
         self._surface_attributes.build(scene, geometry, materials.attribute_names)
         self._buffers = {
@@ -141,10 +144,11 @@ class Resolve(BufferSet):
         if self._ray_stride:
             self.expect_rays()
 
-    def expect_rays(self) -> None:
-        """Have the program made that answers nodes which ask for rays, after trace_through."""
+    def expect_rays(self, casts: bool = False) -> None:
+        """Have the program made that answers nodes which ask for rays, after trace_through; casts: also for such as
+        begin anywhere."""
         if self._traversal is not None:
-            self._node_rays.program(self._traversal)
+            self._node_rays.program(self._traversal, self._casts_rays or casts)
 
     def look_from(self, camera: Camera, seed: int) -> None:
         """Take the camera that nodes may ask about, and the seed of random choices."""
@@ -231,9 +235,12 @@ class Resolve(BufferSet):
             told["ray_level"] = level
             program.run_indirect(buffers["HitOrder"], arguments, _blocks_of(program, buffers), {**parameters, **told})
             self._node_rays.trace(
-                self._traversal, arguments, buffers, counts,
+                self._node_rays.program(self._traversal, self._casts_rays),
+                arguments,
+                {**buffers, **self._traversal.traversal_buffers},
+                counts,
                 {**traced, "ray_stride": self._ray_stride, "ray_level": level},
-            )  # fmt: skip
+            )
         return {**told, "ray_level": counts.levels}
 
     def _order_by_program(self, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> moderngl.Buffer:

@@ -12,7 +12,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import stride
 from ...materials.hair import has_hair
-from ...materials.node_rays import traces_rays
+from ...materials.node_rays import casts_rays, traces_rays
 from ...materials.subsurface import has_subsurface
 from ...scene.materials import Material
 from ...scene.scene import Scene
@@ -43,6 +43,7 @@ def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -
         has_subsurface=any(map(has_subsurface, coming)),
         has_hair=any(map(has_hair, coming)),
         traces_rays=any(map(traces_rays, coming)),
+        casts_rays=any(map(casts_rays, coming)),
     )
     if len(scene.settings.passes) == 1:  # a pass is shown as it is
         return demands

@@ -6,6 +6,8 @@ from typing import Any
 from ...gl.constants import Constants
 from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
+CAST_ATTRIBUTE = "cast_attribute"
+"""The kind that reads an attribute of other surfaces than its own."""
 _UP = (0.0, 0.0, 1.0)
 _NORMAL_MAP_SPACES = ("TANGENT", "OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD")
 _DISPLACEMENT_SPACES = ("OBJECT", "WORLD")
@@ -124,7 +126,7 @@ KINDS = {
         inputs={"radius": (FLOAT, 0.05), "normal": (VECTOR, "normal"), "samples": (FLOAT, 4.0)},
         outputs={"normal": VECTOR},
         surface=True,
-        traces_rays=True,
+        ray_places=1,
     ),
     "ambient_occlusion": NodeKind(
         "ray_nodes.glsl",
@@ -134,6 +136,25 @@ KINDS = {
         outputs={"color": COLOR, "ao": FLOAT},
         options={"inside": BOOLEAN, "only_local": BOOLEAN},
         surface=True,
-        traces_rays=True,
+        ray_places=1,
+    ),
+    "raycast": NodeKind(
+        "raycast.glsl",
+        inputs={"position": (VECTOR, "position"), "direction": (VECTOR, "normal"), "length": (FLOAT, 1.0)},
+        outputs={
+            "is_hit": FLOAT, "self_hit": FLOAT, "hit_distance": FLOAT, "hit_position": VECTOR, "hit_normal": VECTOR,
+            "hit_triangle": VECTOR, "hit_barycentrics": VECTOR,
+        },
+        options={"only_local": BOOLEAN},
+        surface=True,
+        ray_places=2,
+    ),
+    # Of what a raycast hit, whose last two outputs it takes.
+    CAST_ATTRIBUTE: NodeKind(
+        "cast_attribute.glsl",
+        inputs={"triangle": (VECTOR, 0.0), "barycentrics": (VECTOR, 0.0)},
+        outputs={"color": COLOR, "vector": VECTOR, "fac": FLOAT, "alpha": FLOAT},
+        resources=("attribute",),
+        surface=True,
     ),
 }  # fmt: skip

@@ -150,6 +150,11 @@ class GraphExporter:
             values = [v if np.isfinite(v) else 0.0 for v in values]
         return (*values, 0.0, 0.0)[:3] if several else values[0]
 
+    def text(self, socket: bpy.types.NodeSocket, path: Path) -> str:
+        """The text in an input; empty where a node gives it."""
+        source = find_source(socket, path, self._links)
+        return "" if isinstance(source, Source) else str(getattr(source.socket, "default_value", ""))
+
     def is_linked(self, socket: bpy.types.NodeSocket, path: Path) -> bool:
         """Whether a node's output feeds an input."""
         return isinstance(find_source(socket, path, self._links), Source)

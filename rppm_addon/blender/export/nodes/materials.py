@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import bpy
 
+from ....materials.nodes.geometry import CAST_ATTRIBUTE
 from ....scene import AovOutput, Link, Material, NodeGraph
 from ....scene.cryptomatte import DEFAULT_MATERIAL
 from ....scene.meshes import SMOOTH_NORMALS, UNDISPLACED
@@ -24,6 +25,8 @@ class MaterialTable:
         self.materials: list[Material] = []
         self.attributes: list[dict[str, str]] = []
         """Of each material, the attributes that its nodes read, with the name of such a node."""
+        self.sampled: frozenset[str] = frozenset()
+        """Attributes that rays of nodes read wherever they hit, so that all meshes are asked for them."""
         self._context = context
         self._places: dict[int, int] = {}
         self._on_round_shapes: set[int] = set()
@@ -40,6 +43,7 @@ class MaterialTable:
             self._places[key] = len(self.materials)
             self.materials.append(exported)
             self.attributes.append(_attributes_of(exported))
+            self.sampled |= _sampled_of(exported)
         return self._places[key]
 
     def put_on_round_shapes(self, places: list[int]) -> None:
@@ -55,9 +59,10 @@ class MaterialTable:
             return False
         exported, place = self._export(key, material), self._places[key]
         exported.on_round_shapes = place in self._on_round_shapes
-        before = self.attributes[place]
+        before = self.attributes[place], self.sampled
         self.materials[place], self.attributes[place] = exported, _attributes_of(exported)
-        return self.attributes[place] != before
+        self.sampled |= _sampled_of(exported)
+        return (self.attributes[place], self.sampled) != before
 
     def _export(self, key: int, material: bpy.types.Material | None) -> Material:
         reads = self._context.untracked_reads
@@ -71,9 +76,13 @@ class MaterialTable:
 
 
 def _attributes_of(material: Material) -> dict[str, str]:
-    nodes = material.graph.nodes
+    nodes = [node for node in material.graph.nodes if node.kind != CAST_ATTRIBUTE]
     asked = {node.attribute: node.name for node in nodes if node.attribute not in {"", NO_ATTRIBUTE, UNDISPLACED}}
     return asked if material.graph.displacement is None else {**asked, SMOOTH_NORMALS: ""}
+
+
+def _sampled_of(material: Material) -> set[str]:
+    return {node.attribute for node in material.graph.nodes if node.kind == CAST_ATTRIBUTE}
 
 
 def default_surface() -> NodeGraph:

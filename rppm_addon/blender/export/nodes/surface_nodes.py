@@ -3,11 +3,13 @@
 
 import functools
 import pathlib
+import re
 
 import bpy
 import numpy as np
 
 from ....materials.ies import FLAT_PROFILE, ProfileError, profile_table
+from ....materials.nodes.geometry import CAST_ATTRIBUTE
 from ....materials.sky.picture import sky_picture
 from ....scene import Image, Link
 from ....scene.sky import Sky
@@ -149,8 +151,19 @@ def _ambient_occlusion(
 
 @handles("MATERIAL_RAYCAST")  # of Blender 5.2
 def _raycast(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
-    exporter.warn(node, "would need rays of its own, which are not traced; nothing is hit")
-    return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
+    found = re.fullmatch(r"Attribute_(\d+)(_Alpha)?", output.identifier)
+    if found is None:
+        return exporter.add("raycast", node, path, snake_case(output.identifier))
+    named = next(socket for socket in node.inputs if socket.identifier == f"Value_{found[1]}")
+    name = exporter.text(named, path)
+    if not name:
+        return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
+    ray = exporter.add("raycast", node, path).node
+    member = "alpha" if found[2] else {"VECTOR": "vector", "RGBA": "color"}.get(output.type, "fac")
+    return exporter.graph.add(
+        CAST_ATTRIBUTE, member, name=exporter.name_of(node), attribute=name,
+        triangle=Link(ray, "hit_triangle"), barycentrics=Link(ray, "hit_barycentrics"),
+    )  # fmt: skip
 
 
 @handles("OBJECT_INFO")

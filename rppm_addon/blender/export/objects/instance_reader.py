@@ -31,7 +31,7 @@ class InstanceReader:
         self.meshes = MeshTable(context)
         self.report = context.report
         self._context = context
-        self._wants: dict[tuple[int, ...], tuple[set[str], bool]] = {}
+        self._wants: dict[tuple[tuple[int, ...], frozenset[str]], tuple[set[str], bool]] = {}
 
     def begin_pass(self) -> None:
         """Materials may ask for other attributes than before."""
@@ -177,11 +177,12 @@ class InstanceReader:
         return values
 
     def wanted_attributes(self, materials: list[int]) -> tuple[set[str], bool]:
-        """Names of the attributes that materials read, and whether any is one of objects."""
-        key = tuple(materials)
+        """Names of the attributes that materials or rays read, and whether any is one of objects."""
+        sampled = self.materials.sampled
+        key = tuple(materials), sampled
         if key not in self._wants:
-            names = {name for material in materials for name in self.materials.attributes[material]}
-            self._wants[key] = names, any(name.partition(":")[0] in _WHOLE for name in names)
+            names = sampled.union(*(self.materials.attributes[material] for material in materials))
+            self._wants[key] = set(names), any(name.partition(":")[0] in _WHOLE for name in names)
         return self._wants[key]
 
     def mesh_index(

@@ -107,6 +107,12 @@ class ObjectPass:
         identify: bool,
     ) -> None:
         self._identify = identify
+        self._reader = reader
+        self._report = reader.report
+        self._shown: Callable[[bpy.types.Object], bool] | None = None
+        self._begin(unchanged, moved)
+
+    def _begin(self, unchanged: dict[int, Instance], moved: dict[int, Instance]) -> None:
         self._identity: Identity = ()
         """Of what is being placed."""
         self.place = 0
@@ -115,9 +121,6 @@ class ObjectPass:
         """How many there are, once the pass goes on."""
         self._is_placed = False
         """Whether only the hair of the next one is to be dealt with."""
-        self._reader = reader
-        self._report = reader.report
-        self._shown: Callable[[bpy.types.Object], bool] | None = None
         self._particles = ParticleTable()
         self._matrices: np.ndarray | None = None
         self._unchanged = unchanged
@@ -137,6 +140,7 @@ class ObjectPass:
         """By their addresses."""
         self._multiple: set[int] = set()
         """Objects that are multiplied or multiply others."""
+        self._sampled = self._reader.materials.sampled
         self._result = Placed()
 
     def go_on(self, depsgraph: bpy.types.Depsgraph, shown: Callable[[bpy.types.Object], bool] | None) -> Placed:
@@ -149,6 +153,10 @@ class ObjectPass:
         try:
             self._export_all(depsgraph)
             self._convert(depsgraph)
+            if self._sampled != self._reader.materials.sampled:  # meshes that came before were not asked for it
+                self._begin({}, {})
+                self._export_all(depsgraph)
+                self._convert(depsgraph)
         finally:
             self._shown = None  # it may hold something of Blender's
             self._particles.forget()
