@@ -287,7 +287,7 @@ def test_one_node_serves_all_of_its_outputs(scene):
 
 NOT_RENDERED = {
     "BSDF_RAY_PORTAL", "EEVEE_SPECULAR", "SCRIPT", "SHADERTORGB", "SQUEEZE",
-    "VOLUME_COEFFICIENTS", "PRINCIPLED_VOLUME", "VOLUME_SCATTER", "ShaderNodeRadialTiling", "CAMERA",
+    "VOLUME_COEFFICIENTS", "PRINCIPLED_VOLUME", "VOLUME_SCATTER", "CAMERA",
 }  # fmt: skip
 """Node types that a neutral value stands in for."""
 

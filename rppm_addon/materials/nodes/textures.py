@@ -114,6 +114,17 @@ _GABOR = NodeKind(
 )
 
 KINDS = {
+    "radial_tiling": NodeKind(
+        "radial_tiling.glsl",
+        inputs={"vector": (VECTOR, ORIGIN), "sides": (FLOAT, 5.0), "roundness": (FLOAT, 0.0)},
+        outputs={
+            "segment_coordinates": VECTOR,
+            "segment_id": FLOAT,
+            "segment_width": FLOAT,
+            "segment_rotation": FLOAT,
+        },
+        options={"normalize": BOOLEAN},
+    ),
     "tex_noise": _NOISE,
     "tex_voronoi": _VORONOI,
     "tex_wave": _WAVE,

@@ -21,7 +21,8 @@ MODULES_OF_THEIR_OWN = {
     displacement.GROUP, *fibers.GROUPS, metallic.GROUP, *ray_nodes.GROUPS, *strands.GROUPS, zones_and_closures.GROUP,
 }  # fmt: skip
 VALUES_ELSEWHERE = {
-    "Textures", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range", "Vector Transform",
+    "Textures", "Radial Tiling", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range",
+    "Vector Transform",
 }  # fmt: skip
 """Groups of nodes each of whose options test_texture_values.py and test_node_values.py compare over more values."""
 

@@ -47,6 +47,24 @@ for _name, (_kind, _inputs, _properties) in TEXTURES.items():
         0.9,
         0.1,
     )
+for _output, _inputs, _normalized in (
+    ("Segment Coordinates", {"Sides": 5.0, "Roundness": 0.4}, False),
+    ("Segment Coordinates", {"Sides": 6.4, "Roundness": 0.6}, True),
+    ("Segment ID", {"Sides": 4.5}, False),
+):
+    value(
+        "Radial Tiling",
+        f"{_output}, {_inputs['Sides']:g} sides" + (", normalized" if _normalized else ""),
+        (
+            lambda output, inputs, normalized: (
+                lambda net: net.out(
+                    "RadialTiling", output, inputs | {"Vector": net.out("TexCoord", "Object")}, normalize=normalized
+                )
+            )
+        )(_output, _inputs, _normalized),
+        0.2,
+        0.6,
+    )
 value("Textures", "Voronoi, Color", lambda net: net.out("TexVoronoi", "Color", {"Scale": 3.0}))
 value(
     "Textures",
