@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: HAIR_LOBES=1
+// lint: ASHIKHMIN_LOBES=1
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;

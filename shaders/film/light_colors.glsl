@@ -35,6 +35,9 @@ void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) 
     else if (!lobe_has_facets(kind)) colors.glossy += lobe.weight * reflectance;
     else if (kind == LOBE_REFRACTION) colors.transmission += lobe.weight;
     else if (kind == LOBE_SHEET) colors.transmission += lobe.weight * white_albedo(roughness, cosine);
+#ifdef ASHIKHMIN_LOBES
+    else if (lobe_is_ashikhmin(lobe)) colors.glossy += lobe.weight;
+#endif
     else if (kind == LOBE_MIRROR || kind == LOBE_METAL)
         colors.glossy += lobe.weight * not_nothing(reflectance) * white_albedo(roughness, cosine);
     else {

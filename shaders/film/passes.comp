@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: HAIR_LOBES=1
+// lint: ASHIKHMIN_LOBES=1
 // What the camera sees first, for the passes of scene/passes.py. As in Cycles, surfaces that let more than half of the
 // light straight through are passed, and depth lies along the view axis, or in a panorama along the ray. What denoisers
 // take is that of the first surface that is not specular. The colors of all surfaces count by what of them is seen.

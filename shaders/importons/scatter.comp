@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: HAIR_LOBES=1
+// lint: ASHIKHMIN_LOBES=1
 // TraceImportons: collect what a camera path sees shine, leave an importon for the lobes that store
 // photons, and go on by the specular ones.
 

@@ -75,6 +75,11 @@ void add_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3
     add_lobe(builder, mirror_lobe(at, weight * color * factor));
 }
 
+// Of Ashikhmin and Shirley's model.
+void add_phong_mirror(inout ClosureBuilder builder, Microfacets at, float weight, vec3 color) {
+    add_lobe(builder, microfacet_lobe(at, LOBE_MIRROR, weight * color, vec3(1.0), vec3(0.0), 1.0));
+}
+
 // What a film reflects, for the angle of the viewer.
 vec3 film_reflectance(Microfacets at, Film film, float before, float behind, FilmMetal metal) {
     return thin_film_reflectance(at.cosine, film.thickness, before, film.ior, behind, metal);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: HAIR_LOBES=1
+// lint: ASHIKHMIN_LOBES=1
 // Photons carry what a viewer would get who looks back along their way: the adjoint of the BSDF (Veach 1997, section
 // 3.7). The closures are those that such viewers see.
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: HAIR_LOBES=1
+// lint: ASHIKHMIN_LOBES=1
 // TracePhotons: store the photon and choose how its path goes on (D, G or S by importance).
 
 layout(local_size_x = 64) in;

@@ -355,7 +355,7 @@ def test_unknown_shaders_become_diffuse(scene, node):
         ("ShaderNodeBsdfHairPrincipled", {"model": "HUANG"}, {}, ""),
         ("ShaderNodeSubsurfaceScattering", {}, {}, ""),
         ("ShaderNodeSubsurfaceScattering", {"falloff": "BURLEY"}, {}, "a random walk"),
-        ("ShaderNodeBsdfAnisotropic", {"distribution": "ASHIKHMIN_SHIRLEY"}, {}, "GGX"),
+        ("ShaderNodeBsdfAnisotropic", {"distribution": "ASHIKHMIN_SHIRLEY"}, {}, ""),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "BECKMANN"}, {}, ""),
         ("ShaderNodeBsdfPrincipled", {}, {"Subsurface Weight": 0.3}, ""),
         ("ShaderNodeBsdfPrincipled", {"subsurface_method": "BURLEY"}, {"Subsurface Weight": 0.3}, "a random walk"),

@@ -47,9 +47,10 @@ def run(
     tint=(1, 1, 1),
     aspect=1.0,
     beckmann=False,
+    defines=None,
 ) -> Lobe:
     results = context.moderngl.buffer(reserve=80 * COUNT)
-    library.compute(SHADER).run(
+    library.compute(SHADER, defines or {}).run(
         COUNT,
         {"Results": results},
         {
@@ -120,6 +121,26 @@ def test_beckmann(context, library, kind, alpha, aspect):
         assert_sampled_as_evaluated(lobe, f"Beckmann, kind {kind} alpha {alpha} aspect {aspect} cosine {cosine}")
         across = alpha / aspect * np.sqrt(1.0 / cosine**2 - 1.0)
         assert lobe.sampled[:, :3].max() <= 4.0 / np.e * 0.5 * (1.0 + np.hypot(1.0, across)) + 1e-3
+
+
+ASHIKHMIN = {"tint": (0.0, 0.0, 0.0), "defines": {"ASHIKHMIN_LOBES": 1}}
+
+
+@pytest.mark.parametrize(("alpha", "aspect"), [(0.1, 1.0), (0.4, 0.4), (1.0, 1.0)])
+def test_ashikhmin_and_shirley(context, library, alpha, aspect):
+    """Weights are at most 1, and the BSDF is the same from both sides."""
+    for cosine in (0.35, 0.95):
+        lobe = run(context, library, MIRROR, alpha, 1.5, cosine, aspect=aspect, **ASHIKHMIN)
+        assert_sampled_as_evaluated(lobe, f"Ashikhmin and Shirley, alpha {alpha} aspect {aspect} cosine {cosine}")
+        assert lobe.sampled[:, :3].max() <= 1.0 + 1e-6 and lobe.pairs[:, 0].max() > 0.0
+        np.testing.assert_allclose(lobe.pairs[:, 0], lobe.pairs[:, 1], rtol=2e-3, atol=1e-6)
+
+
+def test_the_smoothest_of_ashikhmin_and_shirley_are_mirrors(context, library):
+    for alpha in (0.0, 1e-4):
+        drawn = run(context, library, MIRROR, alpha, 1.5, 0.6, **ASHIKHMIN).drawn
+        np.testing.assert_allclose(drawn, drawn[:1].repeat(len(drawn), axis=0), atol=5e-3)
+        np.testing.assert_allclose(drawn[:, 0], 1.0)
 
 
 @pytest.mark.parametrize("coefficients", [(0.15, -0.1, 0.0), (0.7, 0.0, 0.0), (0.3, -0.17, 0.0)])

@@ -193,7 +193,8 @@ def by_closure(
         "AlbedoTables": gl.buffer(albedo_tables.load().tobytes()),
     }
     normal = np.array(normal if normal else (0.0, 0.0, 1.0), float)
-    library.compute(str(file)).run(
+    defines = {"ASHIKHMIN_LOBES": 1} if options.get("distribution") == "ASHIKHMIN_SHIRLEY" else {}
+    library.compute(str(file), defines).run(
         len(points),
         buffers,
         {

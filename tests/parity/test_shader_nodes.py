@@ -85,6 +85,11 @@ SINGLE = {
         "bsdf_glossy", {"distribution": "BECKMANN"},
         {"color": COLOR, "roughness": 0.5, "anisotropy": 0.6, "rotation": 0.1},
     ),
+    "glossy_ashikhmin": ("bsdf_glossy", {"distribution": "ASHIKHMIN_SHIRLEY"}, {"color": COLOR, "roughness": 0.7}),
+    "glossy_ashikhmin_stretched": (
+        "bsdf_glossy", {"distribution": "ASHIKHMIN_SHIRLEY"},
+        {"color": COLOR, "roughness": 0.5, "anisotropy": 0.6, "rotation": 0.1},
+    ),
     "metal_beckmann": (
         "bsdf_metallic", {"distribution": "BECKMANN", "fresnel_type": "F82"}, {"base_color": COLOR, "roughness": 0.4}
     ),

@@ -71,7 +71,13 @@ def occluded():
     return Material("occluded", graph)
 
 
-FEATURES = (on_strands, wax, displaced, occluded)
+def phong():
+    material = simple("bsdf_glossy")
+    material.graph.nodes[0].options["distribution"] = "ASHIKHMIN_SHIRLEY"
+    return material
+
+
+FEATURES = (on_strands, wax, displaced, occluded, phong)
 
 
 def with_material(feature):

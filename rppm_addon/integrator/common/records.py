@@ -107,7 +107,8 @@ class MicrofacetKind(enum.IntEnum):
 
     NONE = 0
     MIRROR = 1
-    """Reflects all."""
+    """Reflects all; a black tint stands for the model of Ashikhmin and Shirley, which programs know where
+    ASHIKHMIN_LOBES is defined."""
     METAL = 2
     """Schlick's Fresnel from f0 to white; tint is of the edge at 82 degrees."""
     DIELECTRIC = 3

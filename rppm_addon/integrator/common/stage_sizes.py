@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 
+from ...materials.ashikhmin_shirley import has_ashikhmin
 from ...materials.hair import has_hair
 from ...materials.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
@@ -39,6 +40,8 @@ class StageSizes:
     """Whether light may go below surfaces."""
     has_hair: bool = False
     """Whether materials scatter as fibers do, of which other programs know nothing."""
+    has_ashikhmin: bool = False
+    """Whether materials reflect by the model of Ashikhmin and Shirley, likewise."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -61,7 +64,14 @@ class StageSizes:
             _links_lights(scene),
             demands.has_subsurface or any(has_subsurface(material.graph) for material in scene.materials),
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
+            demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
         )
+
+    @property
+    def lobe_defines(self) -> dict[str, int]:
+        """Defines of the programs that evaluate lobes, by which they know more kinds."""
+        known = {"HAIR_LOBES": self.has_hair, "ASHIKHMIN_LOBES": self.has_ashikhmin}
+        return {name: 1 for name, has in known.items() if has}
 
     @property
     def has_scattered_light(self) -> bool:

@@ -11,6 +11,7 @@ from ...gl.buffer_sets import sum_by_name
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import stride
+from ...materials.ashikhmin_shirley import has_ashikhmin
 from ...materials.hair import has_hair
 from ...materials.node_rays import casts_rays, traces_rays
 from ...materials.subsurface import has_subsurface
@@ -42,6 +43,7 @@ def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -
     demands = ViewportDemands(
         has_subsurface=any(map(has_subsurface, coming)),
         has_hair=any(map(has_hair, coming)),
+        has_ashikhmin=any(map(has_ashikhmin, coming)),
         traces_rays=any(map(traces_rays, coming)),
         casts_rays=any(map(casts_rays, coming)),
     )

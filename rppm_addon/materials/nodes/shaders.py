@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes.
 
-Approximations: GGX for the distribution of Ashikhmin and Shirley; a random walk for Christensen-Burley; for the
+Approximations: a random walk for Christensen-Burley; for the
 physical conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
 """
 
@@ -19,6 +19,7 @@ _TANGENT = {"tangent": (VECTOR, "tangent")}
 _ANISOTROPY = {"anisotropy": (FLOAT, 0.0), "rotation": (FLOAT, 0.0)} | _NORMAL | _TANGENT
 _FILM = {"thin_film_thickness": (FLOAT, 0.0), "thin_film_ior": (FLOAT, 1.33)}
 _GRAY, _WHITE = {"color": (COLOR, 0.8)}, {"color": (COLOR, 1.0)}
+ASHIKHMIN_SHIRLEY = "ASHIKHMIN_SHIRLEY"
 SUBSURFACE_METHODS = ("RANDOM_WALK", "RANDOM_WALK_SKIN", "RANDOM_WALK_LEGACY", "BURLEY")
 """As in Blender 5.2; what is RANDOM_WALK before that is RANDOM_WALK_LEGACY there."""
 
@@ -37,8 +38,7 @@ KINDS = {
     "bsdf_glossy": _shader(
         "bsdf",
         _GRAY | {"roughness": (FLOAT, 0.5)} | _ANISOTROPY,
-        {"distribution": ("BECKMANN", "GGX", "ASHIKHMIN_SHIRLEY", "MULTI_GGX")},
-        {"ASHIKHMIN_SHIRLEY": "a glossy surface with the distribution GGX"},
+        {"distribution": ("BECKMANN", "GGX", ASHIKHMIN_SHIRLEY, "MULTI_GGX")},
     ),
     "bsdf_glass": _shader(
         "bsdf",

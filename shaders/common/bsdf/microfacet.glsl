@@ -20,6 +20,12 @@ bool lobe_is_hair(uint kind) { return kind >= LOBE_HAIR_REFLECTION; }
 bool lobe_is_hair(uint kind) { return false; }
 #endif
 
+// Likewise without Ashikhmin and Shirley's model, whose lobes are mirrors with a black tint.
+#ifdef ASHIKHMIN_LOBES
+#include "common/bsdf/ashikhmin_shirley.glsl"
+bool lobe_is_ashikhmin(MicrofacetLobe lobe) { return lobe.kind == LOBE_MIRROR && lobe.tint.x < 0.5; }
+#endif
+
 bool lobe_transmits(uint kind) { return (kind >= LOBE_GLASS && kind <= LOBE_SHEET) || lobe_is_hair(kind); }
 bool lobe_is_toon(uint kind) { return kind >= LOBE_TOON && !lobe_is_hair(kind); }
 bool lobe_has_facets(uint kind) { return kind < LOBE_SHEEN; }
@@ -136,6 +142,19 @@ LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, f
     return result;
 }
 
+#ifdef ASHIKHMIN_LOBES
+// What reflects to below the surface is lost.
+LobeSample sample_ashikhmin(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk) {
+    MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
+    vec3 h = lobe.alpha < SMOOTHEST_PHONG ? n : from_frame(frame, sample_phong_normal(frame.alpha, disk));
+    float cosine = dot(wo, h);
+    vec3 wi = normalize(2.0 * cosine * h - wo);
+    float cosine_o = dot(n, wo), cosine_i = dot(n, wi);
+    bool scattered = cosine > 0.0 && cosine_i > 0.0;
+    return LobeSample(wi, scattered ? lobe.weight * (cosine_i / max(cosine_i, cosine_o)) : vec3(0.0), false);
+}
+#endif
+
 // What a viewer sees depends on where the light is, not the other way round: photons go all ways.
 LobeSample sample_toon_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, bool radiance) {
     bool diffuse = lobe.kind == LOBE_TOON, evenly = diffuse && !radiance;
@@ -156,6 +175,10 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_
         result.transmitted = dot(result.direction, n) < 0.0;
         return result;
     }
+#endif
+#ifdef ASHIKHMIN_LOBES
+    if (lobe_is_ashikhmin(lobe)) result = sample_ashikhmin(lobe, n, wo, disk);
+    else
 #endif
     if (lobe_has_facets(lobe.kind)) result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
     else if (lobe_is_toon(lobe.kind)) result = sample_toon_lobe(lobe, n, wo, disk, radiance);
@@ -221,12 +244,26 @@ LobeValue microfacet_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     return value;
 }
 
+#ifdef ASHIKHMIN_LOBES
+LobeValue ashikhmin_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
+    float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
+    vec3 h = normalize(wi + wo);
+    MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
+    float pdf = phong_distribution(to_frame(frame, h), frame.alpha) / (4.0 * max(dot(h, wo), 1e-6));
+    if (!(cosine_o > 0.0 && cosine_i > 0.0)) return LobeValue(vec3(0.0), 0.0);
+    return LobeValue(lobe.weight * (pdf / max(cosine_o, cosine_i)), pdf);
+}
+#endif
+
 LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 #ifdef HAIR_LOBES
     if (lobe_is_hair(lobe.kind)) {
         HairValue hair = hair_value(lobe, n, wo, wi);
         return LobeValue(hair.scattered / max(abs(dot(wi, n)), 1e-20), hair.pdf);
     }
+#endif
+#ifdef ASHIKHMIN_LOBES
+    if (lobe_is_ashikhmin(lobe)) return ashikhmin_value(lobe, n, wo, wi);
 #endif
     face_sheet(lobe, n, wi);
     if (lobe_has_facets(lobe.kind)) return microfacet_value(lobe, n, wo, wi);

@@ -36,12 +36,12 @@ Microfacets stretched_microfacets(ClosureBuilder builder, vec3 normal, float rou
     return anisotropic_microfacets(builder, normal, unit(roughness), aspect, tangent, rotation);
 }
 
-// GGX stands in for Ashikhmin and Shirley's distribution.
 void node_bsdf_glossy(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
                       float anisotropy, float rotation, vec3 normal, vec3 tangent) {
     Microfacets at = stretched_microfacets(builder, normal, roughness, anisotropy, tangent, rotation);
     if (distribution == 0) at.anisotropy |= BECKMANN;
-    add_mirror(builder, at, weight, max(color, 0.0), distribution == 3);
+    if (distribution == 2) add_phong_mirror(builder, at, weight, max(color, 0.0));
+    else add_mirror(builder, at, weight, max(color, 0.0), distribution == 3);
 }
 
 void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,

@@ -36,10 +36,6 @@ lit(
     "Glossy",
     "ASHIKHMIN_SHIRLEY, roughness 0.3",
     shader("BsdfAnisotropic", COLOR | {"Roughness": 0.3}, distribution="ASHIKHMIN_SHIRLEY"),
-    mean=0.04,
-    block=0.15,
-    warns=True,
-    reason="GGX stands in",
 )
 lit(
     "Glossy",

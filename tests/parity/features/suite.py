@@ -2,6 +2,7 @@
 """All rows: importing the families puts them on the list."""
 
 from . import (  # noqa: F401
+    ashikhmin_shirley,
     cameras,
     coordinates,
     displacement,
