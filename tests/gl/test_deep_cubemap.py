@@ -230,7 +230,7 @@ def test_broken_triangles_do_no_harm(context, library):
 
 
 def test_lists_that_are_too_short_grow(context, library, meshes, monkeypatch):
-    monkeypatch.setattr(deep_cubemap, "_expected", lambda triangle_count: {"tile": 200})
+    monkeypatch.setattr(deep_cubemap, "_expected", lambda *_: {"tile": 200})
     center = meshes[len(meshes) // 2, 0]  # on a dense mesh: a long core list
     rays = ray_records(*make_rays("past the center", 20_000, center, seed=16))
     with TracedTriangles(context, library, meshes, center) as scene:
@@ -281,7 +281,7 @@ def test_lists_that_are_longer_than_a_block(context, library, meshes, monkeypatc
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
         expected, counts, finest = scene.trace(rays), scene.cubemap.counts, scene.cubemap.resolution
     limit = 1 << 17  # enough for cells and bins
-    monkeypatch.setattr(deep_cubemap, "_expected", lambda triangle_count: {"tile": 200})
+    monkeypatch.setattr(deep_cubemap, "_expected", lambda *_: {"tile": 200})
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
         assert scene.cubemap.counts == counts and scene.cubemap.resolution == finest
