@@ -35,7 +35,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...gl.texel_sources import DEFINE as TEXEL_BUFFERS
-from ...scene.errors import DeviceError
+from ...scene.errors import DeviceError, DeviceLostError
 from ..common import records  # noqa: F401  the kernels include Ray and Hit
 from ..common.known import known
 from ..common.living_paths import LivingPaths
@@ -146,7 +146,7 @@ _CLUSTERED = {1 << 24: 8, 1 << 20: 4}
 """In scenes of at least so many triangles, how many a cluster has at most: docs/benchmarks/instances.md."""
 _LISTED_BY_CLUSTERS = {1: 1.0, 2: 0.7, 4: 0.5, 8: 0.3}
 """Lengths of lists over those without clusters, by that."""
-_SURELY = 2 / 3
+_SURELY = 0.8
 """Of the length that is expected of a list, what it has where it is long."""
 _MOST_STARTS = 1 << 26
 """Places of entries and bins that cells can name (shaders/deep_cubemap/cells.glsl)."""
@@ -173,8 +173,8 @@ class DeepCubemap(BufferSet):
     same behind; None takes the one that is faster, found by trying both with the first scene of a thousand triangles.
     ``least_gain``: cells are divided where that leaves so many fewer triangles in each.
     ``most_bins``: depth bins that a cell may have at most.
-    ``most_clustered``: triangles, 1, 2, 4 or 8, that entries of cells may stand for together, which changes no hit; None
-    leaves it to how many the scene has.
+    ``most_clustered``: triangles, 1, 2, 4 or 8, that entries of cells may stand for together, which changes no hit;
+    None leaves it to how many the scene has.
     ``texel_buffers``: whether rays read cells, entries and triangles as texels, which changes no hit; None leaves it
     to the kind of driver. What is too long for that is read from storage blocks.
     """
@@ -355,13 +355,18 @@ class DeepCubemap(BufferSet):
 
     def _expect(self, triangle_count: int) -> None:
         """Room for an ordinary scene of so many triangles, as far as the device allows it. Lists are longer than a
-        block only where they surely must be."""
+        block only where they surely must be, which saves building in vain until they are."""
         limit = self._context.storage_block_limit
         for name, expected in _expected(triangle_count, _LISTED_BY_CLUSTERS[self._most_clustered]).items():
             size = 16 * CELL.size if name == "tile" else self._lists[name].item_size
             most = limit // size - 2
             if name != "tile" and _SURELY * expected > most:
-                most = self._lists[name].limit // size - 2
+                try:
+                    self._grow(name, min(expected, self._lists[name].limit // size - 2))
+                except DeviceLostError:
+                    raise
+                except DeviceError as error:
+                    log.debug("%s", error)  # coarser cells may do with fewer
             self._grow(name, min(expected, most))
 
     def _grow(self, name: str, count: int) -> None:

@@ -226,8 +226,10 @@ class Geometry(BufferSet):
             for instance, length in zip(instances, lengths.tolist()):
                 sums[instance.object_name] += length
             most = ", ".join(f'{count:,} of "{name}"' for name, count in sums.most_common(_OBJECTS_NAMED))
+            room = self.triangles.limit // self.triangles.item_size
+            held = f"; {room:,} have room in one buffer" if self.triangle_count > room else ""
             raise DeviceError(
-                f"{error} (of {self.triangle_count:,} triangles, instances counted each: {most})"
+                f"{error} (of {self.triangle_count:,} triangles, instances counted each: {most}{held})"
             ) from error
 
     def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
