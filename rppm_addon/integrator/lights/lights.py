@@ -17,11 +17,11 @@ from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..common.records import LIGHT, LIGHT_LINK, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
+from ..common.records import LIGHT, LIGHT_LINK, LIGHT_NODE, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
-from .emitters import Emitters
+from .emitters import Emitters, refuse_too_many
 from .environment import Environment
 from .guide import Guide
 from .light_entry import light_entry
@@ -185,7 +185,8 @@ class Lights(BufferSet):
         photons: of that iteration, no more than the scene's. keep_world, keep_light_objects: the world, or
         all light objects, are those of the last call. keep_learned: the lights are those of the last call at another
         time, and what was learned of them holds.
-        Raises SceneError when all lights have a photon weight of 0.
+        Raises SceneError when all lights have a photon weight of 0, and DeviceError where more triangles emit than the
+        device has room for.
         """
         self.times_built += 1
         self.scene_radius = radius = max(geometry.radius * 1.001, 1e-6)
@@ -217,6 +218,7 @@ class Lights(BufferSet):
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
             add(source_name(light.name), entry, power, light.photon_weight, light.light_group)
+        refuse_too_many(scene, geometry, materials, self._light_tree.refuse)
         self.emitters.build(scene, geometry, materials, resolve, links)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
@@ -267,6 +269,7 @@ class Lights(BufferSet):
         sets = links.records["light_sets"]
         self.emitters.leaves["light_sets"] = sets[self.emitters.links]
         self._light_tree.build(table, self.emitters.leaves, sets)
+        self.emitters.leaves = LIGHT_NODE.zeros(0)  # as large as the triangles themselves
         self._parameters = {
             "scene_center": geometry.center,
             "scene_radius": radius,
