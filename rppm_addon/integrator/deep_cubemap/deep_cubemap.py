@@ -322,7 +322,7 @@ class DeepCubemap(BufferSet):
         """And their defines."""
         fits = all(self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS)
         is_asked_for = self._texel_buffers or self._entries.size > self._context.storage_block_limit
-        defines = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
+        defines: dict[str, object] = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
         defines |= self._cluster_defines
         return defines | {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else defines
 
