@@ -24,16 +24,16 @@ def test_too_many_emitters_are_refused_before_they_are_asked(mapper, monkeypatch
         instance = dataclasses.replace(scene.instances[5], matrix=placed(0.2 * number, 0.0, 0.5, 0.1))
         scene.instances.append(dataclasses.replace(instance, materials=[glowing], object_name=name))
     asked = []
-    monkeypatch.setattr(LightTree, "refuse", lambda tree, count: asked.append(count))
+    monkeypatch.setattr(LightTree, "refuse", lambda tree, *counts: asked.append(counts))
     mapper.build(scene)
-    assert asked == [3 * ball]
+    assert asked == [(1, 3 * ball)]
     monkeypatch.undo()
     places = 1 << (3 * ball - 1).bit_length()
     nodes = mapper.device_scene.lights._light_tree.nodes
     assert nodes.size == 64 * 2 * places + 64 * 2  # of the tree, and of that of the light under the ceiling
     asked.clear()
     mapper.device_scene.forget()
-    monkeypatch.setattr(type(nodes), "limit", 64 * 2 * places - 1)
+    monkeypatch.setattr(type(nodes), "limit", nodes.size - 1)
     monkeypatch.setattr(type(mapper.device_scene.lights.emitters), "build", lambda *_: pytest.fail("asked"))
     most = f'{2 * ball:,} of "moss", {ball} of "lamp".$'
     said = f"light tree needs .* let fewer triangles emit .* .of {3 * ball:,} that do, .* {most}"

@@ -55,9 +55,9 @@ class LightTree(BufferSet):
         for first, part in zip(firsts.tolist(), parts):  # of millions of triangles, no copy of all together
             self.nodes.write(part, LIGHT_NODE.size * first)
 
-    def refuse(self, triangles: int) -> None:
-        """Raise DeviceError where the device has no room for so many emissive triangles."""
-        self.nodes.refuse_items(2 * _places(triangles))
+    def refuse(self, lights: int, triangles: int) -> None:
+        """Raise DeviceError where the device has no room for so many emissive triangles beside so many lights."""
+        self.nodes.refuse_items(sum(2 * _places(leaves) for leaves in (lights, triangles) if leaves) + lights)
 
 
 LIGHT_TREE_PARAMETERS = {

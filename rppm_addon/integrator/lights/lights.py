@@ -218,7 +218,9 @@ class Lights(BufferSet):
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
             add(source_name(light.name), entry, power, light.photon_weight, light.light_group)
-        refuse_too_many(scene, geometry, materials, self._light_tree.refuse)
+        refuse_too_many(
+            scene, geometry, materials, lambda triangles: self._light_tree.refuse(len(scene.lights), triangles)
+        )
         self.emitters.build(scene, geometry, materials, resolve, links)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
