@@ -28,7 +28,7 @@ from .light_entry import light_entry
 from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
-from .sources import ENVIRONMENT, SURFACES, source_name
+from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name
 
 log = logging.getLogger(__name__)
 
@@ -202,7 +202,7 @@ class Lights(BufferSet):
                 names.append(name)
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
-                weights.append(float(np.mean(power)) * max(weight, 0.0))
+                weights.append(max(weight, 0.0))
                 groups.append(group)
 
         if not keep_light_objects:
@@ -303,15 +303,16 @@ class Lights(BufferSet):
 
     def begin(self, photons: int) -> None:
         """Forget what photons were good for, as before the first iteration, and share so many among the lights."""
-        self._share_photons(self._weights, self._most_photons)
+        even = np.ones(len(self._weights))
+        self._share_photons(even, self._most_photons)
         self.guide.build(self.table, self._most_photons)
         if photons != self._most_photons:
-            self._share_photons(self._weights, photons)
+            self._share_photons(even, photons)
         self._lights.upload(self.table)
 
-    def _share_photons(self, weights: np.ndarray, photons: int) -> None:
+    def _share_photons(self, contributions: np.ndarray, photons: int) -> None:
         self._photons = photons
-        counts = share_out(weights, photons)
+        counts = share_out(photon_shares(np.array(self._powers), self._weights * contributions), photons)
         self.table["photon_count"] = counts
         self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
@@ -322,12 +323,12 @@ class Lights(BufferSet):
     def learn(self, photons: int) -> float:
         """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.
 
-        Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
+        Lights get photons by the power that is of use (guide.py), and a part by use alone. Returns how many times more photons should be
         of use from now on.
         """
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
-        self._share_photons(self._weights * weights, photons)
+        self._share_photons(weights, photons)
         self._lights.upload(self.table)
         return float(self.table["photon_count"] @ contributed[:, 1] / before)
 
@@ -336,7 +337,7 @@ class Lights(BufferSet):
         iteration had so many photons."""
         weights = self.guide.restore(tallies, learned)
         if weights is not None:
-            self._share_photons(self._weights * weights, photons)
+            self._share_photons(weights, photons)
             self._lights.upload(self.table)
 
     @property
