@@ -323,8 +323,8 @@ class Lights(BufferSet):
     def learn(self, photons: int) -> float:
         """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.
 
-        Lights get photons by the power that is of use (guide.py), and a part by use alone. Returns how many times more photons should be
-        of use from now on.
+        Lights get photons by the power that is of use (guide.py), and a part by use alone. Returns how many times more
+        photons should be of use from now on.
         """
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
