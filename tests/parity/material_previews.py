@@ -3,11 +3,12 @@
 
 FOLDER holds .blend files with materials; OUT gets the sheets sheet_01.png, ... and table.txt. As many materials as
 --count says are drawn at random, always the same ones for a --seed, and put on balls with texture coordinates over
-a checkered floor, under an area light and a gray world, twenty in a picture. Each sheet has RPPM's row of pictures
+a checkered floor, under an area light and a gray world, twenty in a picture; with --alone under the light and a sky, so
+that nothing but the material differs, and less light has come a long way. Each sheet has RPPM's row of pictures
 above Cycles'. The table says for each material RPPM's mean over Cycles' on the ball, the standard error of
-both together as --seeds independent pictures tell it, the same by channel, the difference of 8x8 blocks of the whole picture as a share of
-Cycles' mean, and the warnings. --names renders the materials of those names only (with commas between them), --first
-leaves out what earlier pieces have rendered.
+both together as --seeds independent pictures tell it, the same by channel, the difference of 8x8 blocks of the whole
+picture as a share of Cycles' mean, and the warnings. --names renders the materials of those names only (with commas
+between them), --first leaves out what earlier pieces have rendered.
 """
 
 import argparse
@@ -212,7 +213,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--iterations", type=int, default=16, help="RPPM's for each seed")
     parser.add_argument("--photons", type=int, default=8192, help="RPPM's for each iteration")
-    parser.add_argument("--alone", action="store_true", help="no floor: a sky and the light, so that 2 %% show soon")
+    parser.add_argument("--alone", action="store_true", help="no floor: a sky and the light")
     parser.add_argument("--samples", type=int, default=32, help="Cycles' for each seed")
     parser.add_argument("--path-length", type=int, default=0, help="RPPM's of all paths; 0 is the default of each")
     parser.add_argument("--specular-roughness", type=float, help="RPPM's")
