@@ -398,7 +398,10 @@ class _Compiler:
         number = self._number(index)
         value = f"n{number}_normal"
         scope.known[index] = {"normal": value}
-        if scope.depth >= _DEEPEST_BUMP:
+        displaced = self._graph.nodes[index].attribute == UNDISPLACED
+        # As in Cycles: what has the same height everywhere hands its normal on, of whatever length.
+        level = not displaced and not isinstance(self._graph.nodes[index].inputs.get("height"), Link)
+        if level or scope.depth >= _DEEPEST_BUMP:
             scope.lines.append(f"vec3 {value} = {self._input(scope, index, 'normal', *kind.inputs['normal'])};")
             return
         function = f"height_{number}_{scope.depth}"
@@ -413,7 +416,7 @@ class _Compiler:
         width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
         there, before, ways, after, along = "surface_beside(surface, way)", [], [], [], "along"
-        if self._graph.nodes[index].attribute == UNDISPLACED:  # as Cycles: where the surface was, in object space
+        if displaced:  # as Cycles: where the surface was, in object space
             layer, normals = (
                 f"constant_index(first + {self._place((index, f'<{name}>'), [Resource('attribute', index, name)])}u)"
                 for name in (UNDISPLACED, SMOOTH_NORMALS)

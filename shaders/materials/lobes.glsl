@@ -25,7 +25,8 @@ Microfacets isotropic_microfacets(ClosureBuilder builder, vec3 normal, float rou
     return Microfacets(n, packed_normal, ISOTROPIC, roughness * roughness, clamp(dot(n, builder.viewer), 0.0, 1.0));
 }
 
-// alpha_x = alpha / aspect lies along the tangent turned by `rotation` full turns, alpha_y = alpha aspect across.
+// alpha_x = alpha / aspect lies along the tangent turned by `rotation` full turns, alpha_y = alpha aspect across; as in
+// Cycles neither is more than 1.
 Microfacets anisotropic_microfacets(ClosureBuilder builder, vec3 normal, float roughness, float aspect, vec3 tangent,
                                     float rotation) {
     Microfacets made = isotropic_microfacets(builder, normal, roughness);
@@ -40,6 +41,7 @@ Microfacets anisotropic_microfacets(ClosureBuilder builder, vec3 normal, float r
         turned = cross(made.normal, turned);
         aspect = 1.0 / aspect;
     }
+    if (made.alpha > aspect) made.alpha = aspect = sqrt(made.alpha * aspect);
     made.anisotropy = pack_anisotropy(made.normal, turned, aspect);
     return made;
 }

@@ -22,8 +22,9 @@ struct Surface {
     uint instance;      // NO_INSTANCE: a world
     bool backfacing;
     uint ray;           // one or more of the bits of common/ray_kinds.glsl
-    float ray_length;
+    float ray_length;   // from the camera or the last event that was not straight through
     uint ray_depth;
+    uint transparent_depth;
 };
 
 void triangle_points(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {

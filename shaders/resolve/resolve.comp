@@ -40,6 +40,14 @@ uint path_flags(uint index) {
            ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
 }
 
+// What the camera sees through transparent surfaces is as far as without them; from the clip start on.
+float length_from_camera(Surface surface) {
+    vec3 at = (parameters.world_to_camera * vec4(surface.position, 1.0)).xyz;
+    vec3 way = mat3(parameters.world_to_camera) * surface.viewer;
+    if (parameters.panoramic != 0u) return length(at) - parameters.clip_start;
+    return (abs(at.z) - parameters.clip_start) / max(abs(way.z), 1e-6);
+}
+
 // flags: of the path that came there.
 Surface surface_at(Ray ray, Hit hit, uint flags) {
     vec3 v0, v1, v2;
@@ -68,6 +76,13 @@ Surface surface_at(Ray ray, Hit hit, uint flags) {
                 : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
     surface.ray_length = hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
+    surface.transparent_depth = 0u;
+    bool seen_through = parameters.path_kind == PATH_OF_CAMERA && (flags & PATH_STRAIGHT) != 0u;
+    if (seen_through && parameters.segment > 0u) {
+        surface.ray_length = length_from_camera(surface);
+        surface.ray_depth = 0u;
+        surface.transparent_depth = parameters.segment;
+    }
 #ifdef ROUND_SHAPES
     make_round(surface);
 #endif

@@ -3,11 +3,12 @@
 
 FOLDER holds .blend files with materials; OUT gets the sheets sheet_01.png, ... and table.txt. As many materials as
 --count says are drawn at random, always the same ones for a --seed, and put on balls with texture coordinates over
-a checkered floor, under an area light and a gray world, twenty in a picture. Each sheet has RPPM's row of pictures
-above Cycles'. The table says for each material RPPM's mean over Cycles' on the ball, by channel, the standard error of
-both together as --seeds independent pictures tell it, the difference of 8x8 blocks of the whole picture as a share of
-Cycles' mean, and the warnings. --names renders the materials of those names only (with commas between them), --first
-leaves out what earlier pieces have rendered.
+a checkered floor, under an area light and a gray world, twenty in a picture; with --alone under the light and a sky, so
+that nothing but the material differs, and less light has come a long way. Each sheet has RPPM's row of pictures
+above Cycles'. The table says for each material RPPM's mean over Cycles' on the ball, the standard error of
+both together as --seeds independent pictures tell it, the same by channel, the difference of 8x8 blocks of the whole
+picture as a share of Cycles' mean, and the warnings. --names renders the materials of those names only (with commas
+between them), --first leaves out what earlier pieces have rendered.
 """
 
 import argparse
@@ -48,6 +49,11 @@ class Preview:
     def ratio(self) -> np.ndarray:
         """(3,) means on the ball, RPPM's over Cycles'."""
         return _on_ball(self.rppm).mean(axis=0) / _on_ball(self.cycles).mean(axis=0)
+
+    @property
+    def mean(self) -> float:
+        """The ratio of the channels' sums."""
+        return float(_on_ball(self.rppm).sum() / _on_ball(self.cycles).sum())
 
     @property
     def error(self) -> float:
@@ -111,11 +117,31 @@ def _floor() -> None:
     bpy.context.object.data.materials.append(surface)
 
 
-def build(previews: list[Preview]) -> None:
+def _sky(world: bpy.types.World) -> None:
+    """Brown below, bright above: even enough to be quiet, uneven enough to show where light goes."""
+    tree = world.node_tree
+    coordinates, gradient, ramp = (
+        tree.nodes.new("ShaderNode" + name) for name in ("TexCoord", "SeparateXYZ", "ValToRGB")
+    )
+    height = tree.nodes.new("ShaderNodeMapRange")
+    height.inputs["From Min"].default_value, height.inputs["From Max"].default_value = -1.0, 1.0
+    ramp.color_ramp.elements[0].color = (0.25, 0.15, 0.1, 1.0)
+    ramp.color_ramp.elements[1].color = (0.4, 0.6, 0.9, 1.0)
+    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    tree.links.new(coordinates.outputs["Generated"], gradient.inputs[0])
+    tree.links.new(gradient.outputs["Z"], height.inputs["Value"])
+    tree.links.new(height.outputs["Result"], ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], background.inputs["Color"])
+
+
+def build(previews: list[Preview], alone: bool = False) -> None:
     """The scene of up to COLUMNS x ROWS materials; an orthographic camera gives each its square."""
-    scene = new_scene(world=0.25)
+    scene = new_scene(world=0.7 if alone else 0.25)
     scene.render.resolution_x, scene.render.resolution_y = COLUMNS * CELL, ROWS * CELL
-    _floor()
+    if alone:
+        _sky(scene.world)
+    else:
+        _floor()
     for number, surface in enumerate(_append(previews)):
         column, row = number % COLUMNS, number // COLUMNS
         x = (column - (COLUMNS - 1) / 2) * SPACING
@@ -134,13 +160,13 @@ def build(previews: list[Preview]) -> None:
     made.data.type, made.data.ortho_scale = "ORTHO", COLUMNS * SPACING
 
 
-def render(renderer: Renderer, previews: list[Preview], seeds: int, samples: int, settings: dict) -> None:
+def render(renderer: Renderer, previews: list[Preview], seeds: int, samples: int, alone: bool, settings: dict) -> None:
     """Fill in both engines' pictures and the warnings of materials that share a scene."""
-    build(previews)
+    build(previews, alone)
     scene = export_scene(bpy.context.evaluated_depsgraph_get())
     rppm, cycles = [], render_cycles(samples, seeds)
     for seed in range(seeds):
-        scene.settings = scene.settings.with_values(seed=seed, photons=8192, **settings)
+        scene.settings = scene.settings.with_values(seed=seed, **settings)
         result = renderer.render(scene)
         rppm.append(result.frame.combined[..., :3].astype(np.float64))
     for number, preview in enumerate(previews):
@@ -169,7 +195,7 @@ def sheet(previews: list[Preview], scale: int = 4) -> Image.Image:
         x, row = number % COLUMNS * (side + 2), number // COLUMNS
         for part, pictures in enumerate((preview.rppm, preview.cycles)):
             y = (2 * row + part) * (side + LABEL)
-            text = preview.name[:30] if part == 0 else f"Cycles; ratio {preview.ratio.mean():.3f}"
+            text = preview.name[:30] if part == 0 else f"Cycles; ratio {preview.mean:.3f}"
             draw.text((x + 2, y), text, fill="black")
             made.paste(_encoded(pictures.mean(axis=0)).resize((side, side), Image.Resampling.NEAREST), (x, y + LABEL))
     return made
@@ -186,6 +212,8 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--iterations", type=int, default=16, help="RPPM's for each seed")
+    parser.add_argument("--photons", type=int, default=8192, help="RPPM's for each iteration")
+    parser.add_argument("--alone", action="store_true", help="no floor: a sky and the light")
     parser.add_argument("--samples", type=int, default=32, help="Cycles' for each seed")
     parser.add_argument("--path-length", type=int, default=0, help="RPPM's of all paths; 0 is the default of each")
     parser.add_argument("--specular-roughness", type=float, help="RPPM's")
@@ -196,7 +224,7 @@ def main() -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     names = {name for name in arguments.names.split(",") if name}
     previews = chosen(arguments.folder, arguments.count, arguments.seed, names)
-    settings = {"iterations": arguments.iterations}
+    settings = {"iterations": arguments.iterations, "photons": arguments.photons}
     if arguments.path_length:
         settings |= {"camera_path_length": arguments.path_length, "photon_path_length": arguments.path_length}
     if arguments.specular_roughness is not None:
@@ -205,13 +233,13 @@ def main() -> None:
     with Renderer() as renderer:
         for first in range(arguments.first, len(previews), COLUMNS * ROWS):
             group = previews[first : first + COLUMNS * ROWS]
-            render(renderer, group, arguments.seeds, arguments.samples, settings)
+            render(renderer, group, arguments.seeds, arguments.samples, arguments.alone, settings)
             sheet(group).save(arguments.out / f"sheet_{first // (COLUMNS * ROWS) + 1:02d}.png")
             before = len(lines)
             for preview in group:
                 ratio = " ".join(f"{value:6.3f}" for value in preview.ratio)
-                error = f"{preview.error:.3f}"
-                lines.append(f"{preview.name[:44]:44s} {ratio} +- {error}  {preview.difference:.3f}")
+                mean = f"{preview.mean:6.3f} +- {preview.error:.3f}"
+                lines.append(f"{preview.name[:44]:44s} {mean}  {ratio}  {preview.difference:.3f}")
                 lines += [f"    {text}" for text in preview.warnings]
             (arguments.out / "table.txt").write_text("\n".join(lines) + "\n")
             print("\n".join(lines[before:]), flush=True)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What photons are aimed at: the objects that make caustics."""
 
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
+from ...materials.compiler import LUMINANCE
 from ...materials.nodes import KINDS
 from ...scene.materials import Material
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
@@ -23,9 +24,12 @@ _SPECULAR = {"bsdf_glass", "bsdf_refraction", "bsdf_glossy", "bsdf_metallic", "b
 
 
 def _number(node: ShaderNode, name: str, unknown: float) -> float:
-    """A constant input; what varies counts as ``unknown``."""
+    """A constant input, of a color its luminance; what varies counts as ``unknown``."""
     value = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
-    return unknown if isinstance(value, Link) else float(np.mean(np.asarray(value)))
+    if isinstance(value, Link):
+        return unknown
+    numbers = np.ravel(cast(Any, value))
+    return float(numbers @ LUMINANCE if len(numbers) == 3 else numbers[0])
 
 
 def _makes_caustics(node: ShaderNode) -> bool:
@@ -50,8 +54,8 @@ def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
         node = graph.nodes[link.node]
         shaders = node.inputs.get("shader"), node.inputs.get("shader_001")
         if node.kind == "mix_shader":
-            factor = node.inputs.get("fac", 0.5)
-            shares = (1.0, 1.0) if isinstance(factor, Link) else (1.0 - cast(float, factor), cast(float, factor))
+            factor = _number(node, "fac", np.nan)
+            shares = (1.0, 1.0) if np.isnan(factor) else (1.0 - factor, factor)
             pending += [(shader, weight * share) for shader, share in zip(shaders, shares, strict=True)]
         elif node.kind == "add_shader":
             pending += [(shader, weight) for shader in shaders]

@@ -40,9 +40,11 @@ vec3 rough_diffuse_factor(uint packed_roughness, vec3 n, vec3 v, vec3 l) {
 }
 
 // Slopes that a normal map hints at shadow diffuse light (Estevez, Lecocq and Stein 2019); smooth_normal: without the
-// map.
+// map. As in Cycles nothing comes from where only one of both normals has it in front, with a map that does not turn
+// the normal to the surface's other side.
 float bump_shadowing(vec3 smooth_normal, vec3 normal, vec3 l) {
-    float part = dot(smooth_normal, normal), light = max(abs(dot(smooth_normal, l)), 1e-6);
+    float part = dot(smooth_normal, normal), side = dot(smooth_normal, l), light = max(abs(side), 1e-6);
+    if (part * side * dot(normal, l) < 0.0) return 0.0;
     float alpha2 = min(0.125 * (1.0 / max(part * part, 1e-6) - 1.0), 1.0);
     return 2.0 / (1.0 + sqrt(1.0 + alpha2 * max(1.0 / (light * light) - 1.0, 0.0)));
 }

@@ -149,9 +149,10 @@ void node_light_path(Surface surface, out float is_camera_ray, out float is_shad
     is_singular_ray = (surface.ray & RAY_SINGULAR) != 0u ? 1.0 : 0.0;
     is_transmission_ray = (surface.ray & RAY_TRANSMISSION) != 0u ? 1.0 : 0.0;
     is_reflection_ray = is_glossy_ray > 0.0 || is_diffuse_ray > 0.0 ? 1.0 - is_transmission_ray : 0.0;
-    is_shadow_ray = is_volume_scatter_ray = portal_depth = transparent_depth = 0.0;
+    is_shadow_ray = is_volume_scatter_ray = portal_depth = 0.0;
     ray_length = surface.ray_length;
     ray_depth = float(surface.ray_depth);
+    transparent_depth = float(surface.transparent_depth);
     diffuse_depth = is_diffuse_ray > 0.0 ? 1.0 : 0.0;
     glossy_depth = is_glossy_ray * ray_depth;
     transmission_depth = is_transmission_ray * ray_depth;

@@ -280,6 +280,11 @@ value("Bump", "noise", _bump({"Distance": 0.3}), 0.5, 0.5)
 value("Bump", "inverted, strength 0.6", _bump({"Distance": 0.3, "Strength": 0.6}, invert=True), 0.5, 0.5)
 value("Bump", "filter width 1", _bump({"Distance": 0.3, "Filter Width": 1.0}), 0.5, 0.5)
 value("Bump", "no height", lambda net: net.out("Bump"), 0.5, 0.5)
+value(
+    "Bump",
+    "the same height everywhere, over a gray",
+    lambda net: net.out("Bump", inputs={"Height": 6.0, "Normal": net.out("TexNoise", inputs={"Scale": 4.0})}),
+)
 value("Bump", "seen from behind", _bump({"Distance": 0.3}), 0.5, 0.5, prepare=_turned)
 
 

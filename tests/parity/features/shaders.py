@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes under light: each with its options, Principled socket by socket, mixes, and values that drive them."""
 
+from ..scenes import place, plane
 from .image_textures import image, texture
-from .rows import lit
+from .net import material
+from .rows import lit, value
 
 LONG = {"camera_path_length": 64, "photon_path_length": 24}
 """Settings where light runs through glass: of white glass, roughness 0.2, in a white sky, 24 segments show 0.994, and
@@ -19,6 +21,11 @@ def shader(kind, inputs=None, **properties):
 COLOR = {"Color": (0.8, 0.45, 0.3)}
 lit("Diffuse", "smooth", shader("BsdfDiffuse", COLOR))
 lit("Diffuse", "roughness 0.8", shader("BsdfDiffuse", COLOR | {"Roughness": 0.8}))
+lit(
+    "Diffuse",
+    "a normal of nodes, on the far side of half the ball",
+    lambda net: net.out("BsdfDiffuse", 0, COLOR | {"Normal": net.out("CombineXYZ", inputs={0: 0.5, 1: 0.5, 2: 0.5})}),
+)
 for _roughness in (0.0, 0.25, 0.6):
     for _distribution in ("GGX", "MULTI_GGX") if _roughness else ("GGX",):
         lit(
@@ -42,6 +49,11 @@ lit(
     "anisotropy 0.7, rotated",
     shader("BsdfAnisotropic", COLOR | {"Roughness": 0.4, "Anisotropy": 0.7, "Rotation": 0.1}),
     effort=2,
+)
+lit(
+    "Glossy",
+    "anisotropy 0.8, roughness 0.8",
+    shader("BsdfAnisotropic", COLOR | {"Roughness": 0.8, "Anisotropy": 0.8}),
 )
 for _roughness in (0.0, 0.2):
     lit(
@@ -317,6 +329,30 @@ for _output in LIGHT_PATH:
             )
         )(_output),
     )
+
+
+def _panes() -> None:
+    surface, net = material("Pane")
+    net.output(net.out("BsdfTransparent", inputs={"Color": 1.0}))
+    for away in (-2.2, -3.0):
+        plane(3.0, surface, place((0.2, away, 1.5), (65.0, 0.0, 0.0)))
+
+
+value(
+    "Light Path",
+    "lengths and depths behind two panes",
+    lambda net: net.out(
+        "CombineXYZ",
+        inputs={
+            0: net.out("LightPath", "Ray Length"),
+            1: net.out("LightPath", "Ray Depth"),
+            2: net.out("LightPath", "Transparent Depth"),
+        },
+    ),
+    0.2,
+    prepare=_panes,
+    settings={"camera_path_length": 4},
+)
 lit(
     "Light Path",
     "glass without shadows",
