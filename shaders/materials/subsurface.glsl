@@ -12,16 +12,18 @@ Subsurface material_subsurface = NO_SUBSURFACE;
 const float SHORTEST_RADIUS = 1e-8;
 
 // The albedo of single scattering by which a dipole of the index reflects so much (Jensen et al. 2001, eq. 15), less
-// than 1. a: 4/3 (1 + F) / (1 - F), of the surface's mean reflectance F from within.
+// than 1. a: 4/3 (1 + F) / (1 - F), of the surface's mean reflectance F from within. Bright colors' mean free paths
+// depend on where the halving stops: here as in Cycles, at the last one that was tried.
 vec3 dipole_albedo(vec3 reflected, float a) {
-    vec3 low = vec3(0.0), high = vec3(1.0);
+    vec3 low = vec3(0.0), high = vec3(1.0), middle;
     for (int k = 0; k < 12; ++k) {
-        vec3 middle = 0.5 * (low + high), s = sqrt(3.0 * (1.0 - middle));
+        middle = 0.5 * (low + high);
+        vec3 s = sqrt(3.0 * (1.0 - middle));
         bvec3 less = lessThan(0.5 * middle * (1.0 + exp(-a * s)) * exp(-s), reflected);
         low = mix(low, middle, less);
         high = mix(middle, high, less);
     }
-    vec3 found = mix(0.5 * (low + high), vec3(0.0), lessThan(reflected, vec3(1e-4)));
+    vec3 found = mix(middle, vec3(0.0), lessThan(reflected, vec3(1e-4)));
     return mix(found, vec3(0.999999), greaterThanEqual(reflected, vec3(0.995)));
 }
 

@@ -14,6 +14,7 @@ layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 2) writeonly buffer ExitClosures;
 #include "subsurface/entry.glsl"
+#include "subsurface/surface.glsl"
 
 // Neither is left to fewer paths than this.
 const float LEAST_SHARE = 0.25;
@@ -54,7 +55,9 @@ void main() {
                   scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
     float probability = below_probability(index, closure, part, viewer);
     if (u.w < probability) {
-        begin_walk(index, closure, part, viewer, part.weight / probability, u.xyz);
+        vec3 direction = entered(part, unpack_unit_vector(part.normal), unpack_unit_vector(closure.geometric_normal),
+                                 viewer, u.xyz);
+        begin_walk(index, closure, part, direction, part.weight / probability);
         closure.diffuse = closure.translucent = closure.transparent = closure.emission = vec3(0.0);
         closure.flags &= ~(3u << LOBE_COUNT_SHIFT);
     } else {

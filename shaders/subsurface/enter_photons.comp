@@ -30,9 +30,7 @@ void main() {
     share *= walks ? part.weight / probability : beside / (1.0 - probability);
     photon_paths[index].flux = flux * share;
     if (!walks) return;
-    // Camera paths go in by how they are seen and come out evenly. Photons go the other way; but how far, and how much
-    // of them, is the same the same way round, as if seen from anywhere.
-    vec3 u = vec3(next_random2(random), next_random(random));
-    vec3 viewer = sample_cosine_hemisphere(unpack_unit_vector(part.normal), next_random2(random));
-    begin_walk(index, closure, part, viewer, share * flux / largest(share * flux), u);
+    // Camera paths come out evenly: photons go in so.
+    vec3 direction = -sample_cosine_hemisphere(unpack_unit_vector(closure.geometric_normal), next_random2(random));
+    begin_walk(index, closure, part, direction, share * flux / largest(share * flux));
 }

@@ -45,23 +45,10 @@ void fitted_medium(vec3 reflected, vec3 radius, float g, out vec3 albedo, out ve
     extinction = 1.0 / (max(radius, 1e-16) * (1.0 - g));
 }
 
-// Where a path that comes from a viewer goes on below the surface: refracted by a rough one, or half of those into
-// skin evenly. False where it does not get in.
-bool enters(Subsurface part, vec3 normal, vec3 geometric, vec3 viewer, vec3 u, out vec3 direction) {
-    vec2 disk = sample_disk(u.xy);
-    MicrofacetFrame frame = microfacet_frame(normal, part.alpha, ISOTROPIC);
-    vec3 h = from_frame(frame, sample_visible_normal(to_frame(frame, viewer), frame.alpha, disk));
-    float eta = 1.0 / part.ior, cosine = dot(h, viewer);
-    bool evenly = part.method == SUBSURFACE_RANDOM_WALK_SKIN && u.z < 0.5;
-    direction = evenly ? cosine_hemisphere(-normal, disk)
-              : (eta * cosine - sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0))) * h - eta * viewer;
-    direction = normalize(direction);
-    return (evenly || dot(normal, viewer) > 0.0) && dot(direction, geometric) < 0.0;
-}
-
-// throughput: of light that comes out, the albedo in it; the largest is about 1.
-void begin_walk(uint index, Closure closure, Subsurface part, vec3 viewer, vec3 throughput, vec3 u) {
-    vec3 albedo, extinction, direction;
+// direction: below the surface; a null vector where the path does not get in. throughput: of light that comes out, the
+// albedo in it; the largest is about 1.
+void begin_walk(uint index, Closure closure, Subsurface part, vec3 direction, vec3 throughput) {
+    vec3 albedo, extinction;
     if (part.method == SUBSURFACE_RANDOM_WALK || part.anisotropy < 0.0)
         similar_medium(part.albedo, part.radius, part.anisotropy, albedo, extinction);
     else fitted_medium(part.albedo, part.radius, part.anisotropy, albedo, extinction);
@@ -69,9 +56,7 @@ void begin_walk(uint index, Closure closure, Subsurface part, vec3 viewer, vec3 
     // Light that hardly scatters once would take all steps to the surface: it scatters more, with less weight.
     const float least = 0.2;
     throughput *= mix(vec3(0.0), min(albedo / least, 1.0) / part.albedo, greaterThan(part.albedo, vec3(0.0)));
-    vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    bool inside = enters(part, unpack_unit_vector(part.normal), geometric, viewer, u, direction);
-    bool walks = inside && largest(throughput) > 0.0;
+    bool walks = direction != vec3(0.0) && largest(throughput) > 0.0;
     subsurface_walks[index] = SubsurfaceWalk(throughput, 0u, closure.position, -1.0, extinction, part.anisotropy,
                                              max(albedo, least), closure.shading_normal);
     walk_rays[index] = Ray(closure.position, closure.triangle, direction, walks ? 1.0 : 0.0);

@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where photons come out from below a surface they leave it as from a diffuse one, by what a viewer sees of it there.
-// Those that do not come out are absorbed.
+// Where photons come out from below a surface they leave it by what a viewer sees of it there. Those that do not come
+// out are absorbed.
 
 layout(local_size_x = 64) in;
 
@@ -12,27 +12,39 @@ layout(local_size_x = 64) in;
 #include "common/sampling.glsl"
 layout(std140, binding = 0) uniform Parameters { EnterParameters parameters; };
 #include "subsurface/exit.glsl"
+#include "subsurface/surface.glsl"
 layout(std430, binding = 6) buffer PhotonPaths;
 layout(std430, binding = 7) writeonly buffer Rays;
 layout(std430, binding = 8) writeonly buffer Hits;
 layout(std430, binding = 9) writeonly buffer Photons;
+// Where they have gone in.
+layout(std430, binding = 10) readonly buffer Closures;
 
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     vec3 flux = largest(photon_paths[index].flux) * subsurface_walks[index].throughput;
     Hit hit = exit_hits[index];
-    if (hit.triangle == NO_TRIANGLE || !(largest(flux) > 0.0)) {
+    Exit found;
+    vec3 direction;
+    if (hit.triangle == NO_TRIANGLE) flux = vec3(0.0);
+    else {
+        found = exit_of(index);
+        RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SUBSURFACE_PHOTONS,
+                                                parameters.segment, index);
+        random.key.w += 0xf00u;
+        Subsurface part = unpacked_subsurface(closures[index].lobes[CLOSURE_LOBES - 1]);
+        vec3 u = vec3(next_random2(random), next_random(random));
+        float weight;
+        direction = left_by(part, found.shading, found.geometric, walk_rays[index].direction, u, weight);
+        flux *= weight;
+    }
+    if (!(largest(flux) > 0.0)) {
         photon_paths[index].flux = vec3(0.0);
         rays[index].maximum_distance = 0.0;
         photons[parameters.segment * parameters.path_count + index].scattered_flux = vec3(0.0);
         return;
     }
-    Exit found = exit_of(index);
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SUBSURFACE_PHOTONS,
-                                            parameters.segment, index);
-    random.key.w += 0xf00u;
-    vec3 direction = sample_cosine_hemisphere(found.geometric, next_random2(random));
     photon_paths[index].flux = flux;
     hits[index] = hit;
     // Turned, to look at the surface from where the photon goes (photons/adjoint.comp).
