@@ -3,6 +3,7 @@
 // lint:
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: PORTALS=1
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;
@@ -178,6 +179,10 @@ Arriving arriving_from_light(uint index, uint flags, float radius, Closure closu
     vec3 facing = lit_normal(closure);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
+#ifdef PORTALS
+    // Through portals shadow rays find it as well.
+    environment_irradiance = portal_irradiance(closure.position, environment_irradiance);
+#endif
     LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(index, closure),
                                                   light_set_at(closure.triangle)),
                                          environment_irradiance, u.x, u.y);

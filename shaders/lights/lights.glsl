@@ -47,7 +47,7 @@ vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
 }
 
-// In 1/sr, of shadow rays to the environment.
+// In 1/sr, of shadow rays to the environment where no portals face the point.
 float world_shadow_ray_pdf(vec3 direction) { return parameters.world_selection * world_pdf(direction); }
 
 // Of direct light of the environment, what photons bring to an importon with this radius; rays find the rest.
@@ -292,6 +292,32 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
     return result;
 }
 
+#ifdef PORTALS
+#include "lights/portals.glsl"
+
+// In place of the world the portal that a shadow ray to it is to pass, if it is to pass one.
+uint enter_portal(inout Light light, vec3 point, inout float u) {
+    uint portal = NO_PORTAL;
+    if (light.kind == LIGHT_WORLD) portal = choose_portal(point, u);
+    if (portal == NO_PORTAL) return NO_PORTAL;
+    float fraction = parameters.portal_fraction;
+    bool through = u < fraction;
+    u = clamp(through ? u / fraction : (u - fraction) / (1.0 - fraction), 0.0, 0.99999994);
+    if (!through) return NO_PORTAL;
+    light = portal_at(portal);
+    return portal;
+}
+
+// What was sampled of the world, or of a portal, as a sample of the world by both ways.
+LightSample world_through_portals(LightSample result, uint portal, vec3 point) {
+    if (!(result.pdf > 0.0)) return NO_LIGHT_SAMPLE;
+    result.distance = INFINITY_DISTANCE;
+    result.pdf = mixed_world_pdf(view_portals(point, result.direction, portal), result.direction);
+    result.weight = world_radiance(result.direction) / result.pdf;
+    return result;
+}
+#endif
+
 // Surfaces first, since they need most registers: what else there is would be kept beside.
 LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 point, vec2 u) {
     bool cone = light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_SUN;
@@ -329,7 +355,14 @@ vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
 
 // Of the emissive meshes: of one triangle, by its number among emissive_triangles[].
 LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+#ifdef PORTALS
+    bool world = light.kind == LIGHT_WORLD;
+    uint portal = enter_portal(light, point, u.x);
+#endif
     LightSample result = sample_light_at_one_meter(light, emissive_triangle, point, u);
+#ifdef PORTALS
+    if (world) result = world_through_portals(result, portal, point);
+#endif
     vec3 from_center = point + result.distance * result.direction - light.position;
     if (result.pdf == 0.0 && is_sphere(light)) from_center = sample_facing_half(light.radius, -result.direction, u);
     result.weight *= distance_factor(light, result.distance) * emitted_factor(light, from_center, -result.direction);

@@ -17,7 +17,7 @@ from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..common.records import LIGHT, LIGHT_LINK, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
+from ..common.records import LIGHT, LIGHT_LINK, LIGHT_SOFT, LIGHT_THROUGH_PORTALS, NO_LIGHT_GROUP, LightShape
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
@@ -28,6 +28,7 @@ from .light_entry import light_entry
 from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
+from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal
 from .sources import ENVIRONMENT, SURFACES, source_name
 
 log = logging.getLogger(__name__)
@@ -49,6 +50,7 @@ LIGHT_PARAMETERS = {
     "mesh_light": "uint",
     "world_light": "uint",
     **LIGHT_TREE_PARAMETERS,
+    **PORTAL_PARAMETERS,
     "links_lights": "uint",
     "world_visibility": "uint",
     "world_bounces": "uint",
@@ -101,7 +103,8 @@ class Lights(BufferSet):
         self.target_count = 0
         self.table = LIGHT.zeros(0)
         """LIGHT records, all lights'."""
-        self._weights = np.zeros(0)
+        self._portals: Portals | None = None
+        self._first_weights = self._weights = np.zeros(0)
         self._names: list[str] = []
         self._powers: list[float] = []
         self._parameters: dict[str, object] = {}
@@ -119,6 +122,11 @@ class Lights(BufferSet):
         """The rays that see the world."""
         self.world_group = NO_LIGHT_GROUP
         """The world's light group by number."""
+
+    @property
+    def portals(self) -> Portals:
+        """Those of the scene, once it was built."""
+        return known(self._portals)
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -193,6 +201,7 @@ class Lights(BufferSet):
         entries: list[np.ndarray] = []
         powers: list[float] = []
         weights: list[float] = []
+        first_weights: list[float] = []
         groups: list[str] = []
         links = LightLinkTable()
 
@@ -202,11 +211,14 @@ class Lights(BufferSet):
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(weight, 0.0))
+                first_weights.append(weights[-1])
                 groups.append(group)
 
         if not keep_light_objects:
             self.light_maps.build(scene.lights, scene.images, materials)
         for index, light in enumerate(scene.lights):
+            if is_portal(light):
+                continue
             entry, power = light_entry(light, radius)
             entry["link"] = links.of_light(light)
             nodes = self.light_maps.nodes.get(index)
@@ -231,17 +243,26 @@ class Lights(BufferSet):
         entry["max_bounces"] = world_bounces
         power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
         add(ENVIRONMENT, entry, power, group=scene.world.light_group)
+        self._portals = Portals(scene.lights, self.environment, radius)
+        if self._portals.power > 0.0:
+            # The same light as the world's, which all but its photons take by that one: so it has no power.
+            through = entry.copy()
+            through["flags"] |= LIGHT_THROUGH_PORTALS
+            add(ENVIRONMENT, through, np.full(3, self._portals.power), group=scene.world.light_group)
+            powers[-1], both = 0.0, first_weights[-2]
+            first_weights[-2:] = (1.0 - FIRST_PHOTON_FRACTION) * both, FIRST_PHOTON_FRACTION * both
         if not entries:
             # As in an animation whose lights go out: the picture is black, as Cycles' is.
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
-            entries, powers, weights, groups = [entry], [1.0], [1.0], [""]
+            entries, powers, weights, first_weights, groups = [entry], [1.0], [1.0], [1.0], [""]
         if sum(weights) <= 0:
             raise SceneError("all lights have a photon weight of 0; raise that of one")
 
         kept = self.table if keep_learned and names == self._names else None
         self._names, self._powers, self._power = names, powers, sum(powers)
         # By power, half of it evenly: what does not choose by the point, and MIS weights.
-        selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
+        shining = np.array(powers) > 0
+        selection = np.where(shining, 0.5 * np.array(powers) / sum(powers) + 0.5 / shining.sum(), 0.0)
         table = np.array(entries, LIGHT.dtype)
         table["selection_probability"] = selection
         table["selection_end"] = np.cumsum(selection)
@@ -253,9 +274,9 @@ class Lights(BufferSet):
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
                 table[column] = kept[column]
-            self._lights.upload(table)
+            self._upload_table()
         else:
-            self._weights = np.array(weights)
+            self._weights, self._first_weights = np.array(weights), np.array(first_weights)
             self.begin(photons)
         targets = caustic_targets(scene, geometry)
         self.target_count = len(targets)
@@ -281,6 +302,8 @@ class Lights(BufferSet):
             "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
+            **self._portals.parameters,
+            "portal_light": len(entries) - 1,
             "links_lights": self.links_lights,
             "world_visibility": int(self.world_visibility),
             "world_bounces": world_bounces,
@@ -298,11 +321,15 @@ class Lights(BufferSet):
 
     def begin(self, photons: int) -> None:
         """Forget what photons were good for, as before the first iteration, and share so many among the lights."""
-        self._share_photons(self._weights, self._most_photons)
+        self._share_photons(self._first_weights, self._most_photons)
         self.guide.build(self.table, self._most_photons)
         if photons != self._most_photons:
-            self._share_photons(self._weights, photons)
-        self._lights.upload(self.table)
+            self._share_photons(self._first_weights, photons)
+        self._upload_table()
+
+    def _upload_table(self) -> None:
+        portals = self.portals.records
+        self._lights.upload(np.concatenate([self.table, portals]) if len(portals) else self.table)
 
     def _share_photons(self, weights: np.ndarray, photons: int) -> None:
         self._photons = photons
@@ -323,7 +350,7 @@ class Lights(BufferSet):
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
         self._share_photons(self._weights * weights, photons)
-        self._lights.upload(self.table)
+        self._upload_table()
         return float(self.table["photon_count"] @ contributed[:, 1] / before)
 
     def restore(self, tallies: np.ndarray, learned: np.ndarray | None, photons: int) -> None:
@@ -332,7 +359,7 @@ class Lights(BufferSet):
         weights = self.guide.restore(tallies, learned)
         if weights is not None:
             self._share_photons(self._weights * weights, photons)
-            self._lights.upload(self.table)
+            self._upload_table()
 
     @property
     def photon_flux(self) -> float:
