@@ -328,8 +328,9 @@ class Lights(BufferSet):
         self._upload_table()
 
     def _upload_table(self) -> None:
-        portals = self.portals.records
-        self._lights.upload(np.concatenate([self.table, portals]) if len(portals) else self.table)
+        records = LIGHT.zeros(len(self.table) + len(self.portals.records))
+        records[: len(self.table)], records[len(self.table) :] = self.table, self.portals.records
+        self._lights.upload(records)
 
     def _share_photons(self, weights: np.ndarray, photons: int) -> None:
         self._photons = photons
