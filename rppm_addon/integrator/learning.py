@@ -31,8 +31,8 @@ from .stages.photons import Photons
 
 _MOST_LEAVING = 0.25
 """Of gathering rays: where more leave the scene, rays find the world's light as well as photons or better."""
-_LEAST_UNCOVERED = 0.25
-"""Of those that leave: where more pass portals, shadow rays find it there."""
+_LEAST_UNCOVERED = 0.02
+"""Of those that leave: where more pass portals, shadow rays find nearly all of it there."""
 
 
 def may_share_world_light(context: StageContext) -> bool:

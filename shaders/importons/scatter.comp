@@ -89,7 +89,10 @@ EnvironmentView view_environment(Ray ray) {
 #ifdef PORTALS
     PortalView portals = view_portals(ray.origin, ray.direction, NO_PORTAL);
     if (portals.solid_angle > 0.0) view.pdf = parameters.world_selection * mixed_world_pdf(portals, ray.direction);
-    view.is_shared = view.is_shared && portals.pdf <= 0.0;
+    if (portals.pdf > 0.0) {
+        view.plain_pdf = ONLY_SHADOW_RAYS;
+        view.is_shared = false;
+    }
 #endif
     return view;
 }

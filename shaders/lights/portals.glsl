@@ -3,6 +3,7 @@
 // side that they are of use to (rppm_addon/integrator/lights/portals.py). Needs the members of PORTAL_PARAMETERS.
 
 const uint NO_PORTAL = 0xffffffffu;
+const float ONLY_SHADOW_RAYS = 1e15;  // of direct_photon_share: leaves nothing to photons
 
 Light portal_at(uint portal) { return lights[parameters.light_count + portal]; }
 

@@ -82,10 +82,6 @@ void main() {
         photon_cells[index] = light.first_cell + cell;
     }
     Emission emission = emit_photon(light, choice);
-#ifdef PORTALS
-    // What passes portals teaches the light that sends photons there.
-    if (left_by_portals && (light.flags & LIGHT_THROUGH_PORTALS) == 0u) photon_cells[index] = NO_CELL;
-#endif
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
     uint path_flags = PHOTON_DIRECT | ((light.flags & RAY_DIFFUSE) == 0u ? PHOTON_NOT_DIFFUSE : 0u)

@@ -4,9 +4,6 @@
 // portals move noise and no energy, wherever they are. All begin outside of the scene: what is before a window shades
 // it.
 
-// Whether what was emitted last passes a portal from behind.
-bool left_by_portals = false;
-
 DirectionTable portal_table() {
     return DirectionTable(parameters.portal_table, parameters.portal_width, parameters.portal_height);
 }
@@ -98,11 +95,9 @@ Emission emit_from_world(Light light, EmissionChoice choice) {
     vec2 world_square = by_portals ? world_to_square(toward) : choice.direction;
     float disk_pdf = world_disk_pdf(disk, t, b, place, world_square, choice);
     float pdf = float(disk.photon_count) * world_direction_pdf * disk_pdf;
-    left_by_portals = false;
     if (portal_direction_pdf > 0.0 && across > 0.0) {
         vec2 portal_square = by_portals ? choice.direction : table_to_square(portal_table(), toward);
         float place_pdf = portals_pdf(portals, direction, across, place.x * t + place.y * b, portal_square, sampled);
-        left_by_portals = place_pdf > 0.0;
         pdf += float(portals.photon_count) * portal_direction_pdf * place_pdf;
     }
     pdf /= float(max(light.photon_count, 1u));

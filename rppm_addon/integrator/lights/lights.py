@@ -28,7 +28,7 @@ from .light_entry import light_entry
 from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
-from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal
+from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
 from .sources import ENVIRONMENT, SURFACES, source_name
 
 log = logging.getLogger(__name__)
@@ -104,7 +104,7 @@ class Lights(BufferSet):
         self.table = LIGHT.zeros(0)
         """LIGHT records, all lights'."""
         self._portals: Portals | None = None
-        self._first_weights = self._weights = np.zeros(0)
+        self._weights = np.zeros(0)
         self._names: list[str] = []
         self._powers: list[float] = []
         self._parameters: dict[str, object] = {}
@@ -201,7 +201,6 @@ class Lights(BufferSet):
         entries: list[np.ndarray] = []
         powers: list[float] = []
         weights: list[float] = []
-        first_weights: list[float] = []
         groups: list[str] = []
         links = LightLinkTable()
 
@@ -211,7 +210,6 @@ class Lights(BufferSet):
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
                 weights.append(float(np.mean(power)) * max(weight, 0.0))
-                first_weights.append(weights[-1])
                 groups.append(group)
 
         if not keep_light_objects:
@@ -243,18 +241,17 @@ class Lights(BufferSet):
         entry["max_bounces"] = world_bounces
         power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
         add(ENVIRONMENT, entry, power, group=scene.world.light_group)
-        self._portals = Portals(scene.lights, self.environment, radius)
+        self._portals = Portals(scene.lights if names[-1:] == [ENVIRONMENT] else [], self.environment, radius)
         if self._portals.power > 0.0:
             # The same light as the world's, which all but its photons take by that one: so it has no power.
             through = entry.copy()
             through["flags"] |= LIGHT_THROUGH_PORTALS
             add(ENVIRONMENT, through, np.full(3, self._portals.power), group=scene.world.light_group)
-            powers[-1], both = 0.0, first_weights[-2]
-            first_weights[-2:] = (1.0 - FIRST_PHOTON_FRACTION) * both, FIRST_PHOTON_FRACTION * both
+            powers[-1] = 0.0
         if not entries:
             # As in an animation whose lights go out: the picture is black, as Cycles' is.
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
-            entries, powers, weights, first_weights, groups = [entry], [1.0], [1.0], [1.0], [""]
+            entries, powers, weights, groups = [entry], [1.0], [1.0], [""]
         if sum(weights) <= 0:
             raise SceneError("all lights have a photon weight of 0; raise that of one")
 
@@ -276,7 +273,7 @@ class Lights(BufferSet):
                 table[column] = kept[column]
             self._upload_table()
         else:
-            self._weights, self._first_weights = np.array(weights), np.array(first_weights)
+            self._weights = np.array(weights)
             self.begin(photons)
         targets = caustic_targets(scene, geometry)
         self.target_count = len(targets)
@@ -321,10 +318,10 @@ class Lights(BufferSet):
 
     def begin(self, photons: int) -> None:
         """Forget what photons were good for, as before the first iteration, and share so many among the lights."""
-        self._share_photons(self._first_weights, self._most_photons)
+        self._share_photons(self._weights, self._most_photons)
         self.guide.build(self.table, self._most_photons)
         if photons != self._most_photons:
-            self._share_photons(self._first_weights, photons)
+            self._share_photons(self._weights, photons)
         self._upload_table()
 
     def _upload_table(self) -> None:
@@ -332,8 +329,12 @@ class Lights(BufferSet):
         records[: len(self.table)], records[len(self.table) :] = self.table, self.portals.records
         self._lights.upload(records)
 
-    def _share_photons(self, weights: np.ndarray, photons: int) -> None:
+    def _share_photons(self, weights: np.ndarray, photons: int, fraction: float = FIRST_PHOTON_FRACTION) -> None:
+        """fraction: of the world's photons, those that leave through portals, where there are any."""
         self._photons = photons
+        if self.portals.power > 0.0:
+            world = weights[-2]
+            weights = np.append(weights[:-2], [(1.0 - fraction) * world, fraction * world])
         counts = share_out(weights, photons)
         self.table["photon_count"] = counts
         self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
@@ -350,7 +351,7 @@ class Lights(BufferSet):
         """
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
-        self._share_photons(self._weights * weights, photons)
+        self._share_photons(self._weights * weights, photons, self._portal_fraction)
         self._upload_table()
         return float(self.table["photon_count"] @ contributed[:, 1] / before)
 
@@ -359,8 +360,13 @@ class Lights(BufferSet):
         iteration had so many photons."""
         weights = self.guide.restore(tallies, learned)
         if weights is not None:
-            self._share_photons(self._weights * weights, photons)
+            self._share_photons(self._weights * weights, photons, self._portal_fraction)
             self._upload_table()
+
+    @property
+    def _portal_fraction(self) -> float:
+        """photon_fraction, as the guide knows it."""
+        return photon_fraction((self._weights * self.guide.even_contribution)[-2:]) if self.portals.power > 0.0 else 0.0
 
     @property
     def photon_flux(self) -> float:

@@ -28,8 +28,9 @@ whose photons leave through them; ``portal_fraction`` that of the world's shadow
 point; ``portal_table`` is where their directions begin in the EnvironmentDistribution, with so many columns and rows.
 """
 
-FIRST_PHOTON_FRACTION = 0.75
+FIRST_PHOTON_FRACTION = 0.5
 """Of the world's photons, those that leave through portals as long as nothing was learned."""
+_LEAST_PHOTONS, _MOST_PHOTONS = 0.1, 0.9
 _MOST_SHADOW_RAYS, _LEAST_SHADOW_RAYS = 0.9, 0.5
 _BRIGHT = 8.0
 """Times the mean: what is brighter in a world is found by its map."""
@@ -103,6 +104,13 @@ def light_through(portals: np.ndarray, brightness: np.ndarray | None) -> np.ndar
         cosine = np.maximum(-toward, 0.0).reshape(rows, _SUBCELLS, columns, _SUBCELLS).max(axis=(1, 3))
         passed += float(portal["area"]) * cosine
     return brightness * passed
+
+
+def photon_fraction(contributing_power: np.ndarray) -> float:
+    """Of the world's photons, those that leave through portals, by what of its power contributes, W: (2,), of all that
+    comes to the scene, and of what passes portals. What other openings let in keeps photons."""
+    everywhere, through = contributing_power
+    return float(np.clip(through / max(everywhere, 1e-300), _LEAST_PHOTONS, _MOST_PHOTONS))
 
 
 def power_through(passed: np.ndarray, radiance: float) -> float:
