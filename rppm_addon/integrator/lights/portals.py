@@ -34,6 +34,8 @@ _LEAST_PHOTONS, _MOST_PHOTONS = 0.1, 0.9
 _MOST_SHADOW_RAYS, _LEAST_SHADOW_RAYS = 0.9, 0.5
 _BRIGHT = 8.0
 """Times the mean: what is brighter in a world is found by its map."""
+_BRIGHT_FRACTION = 0.1
+"""Of a world's light: where more comes from bright spots, the map gets as many shadow rays as portals."""
 _EVEN_ROWS = 32
 _SUBCELLS = 2
 """Places along each side of a cell at which portals are asked what they let pass."""
@@ -83,7 +85,7 @@ def shadow_ray_fraction(brightness: np.ndarray | None) -> float:
         return _MOST_SHADOW_RAYS
     light = brightness * _sines(len(brightness))[:, None]
     bright = light[brightness > _BRIGHT * brightness.mean()].sum() / max(light.sum(), 1e-300)
-    return float(_MOST_SHADOW_RAYS - (_MOST_SHADOW_RAYS - _LEAST_SHADOW_RAYS) * bright)
+    return float(_MOST_SHADOW_RAYS - (_MOST_SHADOW_RAYS - _LEAST_SHADOW_RAYS) * min(bright / _BRIGHT_FRACTION, 1.0))
 
 
 def light_through(portals: np.ndarray, brightness: np.ndarray | None) -> np.ndarray:
