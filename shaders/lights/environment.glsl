@@ -93,11 +93,14 @@ float world_pdf(vec3 direction) {
     return table_pdf(world_table(), direction);
 }
 
-vec3 sample_world(vec2 u, out float pdf) {
-    if (parameters.environment_width != 0u) return sample_table(world_table(), u, pdf);
+// Of a table; of an even world's, which is empty, from all around.
+vec3 sample_directions(DirectionTable table, vec2 u, out float pdf) {
+    if (table.width != 0u) return sample_table(table, u, pdf);
     pdf = 1.0 / (4.0 * PI);
     return sample_sphere(u);
 }
+
+vec3 sample_world(vec2 u, out float pdf) { return sample_directions(world_table(), u, pdf); }
 
 #ifdef PORTALS
 // What sample_table and sample_world make a direction of.

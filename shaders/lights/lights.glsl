@@ -15,6 +15,15 @@ layout(std430, binding = 6) readonly buffer Triangles;
 
 #include <Lights>
 
+// Directions from which the photons of the world leave: those of its light through portals have a table of their own.
+DirectionTable directions_of(Light light) {
+#ifdef PORTALS
+    if ((light.flags & LIGHT_THROUGH_PORTALS) != 0u)
+        return DirectionTable(parameters.portal_table, parameters.portal_width, parameters.portal_height);
+#endif
+    return world_table();
+}
+
 // Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.
 float spot_attenuation(Light light, vec3 direction) {
     vec3 local = vec3(dot(direction, light.axis_u), dot(direction, light.axis_v), dot(direction, light.normal));
@@ -295,17 +304,19 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
 #ifdef PORTALS
 #include "lights/portals.glsl"
 
-// In place of the world the portal that a shadow ray to it is to pass, if it is to pass one.
+// In place of the world the portal that a shadow ray to it is to pass, or the light with the directions of what passes
+// portals, as mixed_world_pdf has it.
 uint enter_portal(inout Light light, vec3 point, inout float u) {
     uint portal = NO_PORTAL;
     if (light.kind == LIGHT_WORLD) portal = choose_portal(point, u);
     if (portal == NO_PORTAL) return NO_PORTAL;
-    float fraction = parameters.portal_fraction;
-    bool through = u < fraction;
-    u = clamp(through ? u / fraction : (u - fraction) / (1.0 - fraction), 0.0, 0.99999994);
-    if (!through) return NO_PORTAL;
-    light = portal_at(portal);
-    return portal;
+    float through = parameters.portal_fraction, by_table = parameters.portal_table_fraction;
+    bool passes = u < through, takes_table = u < through + by_table;
+    float fraction = passes ? through : takes_table ? by_table : 1.0 - through - by_table;
+    u = clamp((u - (passes ? 0.0 : takes_table ? through : through + by_table)) / fraction, 0.0, 0.99999994);
+    if (passes) light = portal_at(portal);
+    else if (takes_table) light.flags |= LIGHT_THROUGH_PORTALS;
+    return passes ? portal : NO_PORTAL;
 }
 
 // What was sampled of the world, or of a portal, as a sample of the world by both ways.
@@ -324,7 +335,7 @@ LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 
     if (!cone && light.kind != LIGHT_WORLD) return sample_surface_light(light, emissive_triangle, point, u);
     if (cone) return sample_cone_light(light, point, u);
     LightSample result = NO_LIGHT_SAMPLE;
-    result.direction = sample_world(u, result.pdf);
+    result.direction = sample_directions(directions_of(light), u, result.pdf);
     result.distance = INFINITY_DISTANCE;
     result.weight = world_radiance(result.direction) / result.pdf;
     return result;

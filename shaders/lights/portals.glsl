@@ -50,16 +50,21 @@ PortalView view_portals(vec3 point, vec3 direction, uint sampled) {
     return view;
 }
 
-// Pdf of shadow rays to the world, by portals and by its map.
+// Pdf of shadow rays to the world: where portals face the point, by these, by what of the world's map passes portals,
+// and for other openings by the map itself.
 float mixed_world_pdf(PortalView view, vec3 direction) {
-    float through = view.solid_angle > 0.0 ? parameters.portal_fraction : 0.0;
-    return through * view.pdf + (1.0 - through) * world_pdf(direction);
+    float by_map = world_pdf(direction), through = parameters.portal_fraction;
+    if (!(view.solid_angle > 0.0)) return by_map;
+    float by_table = parameters.portal_table_fraction, pdf = through * view.pdf + (1.0 - through - by_table) * by_map;
+    Light portals = lights[parameters.portal_light];
+    return by_table > 0.0 ? pdf + by_table * table_pdf(directions_of(portals), direction) : pdf;
 }
 
 // What the world may give at a point, W/m^2, less than what it gives in the open where portals face the point.
 // by_map: where portals do not.
 float portal_irradiance(vec3 point, float by_map) {
     float angle = view_portals(point, vec3(0.0), NO_PORTAL).solid_angle;
-    float seen = mix(1.0, min(angle / (2.0 * PI), 1.0), parameters.portal_fraction);
+    float through = parameters.portal_fraction + parameters.portal_table_fraction;
+    float seen = mix(1.0, min(angle / (2.0 * PI), 1.0), through);
     return angle > 0.0 ? parameters.environment_irradiance * seen : by_map;
 }

@@ -4,10 +4,6 @@
 // portals move noise and no energy, wherever they are. All begin outside of the scene: what is before a window shades
 // it.
 
-DirectionTable portal_table() {
-    return DirectionTable(parameters.portal_table, parameters.portal_width, parameters.portal_height);
-}
-
 // Area across a direction, m^2; 0 where light goes the other way.
 float portal_across(Light portal, vec3 direction) { return portal.area * max(dot(direction, portal.normal), 0.0); }
 
@@ -71,15 +67,11 @@ float world_disk_pdf(Light light, vec3 t, vec3 b, vec2 place, vec2 direction_squ
 Emission emit_from_world(Light light, EmissionChoice choice) {
     bool by_portals = (light.flags & LIGHT_THROUGH_PORTALS) != 0u, has_portals = parameters.portal_count > 0u;
     Light disk = lights[parameters.world_light], portals = lights[parameters.portal_light];
-    float world_direction_pdf, portal_direction_pdf = 0.0;
-    vec3 toward;
-    if (by_portals) {
-        toward = sample_table(portal_table(), choice.direction, portal_direction_pdf);
-        world_direction_pdf = world_pdf(toward);
-    } else {
-        toward = sample_world(choice.direction, world_direction_pdf);
-        if (has_portals) portal_direction_pdf = table_pdf(portal_table(), toward);
-    }
+    float direction_pdf, portal_direction_pdf = 0.0;
+    vec3 toward = sample_directions(directions_of(light), choice.direction, direction_pdf);
+    float world_direction_pdf = by_portals ? world_pdf(toward) : direction_pdf;
+    if (by_portals) portal_direction_pdf = direction_pdf;
+    else if (has_portals) portal_direction_pdf = table_pdf(directions_of(portals), toward);
     vec3 direction = -toward, t, b;
     tangent_frame(direction, t, b);
     float across = portals_across(direction), radius = parameters.scene_radius, shadows = target_shadows();
@@ -96,7 +88,7 @@ Emission emit_from_world(Light light, EmissionChoice choice) {
     float disk_pdf = world_disk_pdf(disk, t, b, place, world_square, choice);
     float pdf = float(disk.photon_count) * world_direction_pdf * disk_pdf;
     if (portal_direction_pdf > 0.0 && across > 0.0) {
-        vec2 portal_square = by_portals ? choice.direction : table_to_square(portal_table(), toward);
+        vec2 portal_square = by_portals ? choice.direction : table_to_square(directions_of(portals), toward);
         float place_pdf = portals_pdf(portals, direction, across, place.x * t + place.y * b, portal_square, sampled);
         pdf += float(portals.photon_count) * portal_direction_pdf * place_pdf;
     }

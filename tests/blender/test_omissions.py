@@ -102,12 +102,6 @@ def test_passes_that_are_missing(lit):
     assert "Shadow, Render Time" in text
 
 
-def test_portals_give_no_light(lit):
-    assert len(export(lit).lights) == 1
-    set_of_cycles(the(lit, "LIGHT").data, "is_portal", True)
-    assert not export(lit).lights
-
-
 def test_a_viewport_follows_edits(lit):
     sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
     camera = export(lit).camera

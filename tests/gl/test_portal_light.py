@@ -8,6 +8,7 @@ import pytest
 import scenes
 from path_comparison import judge
 from support.lobes import image_world
+from support.render_states import assert_same_state
 from test_guided_photons import emitted_moments
 from test_light_sampling import FOLDER, Iteration
 from test_paths_world import picture_by_seed
@@ -139,3 +140,20 @@ def test_portals_of_a_black_world_are_none(mapper):
     mapper.iterate()
     assert len(mapper.device_scene.lights.portals.records) == 0
     assert not mapper.film.read_radiance()[..., :3].any()
+
+
+@pytest.mark.long
+def test_it_goes_on_bit_for_bit(mapper, other_mapper):
+    """With what was learned of how many photons portals get."""
+    scene = with_portals("a part of it", photons=1 << 12)
+    mapper.build(scene)
+    states = []
+    for _ in range(5):
+        mapper.iterate()
+        states.append(mapper.state())
+    for state in (states[0], states[2]):
+        other_mapper.build(scene)
+        other_mapper.resume(state)
+        while other_mapper.iteration < 5:
+            other_mapper.iterate()
+        assert_same_state(other_mapper.state(), states[-1])

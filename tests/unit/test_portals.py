@@ -13,7 +13,7 @@ from rppm_addon.integrator.lights.portals import (
     photon_fraction,
     portal_entries,
     power_through,
-    shadow_ray_fraction,
+    shadow_ray_fractions,
 )
 from rppm_addon.scene import Light, LightKind
 
@@ -58,12 +58,12 @@ def test_rays_through_portals():
     assert not passes_portal(rectangle[:0], origins, directions).any()
 
 
-def test_bright_spots_are_left_to_the_map():
+def test_bright_spots_have_shadow_rays_of_their_own():
     sky = np.ones((32, 64))
     sun = sky.copy()
     sun[20, 10] = 1e6
-    assert shadow_ray_fraction(None) == shadow_ray_fraction(sky) == 0.9
-    assert shadow_ray_fraction(sun) == pytest.approx(0.5, abs=0.01)
+    assert shadow_ray_fractions(None) == shadow_ray_fractions(sky) == (0.9, 0.0)
+    assert shadow_ray_fractions(sun) == pytest.approx((0.4, 0.5))
 
 
 def test_openings_without_portals_keep_photons():

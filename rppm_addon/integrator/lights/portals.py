@@ -19,23 +19,26 @@ PORTAL_PARAMETERS = {
     "portal_count": "uint",
     "portal_light": "uint",
     "portal_fraction": "float",
+    "portal_table_fraction": "float",
     "portal_table": "uint",
     "portal_width": "uint",
     "portal_height": "uint",
 }
 """Of LIGHT_PARAMETERS: portals are lights behind the last of the table. ``portal_light`` is the number of the light
-whose photons leave through them; ``portal_fraction`` that of the world's shadow rays which do, where portals face the
-point; ``portal_table`` is where their directions begin in the EnvironmentDistribution, with so many columns and rows.
+whose photons leave through them; ``portal_table`` is where their directions begin in the EnvironmentDistribution, with
+so many columns and rows. ``portal_fraction`` is that of the world's shadow rays which pass portals, where these face
+the point, ``portal_table_fraction`` that of those in the directions of the table; the others go by the world's map.
 """
 
 FIRST_PHOTON_FRACTION = 0.5
 """Of the world's photons, those that leave through portals as long as nothing was learned."""
 _LEAST_PHOTONS, _MOST_PHOTONS = 0.1, 0.9
-_MOST_SHADOW_RAYS, _LEAST_SHADOW_RAYS = 0.9, 0.5
+_SHADOW_RAYS = 0.9
+"""Of those to the world, what portals have; the others find other openings."""
 _BRIGHT = 8.0
-"""Times the mean: what is brighter in a world is found by its map."""
+"""Times the mean: what is brighter in a world is found by the directions of its light."""
 _BRIGHT_FRACTION = 0.1
-"""Of a world's light: where more comes from bright spots, the map gets as many shadow rays as portals."""
+"""Of a world's light: where more comes from bright spots, half of the shadow rays look for these."""
 _EVEN_ROWS = 32
 _SUBCELLS = 2
 """Places along each side of a cell at which portals are asked what they let pass."""
@@ -56,9 +59,11 @@ class Portals:
         if not self.power > 0.0:
             self.records, passed = self.records[:0], None
         first = environment.add_directions(passed)
+        fractions = shadow_ray_fractions(environment.brightness) if len(self.records) else (0.0, 0.0)
         self.parameters = {
             "portal_count": len(self.records),
-            "portal_fraction": shadow_ray_fraction(environment.brightness) if len(self.records) else 0.0,
+            "portal_fraction": fractions[0],
+            "portal_table_fraction": fractions[1],
             "portal_table": first,
             "portal_width": 0 if passed is None else passed.shape[1],
             "portal_height": 0 if passed is None else passed.shape[0],
@@ -78,14 +83,15 @@ def is_portal(light: Light) -> bool:
     return light.is_portal and light.kind is LightKind.AREA
 
 
-def shadow_ray_fraction(brightness: np.ndarray | None) -> float:
-    """Portals' part of the world's shadow rays, by its map (rows, columns), or None of an even one: the more of its
-    light comes from bright spots, the more is left to the map."""
+def shadow_ray_fractions(brightness: np.ndarray | None) -> tuple[float, float]:
+    """Of the world's shadow rays those that go anywhere in portals, and those that go where its light through portals
+    comes from, by its map (rows, columns), or None of an even one: where it has bright spots."""
     if brightness is None:
-        return _MOST_SHADOW_RAYS
+        return _SHADOW_RAYS, 0.0
     light = brightness * _sines(len(brightness))[:, None]
     bright = light[brightness > _BRIGHT * brightness.mean()].sum() / max(light.sum(), 1e-300)
-    return float(_MOST_SHADOW_RAYS - (_MOST_SHADOW_RAYS - _LEAST_SHADOW_RAYS) * min(bright / _BRIGHT_FRACTION, 1.0))
+    by_light = 0.5 * min(float(bright) / _BRIGHT_FRACTION, 1.0)
+    return _SHADOW_RAYS - by_light, by_light
 
 
 def light_through(portals: np.ndarray, brightness: np.ndarray | None) -> np.ndarray:
