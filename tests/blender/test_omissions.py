@@ -32,12 +32,6 @@ def the(scene, kind):
     return next(found for found in scene.objects if found.type == kind)
 
 
-def set_of_cycles(block, name, value):
-    """As the window does: Python's own changes of what add-ons add are not told to depsgraphs."""
-    setattr(block.cycles, name, value)
-    block.update_tag()
-
-
 def subdivide_adaptively(mesh, used=True):
     modifier = next(iter(mesh.modifiers), None) or mesh.modifiers.new("smooth", "SUBSURF")
     owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else mesh.cycles

@@ -43,9 +43,17 @@ def test_an_even_world_sends_its_irradiance(shape, area):
 
 def test_a_map_counts_by_its_brightness():
     brightness = np.zeros((64, 128))
-    brightness[-1] = 5.0
+    brightness[-2:] = 5.0
     passed = light_through(portal_entries([portal(), portal(z=2.0)], 1.0), brightness)
-    assert passed[-1] == pytest.approx(np.full(128, 5.0 * 4.0), rel=2e-3) and (passed[:-1] == 0.0).all()
+    assert passed[-1] == pytest.approx(np.full(128, 5.0 * 4.0), rel=2e-3) and (passed[:-3] == 0.0).all()
+    assert passed[-3] == pytest.approx(np.full(128, 5.0 * 4.0 / 8), rel=0.02)  # linear between cells
+
+
+def test_a_sun_goes_on_at_the_seam():
+    brightness = np.zeros((64, 128))
+    brightness[-2, 0] = 64.0
+    passed = light_through(portal_entries([portal()], 1.0), brightness)
+    assert passed[-2, [-1, 0, 1]] == pytest.approx(2.0 * np.array([6.0, 36.0, 6.0]), rel=0.01)
 
 
 def test_rays_through_portals():

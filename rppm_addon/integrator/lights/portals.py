@@ -97,8 +97,7 @@ def shadow_ray_fractions(brightness: np.ndarray | None) -> tuple[float, float]:
 def light_through(portals: np.ndarray, brightness: np.ndarray | None) -> np.ndarray:
     """(rows, columns) W/sr that pass the portals (LIGHT records) from the directions of each cell of a world's map, the
     largest in the cell; of an even world's, None, for a radiance of 1."""
-    if brightness is None:
-        brightness = np.ones((_EVEN_ROWS, 2 * _EVEN_ROWS))
+    brightness = np.ones((_EVEN_ROWS, 2 * _EVEN_ROWS)) if brightness is None else _shown(brightness)
     rows, columns = brightness.shape
     parts = (np.arange(_SUBCELLS) + 0.5) / _SUBCELLS
     v = (np.arange(rows)[:, None] + parts).ravel() / rows
@@ -112,6 +111,14 @@ def light_through(portals: np.ndarray, brightness: np.ndarray | None) -> np.ndar
         cosine = np.maximum(-toward, 0.0).reshape(rows, _SUBCELLS, columns, _SUBCELLS).max(axis=(1, 3))
         passed += float(portal["area"]) * cosine
     return brightness * passed
+
+
+def _shown(brightness: np.ndarray) -> np.ndarray:
+    """Means of a map over its cells as textures show it, linear between their middles: what is beside a sun has a part
+    of its light, and would be too bright for how seldom it is chosen."""
+    padded = np.pad(np.pad(brightness, ((0, 0), (1, 1)), "wrap"), ((1, 1), (0, 0)), "edge")
+    across = (padded[:, :-2] + 6.0 * padded[:, 1:-1] + padded[:, 2:]) / 8.0
+    return (across[:-2] + 6.0 * across[1:-1] + across[2:]) / 8.0
 
 
 def photon_fraction(contributing_power: np.ndarray) -> float:
