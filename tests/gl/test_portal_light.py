@@ -127,7 +127,7 @@ def test_the_floor_gets_the_sky_through_a_portal(mapper):
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["a part of it", "wherever"])
 def test_portals_in_wrong_places_change_no_mean(mapper, name):
-    scene = with_portals(name, iterations=16)
+    scene = with_portals(name, iterations=8)
     pictures = picture_by_seed(mapper, f"portals {name}", scene)
     assert mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0
     judge(f"portals {name}", pictures, FLOOR * hole_form_factor(scene)[..., None])
