@@ -85,7 +85,7 @@ def large_blocks(variant: Variant) -> list[str]:
 def check_shader(variant: Variant, reads_texels: bool, large: Sequence[str] = ()) -> str:
     """What glslangValidator has against a stage file; empty when nothing. large: blocks that are to be texels."""
     try:
-        source = variant.expand(reads_texels, large)
+        source = variant.expand(reads_texels, large, whole=True)
     except ShaderError as error:
         return str(error)
     if stay := source.blocks.keys() & set(large):

@@ -107,6 +107,11 @@ class GrowingBuffer:
         """Items that there is room for."""
         return max(self.size - self._header_size, 0) // self.item_size
 
+    def refuse_items(self, count: int) -> None:
+        """Raise DeviceError for more items than the device allows, before there are any."""
+        size = self._header_size + self.item_size * count
+        refuse_large_block(self._context, self.name, size, self.remedy, self.limit)
+
     def require_items(self, count: int) -> bool:
         """Make sure of so many items; returns and raises as require does."""
         return self.require(self._header_size + self.item_size * count)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from .constants import Constants
+from .functions import put_together
 from .records import Record
 from .storage_blocks import StorageBlock
 from .texel_buffers import TexelBuffer
@@ -84,6 +85,7 @@ def expand(
     inserts: dict[str, str] | None = None,
     reads_texels: bool = False,
     large: Collection[str] = (),
+    whole: bool = False,
 ) -> Source:
     """Read a shader below the shader folder and resolve its includes.
 
@@ -91,8 +93,8 @@ def expand(
     record, or the constants, of that name once; ``layout(std430, binding = 0) buffer Rays;`` gets the members of the
     StorageBlock of that name, and before it the structs of its records. Defines go after #version; ``inserts`` are
     texts of files that are made at run time, by name. reads_texels: blocks that are only read become texel buffers;
-    large: those of these names in any case (read_as_texels). Sources with either have READS_TEXELS defined.
-    Raises ShaderError.
+    large: those of these names in any case (read_as_texels). Sources with either have READS_TEXELS defined. Functions
+    that main does not lead to are left out, unless it is to be whole. Raises ShaderError.
     """
     defines = {**(defines or {}), **({"READS_TEXELS": 1} if reads_texels or large else {})}
     files: list[str] = []
@@ -142,7 +144,7 @@ def expand(
                 lines.append(declare(wanted))
 
     read(path, path)
-    return _source("\n".join(lines) + "\n", files, DEFINE in defines, reads_texels, large)
+    return _source(put_together(lines, whole) + "\n", files, DEFINE in defines, reads_texels, large)
 
 
 @functools.lru_cache(maxsize=512)

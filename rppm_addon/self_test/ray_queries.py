@@ -41,6 +41,7 @@ class TracedTriangles:
         resolution: int = 64,
         rasterize: bool | None = True,
         texel_buffers: bool | None = None,
+        most_clustered: int | None = None,
     ) -> None:
         """triangles: (n, 3, 3) vertices; the other arguments as DeepCubemap's. Raises DeviceError."""
         self.context, self.library = context, library
@@ -49,7 +50,9 @@ class TracedTriangles:
         vertices[: 3 * len(triangles), :3] = self.host_triangles.reshape(-1, 3)
         self.triangles = context.moderngl.buffer(vertices.tobytes())
         self.center = np.asarray(center, np.float32)
-        self.cubemap = DeepCubemap(context, library, rasterize, texel_buffers=texel_buffers)
+        self.cubemap = DeepCubemap(
+            context, library, rasterize, texel_buffers=texel_buffers, most_clustered=most_clustered
+        )
         self._rays = LivingPaths(context, library, "rays of a test", "take fewer")
         self.build(resolution)
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lists themselves. An entry is (triangle | marks, nearest depth | farthest depth), the depths as
+// The lists themselves. An entry is (triangle or cluster | marks, nearest depth | farthest depth), the depths as
 // 16-bit fractions of the cell's range, rounded outwards. The marks describe a triangle that is in the
 // depth bin before or behind too: a walk over several bins tests it only once.
 

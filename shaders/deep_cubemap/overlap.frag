@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: TRIANGLE_CLUSTERS=1
 // A pixel is a cell of the job's rectangle; the test decides whether the triangle touches it.
 #define DEEP_CUBEMAP_BUILD
 #include <OverlapDraw>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: TEXEL_BUFFERS=1
+// lint: TEXEL_BUFFERS=1 TRIANGLE_CLUSTERS=1
 // The nearest hit of each ray.
 layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"

@@ -19,6 +19,7 @@
 #include "deep_cubemap/bins.glsl"
 #include "deep_cubemap/cell_entry.glsl"
 #include "deep_cubemap/core.glsl"
+#include "deep_cubemap/clusters.glsl"
 #include "deep_cubemap/faces.glsl"
 #ifdef ONE_SIDED_TRIANGLES
 #include "common/light_sets.glsl"
@@ -98,16 +99,26 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
     }
     for (int remaining = bins.y - bins.x; ; --remaining) {
         uint place = first;
+#ifdef TRIANGLE_CLUSTERS
+        uint next = 0u, behind = 0u; // of the cluster that is being tested
+#endif
         while (true) {
             // on to the next candidate first: the threads of a group then test theirs together
             uint triangle = NO_TRIANGLE;
+#ifdef TRIANGLE_CLUSTERS
+            if (next < behind) triangle = next++;
+#endif
             for (; place < end && triangle == NO_TRIANGLE; ++place) {
 #ifdef DEEP_CUBEMAP_COUNT
                 ++walk_counts.z;
 #endif
                 uvec2 entry = cell_entry(place);
                 if ((entry.y >> 16) >= wanted.x && (entry.y & 0xffffu) <= wanted.y && (entry.x & seen) == 0u) {
-                    triangle = entry.x & ENTRY_TRIANGLE;
+                    triangle = cluster_first(entry.x & ENTRY_TRIANGLE);
+#ifdef TRIANGLE_CLUSTERS
+                    next = triangle + 1u;
+                    behind = triangle + cluster_size(entry.x & ENTRY_TRIANGLE);
+#endif
                 }
             }
             if (triangle == NO_TRIANGLE) break;

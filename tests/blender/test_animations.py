@@ -97,8 +97,17 @@ def assert_same(frame: Frame, alone: Frame, what: str) -> None:
 each_animation = pytest.mark.parametrize("animation", ANIMATIONS, ids=lambda animation: animation.__name__)
 
 
-@pytest.mark.parametrize("persistent", [False, True])
-@each_animation
+@pytest.mark.parametrize(
+    ("animation", "persistent"),
+    [
+        pytest.param(
+            animation, persistent, id=f"{animation.__name__}-{persistent}",
+            marks=[] if persistent or animation.__name__ in ("materials", "spotlight") else [pytest.mark.long],
+        )
+        for animation in ANIMATIONS
+        for persistent in (False, True)
+    ],
+)  # fmt: skip
 def test_frames_are_those_rendered_alone(animated, animation, persistent, device, tmp_path, monkeypatch):
     animation(animated, tmp_path)
     animated.render.use_persistent_data = persistent

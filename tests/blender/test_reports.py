@@ -183,7 +183,7 @@ def test_little_is_kept():
 def test_shares_without_any_weight():
     assert photon_allocation({}, {}) == {}
     assert photon_allocation({"a": 1.0}, {"a": 0.0}) == {"a": 0.0}
-    assert photon_allocation({"a": 1.0, "b": 3.0}, {"a": 3.0}) == {"a": 0.5, "b": 0.5}
+    assert photon_allocation({"a": 1.0, "b": 3.0}, {"a": 3.0}) == {"a": 0.53125, "b": 0.46875}
 
 
 def test_nothing_that_is_reported_is_saved(facing, tmp_path):

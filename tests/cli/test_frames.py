@@ -91,6 +91,7 @@ def arrays(path):
     return {name: channels[name].tobytes() for name in sorted(channels)}
 
 
+@pytest.mark.long
 def test_frames_are_those_of_single_renders(tmp_path, rppm, blend_files):
     """One start for all; a broken frame is told and left out; --resume renders what is missing."""
     exr, png, report = tmp_path / "new" / "out_##.exr", tmp_path / "out_####.png", tmp_path / "report.json"

@@ -139,6 +139,7 @@ def test_a_blend_file_renders_inside_blender(tmp_path, rppm, blend_files):
         assert np.asarray(image)[:, :7].min() > np.asarray(image)[:, 9:].max()
 
 
+@pytest.mark.long
 def test_frame_and_data_paths_change_a_blend_render(tmp_path, rppm, blend_files):
     dark, double, single = (tmp_path / f"{name}.exr" for name in ("dark", "double", "single"))
     for path, options in (

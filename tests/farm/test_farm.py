@@ -138,6 +138,7 @@ def test_wrong_calls_are_one_line(tmp_path, arguments, words):
     assert "Traceback" not in errors
 
 
+@pytest.mark.long
 def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
     whole, merged = tmp_path / "whole.exr", tmp_path / "merged.exr"
     status, _, errors = rppm_here("render", saved_scene, "-o", whole, "--samples", 40)

@@ -5,11 +5,13 @@ A photon counts where it arrived on the importon's side, with normals at most 45
 off the importon's tangent plane (shaders/common/importon.glsl).
 """
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 import scenes
+from support.families import some_each_time
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import (
@@ -229,9 +231,12 @@ def ball_estimate(radius: float, even_sky: bool) -> float:
 
 
 @pytest.mark.parametrize(
-    "radius", [0.2, 0.69, 1.5, *(pytest.param(other, marks=pytest.mark.long) for other in (0.4, 1.0))]
+    ("light", "radius"),
+    some_each_time(
+        itertools.product(["sun", "world"], [0.2, 0.4, 0.69, 1.0, 1.5]),
+        lambda light, radius: (light, radius) in {("sun", 0.2), ("sun", 0.69), ("sun", 1.5), ("world", 0.69)},
+    ),
 )
-@pytest.mark.parametrize("light", ["sun", "world"])
 def test_a_ball_is_estimated_as_its_closed_form_tells(renderer, light, radius):
     """Sunlight has no bias up to 0.7 of the ball's radius: each photon is weighed by the importon's own cosine.
 

@@ -53,6 +53,7 @@ def test_where_no_part_of_whole_blocks_of_rows_fits_a_film_is_refused(context, l
         film_parts(context, library)
 
 
+@pytest.mark.long
 def test_pictures_in_parts_are_those_of_one(mapper, other_mapper, monkeypatch):
     """With the noise, of which half of the iterations from the 17th on tells."""
     scene = scenes.room(

@@ -4,6 +4,7 @@
 import dataclasses
 
 import numpy as np
+import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
@@ -73,6 +74,7 @@ def corner(seed: int) -> Scene:
     )
 
 
+@pytest.mark.long
 def test_corners_are_not_dark(mapper, monkeypatch):
     """Photons around the end of a gathering ray are too few where their disk reaches beyond a wall; paths that
     gather from every surface that they come to need none of them."""

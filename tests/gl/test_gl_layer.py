@@ -170,7 +170,7 @@ def test_a_spoiled_binary_is_compiled_again(context, shader_folder):
 def test_compile_errors_name_our_file_and_line(context, shader_folder):
     (shader_folder / "part.glsl").write_text("float good() { return 1.0; }\n\nfloat bad() { return missing_name; }\n")
     (shader_folder / "main.comp").write_text(
-        '#version 430 core\nlayout(local_size_x = 1) in;\n#include "part.glsl"\nvoid main() {}\n'
+        '#version 430 core\nlayout(local_size_x = 1) in;\n#include "part.glsl"\nvoid main() { bad(); }\n'
     )
     with pytest.raises(sources.ShaderError, match=r"part\.glsl:3"):
         ProgramLibrary(context).compute("main.comp").run(1, {})

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 import scenes
+from support.families import some_each_time
 from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.scene import (
@@ -166,7 +167,10 @@ def test_photons_carry_the_power(renderer, name):
     assert_balanced(balance)
 
 
-@pytest.mark.parametrize("name", [*LIGHTS, "world", "mesh"])
+AIMED_EACH_TIME = ("sun", "disk", "spread", "mapped spot", "mapped square", "world", "mesh")
+
+
+@pytest.mark.parametrize("name", some_each_time([*LIGHTS, "world", "mesh"], lambda name: name in AIMED_EACH_TIME))
 def test_aiming_moves_no_energy(renderer, name):
     """A ball of no refraction changes nothing but where photons are sent."""
     world = World(np.array([1.0, 2.0, 3.0])) if name == "world" else None

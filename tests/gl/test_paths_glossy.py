@@ -70,6 +70,7 @@ SELDOM = {
     ("LSGE traced", PHOTONS), ("LGGE traced traced", PHOTONS), ("LGGE stored traced", PHOTONS),
     ("LGDGE stored", RAYS), ("LGDGE stored", PHOTONS),
     ("LGDE sharp", PHOTONS), ("LDGE traced", PHOTONS), ("LGDGE traced", PHOTONS), ("LGGE traced traced", RAYS),
+    ("LGE traced", PHOTONS), ("LDGE stored", PHOTONS), ("LGGE stored stored", PHOTONS), ("LGGE traced stored", PHOTONS),
 }  # fmt: skip
 """The dearest of their families: in the other mode, gathered or with a lobe that stores photons, the classes are tried
 each time."""

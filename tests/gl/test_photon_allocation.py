@@ -34,9 +34,20 @@ def test_sources_have_their_power_and_photons(renderer):
     assert watts[SURFACES] == pytest.approx(2 * math.pi * 4 * math.pi * 0.35**2, rel=0.05)
     assert watts[ENVIRONMENT] == pytest.approx(4 * math.pi**2 * 3.0 * 0.01, rel=0.01)
     assert sum(photons.values()) == 4000
-    weights = {name: value * (4.0 if name == source_name("point") else 1.0) for name, value in watts.items()}
+    weights = {name: 4.0 if name == source_name("point") else 1.0 for name in watts}
+    power = sum(value * weights[name] for name, value in watts.items())
     for name, count in photons.items():
-        assert count == pytest.approx(4000 * weights[name] / sum(weights.values()), abs=1.0)
+        share = weights[name] * (0.875 * watts[name] / power + 0.125 / 7.0)
+        assert count == pytest.approx(4000 * share, abs=1.0)
+
+
+def test_a_lamp_keeps_photons_beside_a_far_larger_world(renderer):
+    """The room in a world a million times as powerful: half of an eighth of the photons is the lamp's."""
+    scene = scenes.room(8, **SETTINGS)
+    scene.world = World(np.full(3, 1e5))
+    statistics = renderer.render(scene).statistics
+    assert statistics.source_watts[ENVIRONMENT] > 1e6 * statistics.source_watts[source_name("light")]
+    assert statistics.source_photons[source_name("light")] == pytest.approx(4000 / 16, abs=1.0)
 
 
 def test_lights_of_one_name_are_one_source(renderer):

@@ -88,9 +88,8 @@ def uneven_sky(sun: bool) -> Image:
 CASES = {"gray walls": (GRAY, None), "clouds": (BLACK, uneven_sky(False)), "sun": (BLACK, uneven_sky(True))}
 
 
-@pytest.mark.parametrize(
-    "name", ["clouds", *(pytest.param(name, marks=pytest.mark.long) for name in ("gray walls", "sun"))]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", CASES)
 def test_rays_and_photons_find_what_rays_do(mapper, monkeypatch, name):
     """On the floor and on what gathering rays lead to; and a pixel has less noise."""
     walls, sky = CASES[name]

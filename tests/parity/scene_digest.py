@@ -47,12 +47,22 @@ _VALUES = {
     "INT32_2D": ("value", 2), "INT16_2D": ("value", 2), "QUATERNION": ("value", 4), "FLOAT4X4": ("value", 16),
 }  # fmt: skip
 
+_COORDINATES = ("MeshUVLoop", "Float2AttributeValue")
+"""Items of UV maps, of which there are thousands."""
+
 
 @functools.lru_cache(maxsize=1 << 16)
 def _few_bits(value: float) -> bytes:
     """Of one number, as _Digest.numbers has them of an array."""
     (bits,) = np.float32([0.0 if abs(np.float32(value)) < np.float32(1e-6) else value]).view(np.uint32)
     return (((int(bits) + 0x4B) >> 8) & 0xFFFFFFFF).to_bytes(4, sys.byteorder)
+
+
+def _few_bits_of(values: object) -> np.ndarray:
+    """Of an array, flat, uint32."""
+    bits = np.ascontiguousarray(values, np.float32).ravel()
+    bits = np.where(np.abs(bits) < 1e-6, np.float32(0.0), bits).view(np.uint32)
+    return ((bits.astype(np.uint64) + 0x4B) >> 8).astype(np.uint32)
 
 
 class _Digest:
@@ -69,9 +79,7 @@ class _Digest:
         if isinstance(values, list):  # of a property: few, and there are thousands of these
             self.hash.update(b"".join(map(_few_bits, values)))
             return
-        bits = np.ascontiguousarray(values, np.float32).ravel()
-        bits = np.where(np.abs(bits) < 1e-6, np.float32(0.0), bits).view(np.uint32)
-        self.hash.update((((bits.astype(np.uint64) + 0x4B) >> 8).astype(np.uint32)).tobytes())
+        self.hash.update(_few_bits_of(values).tobytes())
 
     def members(self, owner: bpy.types.bpy_struct) -> list[tuple[str, str, bool]]:
         """Identifier, type and whether it is an array, of what counts."""
@@ -104,6 +112,8 @@ class _Digest:
                 continue
             if kind in ("POINTER", "COLLECTION"):
                 self.text(name)
+                if kind == "COLLECTION" and self.coordinates(value):
+                    continue
                 for one in [value] if kind == "POINTER" else value:
                     self.reference(one)
             elif is_array:
@@ -123,6 +133,30 @@ class _Digest:
                 if (collection := getattr(owner.light_linking, name)) is not None:
                     self.text(name, collection.name)
         self.inside.remove(pointer)
+
+    def coordinates(self, items: bpy.types.bpy_prop_collection) -> bool:
+        """What struct() would tell of all items of a UV map one by one, at once; False, and nothing, of others."""
+        kind = type(items[0]).__name__ if len(items) else ""
+        if kind not in _COORDINATES:
+            return False
+        parts = [f"{kind}\1".encode()]
+        for name, _, is_array in self.members(items[0]):
+            if is_array:
+                values = np.zeros(2 * len(items), np.float32)
+                items.foreach_get(name, values)
+                parts += [f"{name}\1".encode(), _few_bits_of(values).reshape(-1, 2).view(np.uint8)]
+            else:
+                flags = np.zeros(len(items), bool)
+                items.foreach_get(name, flags)
+                if flags.any() != flags.all():
+                    return False
+                parts.append(f"{name}\0{flags[0]}\1".encode())
+        columns = [
+            np.broadcast_to(np.frombuffer(part, np.uint8), (len(items), len(part))) if isinstance(part, bytes) else part
+            for part in parts
+        ]
+        self.hash.update(np.hstack(columns).tobytes())
+        return True
 
     def reference(self, value: object) -> None:
         if isinstance(value, bpy.types.ID) and not getattr(value, "is_embedded_data", False):

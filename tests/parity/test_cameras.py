@@ -6,6 +6,7 @@ import math
 import bpy
 import numpy as np
 import pytest
+from support.families import some_each_time
 
 from .comparison import CONVERGED, compare
 from .scenes import (
@@ -74,7 +75,11 @@ def configure(data: object, properties: dict) -> None:
         setattr(data.dof if owner == "dof" else data, name, value)
 
 
-@pytest.mark.parametrize("name", PANORAMAS)
+PANORAMAS_EACH_TIME = ("equirectangular", "polynomial", "mirrorball", "cubemap_face")
+"""The others each have a row of features."""
+
+
+@pytest.mark.parametrize("name", some_each_time(PANORAMAS, lambda name: name in PANORAMAS_EACH_TIME))
 def test_panorama(renderer, name):
     data = room().data
     data.type = "PANO"
@@ -138,7 +143,7 @@ CLIPPED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CLIPPED)
+@pytest.mark.parametrize("name", some_each_time(CLIPPED, lambda name: name in ("perspective", "equirectangular")))
 def test_clip_distances(renderer, name):
     """Sides of the room nearer than 1.6 m or farther than 2.3 m are cut away."""
     data = room().data

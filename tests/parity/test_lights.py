@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Each light on a diffuse plane, direct light by rays and by photons, against Cycles."""
 
+import itertools
 import math
 
 import pytest
+from support.families import some_each_time
 
 from .comparison import CONVERGED, compare
 from .scenes import DIFFUSE, EMISSION, camera, light, material, new_scene, place, plane, render_cycles, render_rppm
@@ -70,8 +72,14 @@ MODES = {
 }
 
 
-@pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("name", LIGHTS)
+PHOTONS_EACH_TIME = ("point", "spot", "sun", "area_square", "emissive_mesh")
+"""A light of each kind; with rays all are tried each time."""
+
+
+@pytest.mark.parametrize(
+    ("name", "mode"),
+    some_each_time(itertools.product(LIGHTS, MODES), lambda name, mode: mode == "RAYS" or name in PHOTONS_EACH_TIME),
+)
 def test_light_on_a_diffuse_plane(renderer, name, mode):
     new_scene()
     plane(3.0, material(DIFFUSE, Color=(0.8, 0.7, 0.6)))

@@ -2,6 +2,7 @@
 """Procedural textures from Blender's nodes to the picture: sockets, properties and coordinates find their places."""
 
 import bpy
+import pytest
 
 from .comparison import CONVERGED, compare
 from .scenes import camera, new_scene, place, plane, render_cycles, render_rppm
@@ -43,6 +44,7 @@ def _material(kind: str, output: str, properties: dict, inputs: dict) -> bpy.typ
     return made
 
 
+@pytest.mark.long
 def test_tiles_of_all_textures(renderer):
     new_scene()
     for number, tile in enumerate(TILES):

@@ -141,7 +141,7 @@ VORONOI_EXTREMES = [
 ]
 
 
-@pytest.mark.parametrize("dimensions", ["1D", "2D", "3D", "4D"])
+@pytest.mark.parametrize("dimensions", ["1D", "2D", "3D", pytest.param("4D", marks=pytest.mark.long)])
 def test_voronoi(library, tmp_path, dimensions):
     chosen = {"voronoi_dimensions": (dimensions,)}
     cases = combinations("tex_voronoi", VORONOI_INPUTS, **chosen, feature=("F1", "F2", "SMOOTH_F1"), normalize=(True,))

@@ -37,10 +37,10 @@ class Variant:
     kinds: str = ""
     """Which kinds of nodes the graph has: the name of their file."""
 
-    def expand(self, reads_texels: bool = False, large: Collection[str] = ()) -> Source:
-        """Its text; raises ShaderError."""
+    def expand(self, reads_texels: bool = False, large: Collection[str] = (), whole: bool = False) -> Source:
+        """Its text, with functions that nothing calls if it is to be whole; raises ShaderError."""
         inserts = {GENERATED: self.generated} if self.generated else {}
-        return expand(self.name, self.defines, inserts, reads_texels, large)
+        return expand(self.name, self.defines, inserts, reads_texels, large, whole)
 
 
 def _graphs_of(text: str) -> dict[str, str]:

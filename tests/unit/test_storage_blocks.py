@@ -38,7 +38,7 @@ def test_members_and_records_come_with_the_name(shader):
     StorageBlock("Dots", "Dot dots[];")
     source = expand(shader("layout(std430, binding = 3) readonly buffer Dots;  // all\nvoid main() {}\n"))
     assert source.text.splitlines() == [
-        "struct Dot { vec3 place; }; layout(std430, binding = 3) readonly buffer Dots { Dot dots[]; };  // all",
+        "struct Dot { vec3 place; }; layout(std430, binding = 3) readonly buffer Dots { Dot dots[]; };",
         "void main() {}",
     ]
     assert source.blocks == {"Dots": 3}

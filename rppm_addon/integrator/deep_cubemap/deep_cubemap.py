@@ -7,7 +7,8 @@ detailed object in a large scene gets small cells and a bare wall large ones.
 Building takes these steps, shaders of these names in shaders/deep_cubemap:
 
 1. plant: divides the faces down to the base level; list_overlap_jobs: per triangle, the tiles of the
-   base level that it may touch;
+   base level that it may touch; list_cluster_jobs: the same in scenes of many triangles, where those that follow each
+   other and lie together stand in lists as one (clusters.glsl);
 2. overlap: rasterizes the jobs; the fragment shader tests triangle against cell exactly and appends a
    fragment (cell, triangle, depth interval). A compute shader can do the same, for devices that have
    much arithmetic and few units that rasterize;
@@ -34,7 +35,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...gl.texel_sources import DEFINE as TEXEL_BUFFERS
-from ...scene.errors import DeviceError
+from ...scene.errors import DeviceError, DeviceLostError
 from ..common import records  # noqa: F401  the kernels include Ray and Hit
 from ..common.known import known
 from ..common.living_paths import LivingPaths
@@ -141,6 +142,12 @@ _PICTURE_SIDE = 4096
 # Triangles to try both routes with.
 _TRIAL_LEAST, _TRIAL_MOST = 1000, 16384
 
+_CLUSTERED = {1 << 24: 8, 1 << 20: 4}
+"""In scenes of at least so many triangles, how many a cluster has at most: docs/benchmarks/instances.md."""
+_LISTED_BY_CLUSTERS = {1: 1.0, 2: 0.7, 4: 0.5, 8: 0.3}
+"""Lengths of lists over those without clusters, by that."""
+_SURELY = 0.8
+"""Of the length that is expected of a list, what it has where it is long."""
 _MOST_STARTS = 1 << 26
 """Places of entries and bins that cells can name (shaders/deep_cubemap/cells.glsl)."""
 _READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
@@ -166,6 +173,8 @@ class DeepCubemap(BufferSet):
     same behind; None takes the one that is faster, found by trying both with the first scene of a thousand triangles.
     ``least_gain``: cells are divided where that leaves so many fewer triangles in each.
     ``most_bins``: depth bins that a cell may have at most.
+    ``most_clustered``: triangles, 1, 2, 4 or 8, that entries of cells may stand for together, which changes no hit;
+    None leaves it to how many the scene has.
     ``texel_buffers``: whether rays read cells, entries and triangles as texels, which changes no hit; None leaves it
     to the kind of driver. What is too long for that is read from storage blocks.
     """
@@ -191,10 +200,12 @@ class DeepCubemap(BufferSet):
         least_gain: int = _LEAST_GAIN,
         most_bins: int = _MOST_BINS,
         texel_buffers: bool | None = None,
+        most_clustered: int | None = None,
     ) -> None:
         super().__init__(context, library)
         self._context = context
         self._rasterize = rasterize
+        self._wanted_clusters, self._most_clustered = most_clustered, 1
         self._library = library
         self._least_gain, self._most_bins = least_gain, most_bins
         self._texel_buffers = context.is_software if texel_buffers is None else texel_buffers
@@ -259,6 +270,7 @@ class DeepCubemap(BufferSet):
         state["least_gain"] = self._least_gain
         state["most_bins"] = self._most_bins
         state["triangle_count"] = triangle_count
+        self._most_clustered = self._wanted_clusters or _most_clustered(triangle_count)
         self._expect(triangle_count)
         if self._rasterize is None and triangle_count >= _TRIAL_LEAST:
             self._rasterize = self._is_faster_rasterized(state)
@@ -310,8 +322,14 @@ class DeepCubemap(BufferSet):
         """And their defines."""
         fits = all(self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS)
         is_asked_for = self._texel_buffers or self._entries.size > self._context.storage_block_limit
-        defines = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
+        defines: dict[str, object] = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
+        defines |= self._cluster_defines
         return defines | {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else defines
+
+    @property
+    def _cluster_defines(self) -> dict[str, object]:
+        """Of programs that know what entries stand for."""
+        return {"TRIANGLE_CLUSTERS": 1} if self._most_clustered > 1 else {}
 
     @property
     def route(self) -> str | None:
@@ -336,11 +354,20 @@ class DeepCubemap(BufferSet):
         return seconds[True] < seconds[False]
 
     def _expect(self, triangle_count: int) -> None:
-        """Room for an ordinary scene of so many triangles, as far as the device allows it."""
+        """Room for an ordinary scene of so many triangles, as far as the device allows it. Lists are longer than a
+        block only where they surely must be, which saves building in vain until they are."""
         limit = self._context.storage_block_limit
-        for name, expected in _expected(triangle_count).items():
+        for name, expected in _expected(triangle_count, _LISTED_BY_CLUSTERS[self._most_clustered]).items():
             size = 16 * CELL.size if name == "tile" else self._lists[name].item_size
-            self._grow(name, min(expected, limit // size - 2))
+            most = limit // size - 2
+            if name != "tile" and _SURELY * expected > most:
+                try:
+                    self._grow(name, min(expected, self._lists[name].limit // size - 2))
+                except DeviceLostError:
+                    raise
+                except DeviceError as error:
+                    log.debug("%s", error)  # coarser cells may do with fewer
+            self._grow(name, min(expected, most))
 
     def _grow(self, name: str, count: int) -> None:
         """Make room for ``count`` items of a list, with some to spare where the device allows it."""
@@ -435,12 +462,18 @@ class DeepCubemap(BufferSet):
             "Triangles": known(self._triangles),
         }
 
-        def run(name: str, threads: int, parameters: dict | None = None) -> None:
-            program = self._library.compute(f"deep_cubemap/{name}.comp")
+        def run(
+            name: str, threads: int, parameters: dict | None = None, defines: Mapping[str, object] | None = None
+        ) -> None:
+            program = self._library.compute(f"deep_cubemap/{name}.comp", defines)
             program.run(threads, {block: buffers[block] for block in program.blocks}, parameters)
 
         run("plant", int(state["tile_count"]))
-        run("list_overlap_jobs", int(state["triangle_count"]))
+        if self._most_clustered > 1:
+            defines = {**self._cluster_defines, "MOST_CLUSTERED": f"{self._most_clustered}u"}
+            run("list_cluster_jobs", -(-int(state["triangle_count"]) // self._most_clustered), None, defines)
+        else:
+            run("list_overlap_jobs", int(state["triangle_count"]))
         first_tile, level = sum(level_tiles[:-1]), base
         self._fragments_found = 0
         while True:
@@ -507,13 +540,13 @@ class DeepCubemap(BufferSet):
 
     def _overlap(self, jobs: int, buffers: Mapping[str, moderngl.Buffer], parameters: dict[str, int]) -> None:
         if not self._rasterize:
-            computed = self._library.compute("deep_cubemap/overlap.comp")
+            computed = self._library.compute("deep_cubemap/overlap.comp", self._cluster_defines)
             computed.run(jobs, {block: buffers[block] for block in computed.blocks}, parameters)
             return
         side = parameters["picture_side"]
         if self._framebuffer is None:
             self._framebuffer = self.own(self._context.moderngl.empty_framebuffer((side, side)))
-        drawn = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag")
+        drawn = self._library.draw("deep_cubemap/overlap.vert", "deep_cubemap/overlap.frag", self._cluster_defines)
         drawn.draw(self._framebuffer, 6 * jobs, {block: buffers[block] for block in drawn.blocks}, parameters)
 
     def _picture_side(self) -> int:
@@ -522,13 +555,19 @@ class DeepCubemap(BufferSet):
         return min(_PICTURE_SIDE, int(limits["GL_MAX_TEXTURE_SIZE"]), *map(int, limits["GL_MAX_VIEWPORT_DIMS"]))
 
 
-def _expected(triangle_count: int) -> dict[str, int]:
-    """Lengths of lists that ordinary scenes of so many triangles do not pass."""
+def _most_clustered(triangle_count: int) -> int:
+    """Triangles of a scene that entries stand for together at most."""
+    return next((most for least, most in _CLUSTERED.items() if triangle_count >= least), 1)
+
+
+def _expected(triangle_count: int, share: float) -> dict[str, int]:
+    """Lengths of lists that ordinary scenes of so many triangles do not pass. share: of those without clusters."""
+    number = int(share * triangle_count)
     return {
-        "job": 5 * triangle_count // 2 + 4096,
-        "fragment": 4 * triangle_count + 16384,
-        "tile": triangle_count // 32 + 4096,
-        "entry": 7 * triangle_count + 16384,
-        "binned_cell": triangle_count // 4 + 4096,
-        "binned_fragment": 5 * triangle_count + 16384,
+        "job": 5 * number // 2 + 4096,
+        "fragment": 4 * number + 16384,
+        "tile": number // 32 + 4096,
+        "entry": 7 * number + 16384,
+        "binned_cell": number // 4 + 4096,
+        "binned_fragment": 5 * number + 16384,
     }

@@ -2,6 +2,7 @@
 """Triangles that emit light: how brightly, and how likely each is chosen."""
 
 import math
+from collections.abc import Callable, Iterator
 
 import moderngl
 import numpy as np
@@ -13,7 +14,8 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...materials.emitted import Emits, asks_for_path
 from ...materials.tables import MaterialTables
-from ...scene.meshes import MeshShape, RayVisibility
+from ...scene.errors import DeviceError
+from ...scene.meshes import Instance, MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
@@ -27,7 +29,7 @@ from ..common.records import (
     RAY,
     EmitterTrait,
 )
-from ..surfaces.geometry import Geometry, Placement
+from ..surfaces.geometry import Geometry, Placement, objects_of_most
 from ..surfaces.resolve import Resolve
 from .light_links import NO_LINK, LightLinkTable
 from .light_tree import triangle_leaves
@@ -50,7 +52,8 @@ class Emitters(BufferSet):
     """The emissive triangles of a scene, and the emission of those whose material has it vary over the surface.
 
     ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves``
-    are theirs of the light tree, but for the light sets, and ``links`` (count,) the numbers of their LightLinks.
+    are theirs of the light tree, until that is built, but for the light sets, and ``links`` (count,) the numbers of
+    their LightLinks.
     """
 
     triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, texel_bytes=16)
@@ -76,25 +79,16 @@ class Emitters(BufferSet):
         self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve, links: LightLinkTable
     ) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
-        dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
-        by_path = {m for m, material in enumerate(scene.materials) if m not in dark and asks_for_path(material.graph)}
-        found = [
-            _may_emit(scene, placement, materials, by_path, links)
-            for placement in geometry.placements
-            if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
-        ]
-        kinds_of_parts: tuple[DTypeLike, ...] = (
-            EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool, np.int64, np.int64
-        )  # fmt: skip
-        records, corners, kinds, varying, reflected, numbers, sides = (
-            np.concatenate([parts[k] for parts in found]) if found else np.zeros((0,), kind)
-            for k, kind in enumerate(kinds_of_parts)
-        )
+        records, corners, kinds, varying, reflected, numbers, sides = _candidates(scene, geometry, materials, links)
         self._ask(records, corners, kinds, varying, resolve)
         bright = records["radiance"].max(axis=1, initial=0.0) > 0
-        records, varying, reflected, sides = records[bright], varying[bright], reflected[bright], sides[bright]
-        self.links = numbers[bright]
-        self.leaves = triangle_leaves(records, corners[bright].reshape(-1, 3, 3))
+        if not bright.all():  # where all are, none of these many bytes is copied
+            records, corners, varying, reflected, numbers, sides = (
+                column[bright] for column in (records, corners, varying, reflected, numbers, sides)
+            )
+        self.links = numbers
+        self.leaves = triangle_leaves(records, corners.reshape(-1, 3, 3))
+        del corners, kinds
         self._varying = bool(varying.any())
         self._world_triangles = geometry.triangles.buffer
         self.count = len(records)
@@ -231,6 +225,53 @@ def chances(weights: np.ndarray) -> np.ndarray:
     return steps
 
 
+def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables, refuse: Callable[[int], None]) -> None:
+    """Have ``refuse`` judge how many triangles may emit, before anything is asked of them. Raises its DeviceError, with
+    the objects that have the most."""
+    if all(emits is Emits.NOTHING for emits in materials.emits):
+        return
+    known_counts: dict[tuple[int, ...], int] = {}
+    instances = [placement.instance for placement in geometry.placements]
+    keys = [(instance.mesh, *instance.materials) for instance in instances]
+    for key, instance in zip(keys, instances):
+        if key not in known_counts:
+            known_counts[key] = len(_emitting(scene, instance, materials)[1])
+    counts = [known_counts[key] for key in keys]
+    try:
+        refuse(sum(counts))
+    except DeviceError as error:
+        most = objects_of_most(instances, counts)
+        raise DeviceError(f"{error} (of {sum(counts):,} that do, instances counted each: {most})") from error
+
+
+def _candidates(
+    scene: Scene, geometry: Geometry, materials: MaterialTables, links: LightLinkTable
+) -> Iterator[np.ndarray]:
+    """What _may_emit tells, of all instances together."""
+    dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
+    by_path = {m for m, material in enumerate(scene.materials) if m not in dark and asks_for_path(material.graph)}
+    found = [
+        _may_emit(scene, placement, materials, by_path, links)
+        for placement in geometry.placements
+        if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
+    ]
+    kinds_of_parts: tuple[DTypeLike, ...] = (
+        EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool, np.int64, np.int64
+    )  # fmt: skip
+    columns = list(zip(*found)) if found else [[np.zeros((0,), kind)] for kind in kinds_of_parts]
+    del found
+    return (np.concatenate(columns.pop(0)) for _ in kinds_of_parts)  # each is given back once it is joined
+
+
+def _emitting(scene: Scene, instance: Instance, materials: MaterialTables) -> tuple[np.ndarray, np.ndarray]:
+    """Materials of an instance's slots, -1 where there is none, and the mesh's triangles that may emit, by number."""
+    slots = np.array([m if 0 <= m < len(scene.materials) else -1 for m in instance.materials] or [-1])
+    emits = np.array([materials.emits[m] is not Emits.NOTHING for m in slots])
+    if not emits.any():
+        return slots, np.zeros(0, np.int64)
+    return slots, np.nonzero(emits[np.minimum(scene.meshes[instance.mesh].triangle_slots, len(slots) - 1)])[0]
+
+
 def _may_emit(
     scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int], links: LightLinkTable
 ) -> tuple[np.ndarray, ...]:
@@ -239,11 +280,7 @@ def _may_emit(
     without the path that comes there."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
-    slots = np.array([m if 0 <= m < len(scene.materials) else -1 for m in instance.materials] or [-1])
-    emits = np.array([materials.emits[m] is not Emits.NOTHING for m in slots])
-    which = np.zeros(0, np.int64)
-    if emits.any():
-        which = np.nonzero(emits[np.minimum(mesh.triangle_slots, len(slots) - 1)])[0]
+    slots, which = _emitting(scene, instance, materials)
     corners = mesh.positions[mesh.corner_vertices[mesh.triangle_corners[which]]].astype(np.float64)
     corners = corners @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)

@@ -27,6 +27,7 @@ class LightTree(BufferSet):
     Each tree's root is node 1 behind its first; ``parameters`` are the values of LIGHT_TREE_PARAMETERS.
     """
 
+    remedy = "let fewer triangles emit light: lower the children of particles or the subdivision of what does"
     nodes = StorageBuffer("light tree", LIGHT_NODE, texel_bytes=16)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
@@ -48,8 +49,15 @@ class LightTree(BufferSet):
             "first_sun": int(firsts[2]),
             "sun_count": len(suns),
         }
-        nodes = np.concatenate(parts)
-        self.nodes.upload(nodes if len(nodes) else LIGHT_NODE.zeros(1))
+        if not firsts[-1]:
+            self.nodes.upload(LIGHT_NODE.zeros(1))
+        self.nodes.require_items(int(firsts[-1]))
+        for first, part in zip(firsts.tolist(), parts):  # of millions of triangles, no copy of all together
+            self.nodes.write(part, LIGHT_NODE.size * first)
+
+    def refuse(self, lights: int, triangles: int) -> None:
+        """Raise DeviceError where the device has no room for so many emissive triangles beside so many lights."""
+        self.nodes.refuse_items(sum(2 * _places(leaves) for leaves in (lights, triangles) if leaves) + lights)
 
 
 LIGHT_TREE_PARAMETERS = {
@@ -111,7 +119,7 @@ def tree_of(leaves: np.ndarray) -> np.ndarray:
     leaves that are missing have no intensity."""
     if not len(leaves):
         return LIGHT_NODE.zeros(0)
-    places = 1 << (len(leaves) - 1).bit_length()
+    places = _places(len(leaves))
     nodes = LIGHT_NODE.zeros(2 * places)
     nodes[places : places + len(leaves)] = leaves[_morton_order(leaves)]
     level = places
@@ -120,6 +128,11 @@ def tree_of(leaves: np.ndarray) -> np.ndarray:
         nodes[level // 2 : level] = _merged(children[0::2], children[1::2])
         level //= 2
     return nodes
+
+
+def _places(leaves: int) -> int:
+    """Of a complete tree's lowest level."""
+    return 1 << (leaves - 1).bit_length()
 
 
 def _widened(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -17,11 +17,19 @@ from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..common.records import LIGHT, LIGHT_LINK, LIGHT_SOFT, LIGHT_THROUGH_PORTALS, NO_LIGHT_GROUP, LightShape
+from ..common.records import (
+    LIGHT,
+    LIGHT_LINK,
+    LIGHT_NODE,
+    LIGHT_SOFT,
+    LIGHT_THROUGH_PORTALS,
+    NO_LIGHT_GROUP,
+    LightShape,
+)
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
-from .emitters import Emitters
+from .emitters import Emitters, refuse_too_many
 from .environment import Environment
 from .guide import Guide
 from .light_entry import light_entry
@@ -29,7 +37,7 @@ from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
-from .sources import ENVIRONMENT, SURFACES, source_name
+from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name
 
 log = logging.getLogger(__name__)
 
@@ -193,7 +201,8 @@ class Lights(BufferSet):
         photons: of that iteration, no more than the scene's. keep_world, keep_light_objects: the world, or
         all light objects, are those of the last call. keep_learned: the lights are those of the last call at another
         time, and what was learned of them holds.
-        Raises SceneError when all lights have a photon weight of 0.
+        Raises SceneError when all lights have a photon weight of 0, and DeviceError where more triangles emit than the
+        device has room for.
         """
         self.times_built += 1
         self.scene_radius = radius = max(geometry.radius * 1.001, 1e-6)
@@ -209,7 +218,7 @@ class Lights(BufferSet):
                 names.append(name)
                 entries.append(entry)
                 powers.append(float(np.mean(power)))
-                weights.append(float(np.mean(power)) * max(weight, 0.0))
+                weights.append(max(weight, 0.0))
                 groups.append(group)
 
         if not keep_light_objects:
@@ -227,6 +236,9 @@ class Lights(BufferSet):
                     entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
                 power = power * nodes.mean / (1.0 + nodes.smoothing)
             add(source_name(light.name), entry, power, light.photon_weight, light.light_group)
+        refuse_too_many(
+            scene, geometry, materials, lambda triangles: self._light_tree.refuse(len(scene.lights), triangles)
+        )
         self.emitters.build(scene, geometry, materials, resolve, links)
         entry = LIGHT.zeros(1)[0]
         entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
@@ -285,6 +297,7 @@ class Lights(BufferSet):
         sets = links.records["light_sets"]
         self.emitters.leaves["light_sets"] = sets[self.emitters.links]
         self._light_tree.build(table, self.emitters.leaves, sets)
+        self.emitters.leaves = LIGHT_NODE.zeros(0)  # as large as the triangles themselves
         self._parameters = {
             "scene_center": geometry.center,
             "scene_radius": radius,
@@ -318,10 +331,11 @@ class Lights(BufferSet):
 
     def begin(self, photons: int) -> None:
         """Forget what photons were good for, as before the first iteration, and share so many among the lights."""
-        self._share_photons(self._weights, self._most_photons)
+        even = np.ones(len(self._weights))
+        self._share_photons(even, self._most_photons)
         self.guide.build(self.table, self._most_photons)
         if photons != self._most_photons:
-            self._share_photons(self._weights, photons)
+            self._share_photons(even, photons)
         self._upload_table()
 
     def _upload_table(self) -> None:
@@ -329,13 +343,16 @@ class Lights(BufferSet):
         records[: len(self.table)], records[len(self.table) :] = self.table, self.portals.records
         self._lights.upload(records)
 
-    def _share_photons(self, weights: np.ndarray, photons: int, fraction: float = FIRST_PHOTON_FRACTION) -> None:
+    def _share_photons(self, contributions: np.ndarray, photons: int, fraction: float = FIRST_PHOTON_FRACTION) -> None:
         """fraction: of the world's photons, those that leave through portals, where there are any."""
         self._photons = photons
+        powers, worth = np.array(self._powers), self._weights * contributions
         if self.portals.power > 0.0:
-            world = weights[-2]
-            weights = np.append(weights[:-2], [(1.0 - fraction) * world, fraction * world])
-        counts = share_out(weights, photons)
+            shares = photon_shares(powers[:-1], worth[:-1])
+            shares = np.append(shares[:-1], shares[-1] * np.array([1.0 - fraction, fraction]))
+        else:
+            shares = photon_shares(powers, worth)
+        counts = share_out(shares, photons)
         self.table["photon_count"] = counts
         self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
@@ -346,12 +363,12 @@ class Lights(BufferSet):
     def learn(self, photons: int) -> float:
         """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.
 
-        Lights get photons by the power that is of use; see guide.py. Returns how many times more photons should be
-        of use from now on.
+        Lights get photons by the power that is of use (guide.py), and a part by use alone. Returns how many times more
+        photons should be of use from now on.
         """
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
-        self._share_photons(self._weights * weights, photons, self._portal_fraction)
+        self._share_photons(weights, photons, self._portal_fraction)
         self._upload_table()
         return float(self.table["photon_count"] @ contributed[:, 1] / before)
 
@@ -360,13 +377,15 @@ class Lights(BufferSet):
         iteration had so many photons."""
         weights = self.guide.restore(tallies, learned)
         if weights is not None:
-            self._share_photons(self._weights * weights, photons, self._portal_fraction)
+            self._share_photons(weights, photons, self._portal_fraction)
             self._upload_table()
 
     @property
     def _portal_fraction(self) -> float:
         """photon_fraction, as the guide knows it."""
-        return photon_fraction((self._weights * self.guide.even_contribution)[-2:]) if self.portals.power > 0.0 else 0.0
+        if not self.portals.power > 0.0:
+            return 0.0
+        return photon_fraction(np.array([self._powers[-2], self.portals.power]) * self.guide.even_contribution[-2:])
 
     @property
     def photon_flux(self) -> float:

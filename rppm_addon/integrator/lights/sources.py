@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names of light sources in statistics."""
+"""Light sources: their names in statistics, and their shares of the photons."""
+
+import numpy as np
 
 SURFACES = "Emissive surfaces"
 ENVIRONMENT = "World"
@@ -8,3 +10,21 @@ ENVIRONMENT = "World"
 def source_name(light: str) -> str:
     """Of a light object, never that of the surfaces or the world."""
     return f'Light "{light}"'
+
+
+_REGARDLESS_OF_POWER = 0.125
+"""Of the photons: what sources get however little power they have. Beside a world of a thousand meters around, or a
+sun, lamps in a room would have no photon, though all that the others send misses the room."""
+
+
+def photon_shares(powers: np.ndarray, contributions: np.ndarray) -> np.ndarray:
+    """Shares of the photons, (n,) summing to 1, or zeros where no source is to have any.
+
+    ``powers`` in W; ``contributions``: what a photon of each source is worth, by the user's weight and by what earlier
+    ones contributed, in any unit.
+    """
+    by_power = powers * contributions
+    if not by_power.sum() > 0.0:
+        return np.zeros(len(powers))
+    by_power, regardless = by_power / by_power.sum(), contributions / contributions.sum()
+    return (1.0 - _REGARDLESS_OF_POWER) * by_power + _REGARDLESS_OF_POWER * regardless

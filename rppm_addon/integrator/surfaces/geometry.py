@@ -3,7 +3,7 @@
 
 import logging
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -222,12 +222,11 @@ class Geometry(BufferSet):
         except DeviceLostError:
             raise
         except DeviceError as error:
-            sums: Counter[str] = Counter()
-            for instance, length in zip(instances, lengths.tolist()):
-                sums[instance.object_name] += length
-            most = ", ".join(f'{count:,} of "{name}"' for name, count in sums.most_common(_OBJECTS_NAMED))
+            most = objects_of_most(instances, lengths.tolist())
+            room = self.triangles.limit // self.triangles.item_size
+            held = f"; {room:,} have room in one buffer" if self.triangle_count > room else ""
             raise DeviceError(
-                f"{error} (of {self.triangle_count:,} triangles, instances counted each: {most})"
+                f"{error} (of {self.triangle_count:,} triangles, instances counted each: {most}{held})"
             ) from error
 
     def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
@@ -266,6 +265,14 @@ class Geometry(BufferSet):
                 data = [_flat(arrays[index], dtype) for index in run]
                 buffer.write(data[0] if len(data) == 1 else np.concatenate(data), int(offsets[run[0]]))
             self._arrays[name] = arrays
+
+
+def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> str:
+    """Names of those whose instances have the most triangles, so many each, and how many all of them have."""
+    sums: Counter[str] = Counter()
+    for instance, length in zip(instances, lengths, strict=True):
+        sums[instance.object_name] += length
+    return ", ".join(f'{count:,} of "{name}"' for name, count in sums.most_common(_OBJECTS_NAMED) if count)
 
 
 def _fill(

@@ -1,0 +1,73 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint: TRIANGLE_CLUSTERS=1 MOST_CLUSTERED=4u
+// What list_overlap_jobs.comp does, in clusters: a thread takes MOST_CLUSTERED triangles that follow each other, and
+// lists those together that lie together. Those near the center are core triangles one by one.
+layout(local_size_x = 64) in;
+#define DEEP_CUBEMAP_BUILD
+#include "common/invocation.glsl"
+#include "deep_cubemap/triangle_jobs.glsl"
+#include "deep_cubemap/clusters.glsl"
+
+// The box around a cluster has at most so many times the surface of all boxes around its triangles.
+const float MOST_LOOSE = 2.0;
+
+float half_surface(vec3 box) { return dot(box, box.yzx); }
+
+bool lie_together(uint first, uint size) {
+    if (first + size > deep_cubemap.triangle_count) return false;
+    vec3 low = vec3(1e30), high = vec3(-1e30);
+    float sum = 0.0;
+    for (uint triangle = first; triangle < first + size; ++triangle) {
+        Corners corners = corners_of(triangle);
+        if (!is_finite(corners)) return false;
+        vec3 lowest = min(min(corners.a, corners.b), corners.c), highest = max(max(corners.a, corners.b), corners.c);
+        low = min(low, lowest);
+        high = max(high, highest);
+        sum += half_surface(highest - lowest);
+    }
+    return half_surface(high - low) <= MOST_LOOSE * sum;
+}
+
+uvec2 extent_around(uvec2 one, uvec2 other) {
+    return uvec2(min(one.x & 0xffffu, other.x & 0xffffu) | min(one.x >> 16, other.x >> 16) << 16,
+                 max(one.y & 0xffffu, other.y & 0xffffu) | max(one.y >> 16, other.y >> 16) << 16);
+}
+
+// Once for all faces: what every triangle tells of all of them.
+void enter_triangles(uint first, uint size) {
+    for (uint triangle = first; triangle < first + size; ++triangle) {
+        Corners corners = corners_of(triangle);
+        if (!is_finite(corners)) continue;
+        widen_box(corners.a, corners.b, corners.c);
+        list_core_triangle(triangle, corners.a, corners.b, corners.c);
+    }
+}
+
+void list_cluster(uint first, uint size) {
+    for (int face = 0; face < 6; ++face) {
+        bool is_seen = false;
+        uvec2 extent = uvec2(0u);
+        for (uint triangle = first; triangle < first + size; ++triangle) {
+            Corners corners = corners_of(triangle);
+            uvec2 own;
+            if (!is_finite(corners) || is_within_core(corners) || !face_extent(corners, face, own)) continue;
+            extent = is_seen ? extent_around(extent, own) : own;
+            is_seen = true;
+        }
+        if (is_seen) list_jobs(pack_cluster(first, size), face, extent);
+    }
+}
+
+void main() {
+    uint first = MOST_CLUSTERED * invocation_index();
+    uint end = min(first + MOST_CLUSTERED, deep_cubemap.triangle_count);
+    if (first >= end) return;
+    enter_triangles(first, end - first);
+    while (first < end) {
+        uint size = MOST_CLUSTERED;
+        while (size > 1u && (first % size != 0u || !lie_together(first, size))) size >>= 1;
+        list_cluster(first, size);
+        first += size;
+    }
+}
