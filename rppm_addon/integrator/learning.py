@@ -31,6 +31,8 @@ from .stages.photons import Photons
 
 _MOST_LEAVING = 0.25
 """Of gathering rays: where more leave the scene, rays find the world's light as well as photons or better."""
+_LEAST_UNCOVERED = 0.02
+"""Of those that leave: where more pass portals, shadow rays find nearly all of it there."""
 
 
 def may_share_world_light(context: StageContext) -> bool:
@@ -59,7 +61,8 @@ class Learning:
         self.widest_radius = widest_radius(footprints, geometry.bounds_low, geometry.bounds_high)
         self._automatic = settings.photons == 0
         self.photon_counts = PhotonCounts(context.scene.photon_count, context.scene.photon_count)
-        self._shares_world_light = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
+        leaves_little = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
+        self._shares_world_light = leaves_little and pilot.uncovered_fraction >= _LEAST_UNCOVERED
         self.wide_radius = 0.0
         """Of the first iteration, meters: what diffused photons are spread over. Known once its photons are."""
         self.diffused_photons_found: float | None = None

@@ -14,6 +14,7 @@ from .common.iteration import Iteration
 from .common.records import GATHERING_VERTEX, HIT, NO_TRIANGLE, RAY
 from .density_estimation.radii import Radii, radius_in_pixels
 from .device_scene.stage_context import StageContext
+from .lights.portals import passes_portal
 from .stages.stage_set import StageSet
 
 MOST_PIXELS = 1 << 14
@@ -32,6 +33,8 @@ class PilotView:
     """(rows, columns) Eq. 3 radii of the camera's first hits, meters; 0 where there is no importon."""
     leaving_fraction: float
     """Of the gathering rays from there, those that leave the scene; nan where none was followed."""
+    uncovered_fraction: float = 1.0
+    """Of these, those that pass no portal."""
 
 
 def pilot_sizes(width: int, height: int) -> list[tuple[int, int]]:
@@ -86,12 +89,16 @@ def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> P
         pilot = np.concatenate(footprints).reshape(rows, columns)
         if np.count_nonzero(pilot) >= FEWEST_HITS:
             break
-    triangles = np.concatenate(ends) if ends else np.zeros(0)
-    return PilotView(pilot, float(np.mean(triangles == NO_TRIANGLE)) if len(triangles) else math.nan)
+    followed = np.concatenate(ends) if ends else np.zeros((0, 2), bool)
+    leaves, uncovered = followed.T
+    if not len(followed):
+        return PilotView(pilot, math.nan)
+    return PilotView(pilot, float(leaves.mean()), float(uncovered.sum() / max(leaves.sum(), 1)))
 
 
 def _ends_of_gathering_rays(context: StageContext, stages: StageSet, pixels: int, stride: int) -> np.ndarray:
-    """(n,) uint32 triangles that gathering rays which have just set out hit, one in ``stride`` of them."""
+    """(n, 2) bool of gathering rays which have just set out, one in ``stride`` of them: whether they leave the scene,
+    and whether they do so and pass no portal."""
     importons = stages.importons
     rays = importons.rays.read(RAY.dtype, pixels).copy()
     gathers = stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, pixels)["shared_radius"] >= 0.0
@@ -101,4 +108,6 @@ def _ends_of_gathering_rays(context: StageContext, stages: StageSet, pixels: int
     rays["maximum_distance"] = distances
     importons.rays.write(rays)
     importons.trace(context)
-    return importons.hits.read(HIT.dtype, pixels)["triangle"][followed]
+    leaves = importons.hits.read(HIT.dtype, pixels)["triangle"][followed] == NO_TRIANGLE
+    starts, directions = (rays[name][followed].astype(np.float64) for name in ("origin", "direction"))
+    return np.stack([leaves, leaves & ~passes_portal(context.lights.portals.records, starts, directions)], -1)

@@ -53,6 +53,8 @@ class Light:
     """AREA: full width along local X and height along local Y before the matrix's scale."""
     spread: float = np.pi
     """AREA: full angle of emission, radians (Cycles' spread); pi is diffuse."""
+    is_portal: bool = False
+    """AREA: it gives no light, but says where the world's comes in, to the side that it faces."""
     visibility: RayVisibility = RayVisibility.ALL
     """What sees the light itself or is lit by it: the camera, diffuse surfaces, reflections, transmissions."""
     graph: NodeGraph | None = None

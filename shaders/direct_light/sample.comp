@@ -3,6 +3,7 @@
 // lint:
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: PORTALS=1
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;
@@ -163,8 +164,11 @@ float direct_radius(uint index, CameraPath path, Closure closure, vec3 wo, bool 
 }
 
 // What they leave to rays along a direction.
-float left_to_rays(vec3 direction, float radius) {
+float left_to_rays(vec3 point, vec3 direction, float radius) {
     if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+#ifdef PORTALS
+    if (view_portals(point, direction, NO_PORTAL).pdf > 0.0) return 1.0;
+#endif
     return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction), radius);
 }
 
@@ -178,6 +182,10 @@ Arriving arriving_from_light(uint index, uint flags, float radius, Closure closu
     vec3 facing = lit_normal(closure);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
+#ifdef PORTALS
+    // Through portals shadow rays find it as well.
+    environment_irradiance = portal_irradiance(closure.position, environment_irradiance);
+#endif
     LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(index, closure),
                                                   light_set_at(closure.triangle)),
                                          environment_irradiance, u.x, u.y);
@@ -193,7 +201,7 @@ Arriving arriving_from_light(uint index, uint flags, float radius, Closure closu
     float light_pdf = sampled.pdf * light.selection_probability;
     if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
     bool environment = light.kind == LIGHT_WORLD;
-    float by_rays = environment ? left_to_rays(sampled.direction, radius) : 1.0;
+    float by_rays = environment ? left_to_rays(closure.position, sampled.direction, radius) : 1.0;
     vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));

@@ -3,6 +3,7 @@
 // lint:
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: PORTALS=1
 // TraceImportons: collect what a camera path sees shine, leave an importon for the lobes that store
 // photons, and go on by the specular ones.
 
@@ -75,10 +76,30 @@ void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, v
     importons[index].lobe_anisotropy = lobe.anisotropy;
 }
 
-// The share that a ray has of the environment that shadow rays from its vertex find as well, with this pdf in 1/sr.
-float environment_weight(CameraPath path, float shadow_ray_pdf) {
+// How a ray and shadow rays from where it began find the environment: the pdf of these in 1/sr, as photons know it and
+// as it is at that place; and whether neighbors share what the ray finds.
+struct EnvironmentView { float plain_pdf; float pdf; bool is_shared; };
+
+// An even environment is left to rays, but for what comes through portals. Neighbors share it: its shadows are as soft
+// as those of indirect light.
+EnvironmentView view_environment(Ray ray) {
+    float plain_pdf = world_shadow_ray_pdf(ray.direction);
     bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
-    return scatter_mis_weight(path.scatter_pdf, left_to_rays ? 0.0 : shadow_ray_pdf);
+    EnvironmentView view = EnvironmentView(plain_pdf, left_to_rays ? 0.0 : plain_pdf, environment_is_even());
+#ifdef PORTALS
+    PortalView portals = view_portals(ray.origin, ray.direction, NO_PORTAL);
+    if (portals.solid_angle > 0.0) view.pdf = parameters.world_selection * mixed_world_pdf(portals, ray.direction);
+    if (portals.pdf > 0.0) {
+        view.plain_pdf = ONLY_SHADOW_RAYS;
+        view.is_shared = false;
+    }
+#endif
+    return view;
+}
+
+// The share that a ray has of the environment that shadow rays from its vertex find as well.
+float environment_weight(CameraPath path, EnvironmentView view) {
+    return scatter_mis_weight(path.scatter_pdf, view.pdf);
 }
 
 // Radiance of the world for a path that comes to no surface. What gathering rays find lights the surface before; what
@@ -92,14 +113,12 @@ vec3 found_world(uint flags, vec3 direction) {
 
 // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left to
 // photons but for the environment's. Shadow rays find direct light, and share the environment's with this ray.
-// shadow_ray_pdf: of these.
-void end_gathering_ray(uint index, CameraPath path, vec3 world, float shadow_ray_pdf) {
+void end_gathering_ray(uint index, CameraPath path, vec3 world, EnvironmentView view) {
     if ((path.flags & PATH_CAUSTIC) == 0u) {
         if (parameters.next_event == 0u) return;
-        vec3 arrived = path.throughput * world * environment_weight(path, shadow_ray_pdf);
-        arrived *= 1.0 - direct_photon_share(world, shadow_ray_pdf, gathering_vertices[index].radius);
-        // Neighbors share an even environment: its shadows are as soft as those of indirect light.
-        bool is_shared = (path.flags & PATH_GATHERED_AGAIN) != 0u || environment_is_even();
+        vec3 arrived = path.throughput * world * environment_weight(path, view);
+        arrived *= 1.0 - direct_photon_share(world, view.plain_pdf, gathering_vertices[index].radius);
+        bool is_shared = (path.flags & PATH_GATHERED_AGAIN) != 0u || view.is_shared;
         if (is_shared) gathering_vertices[index].found = arrived;
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
         return;
@@ -109,10 +128,10 @@ void end_gathering_ray(uint index, CameraPath path, vec3 world, float shadow_ray
 }
 
 // Radiance and alpha of what lies behind everything. background: no light object was passed.
-vec4 seen_environment(CameraPath path, vec3 world, float shadow_ray_pdf, bool background) {
+vec4 seen_environment(CameraPath path, vec3 world, EnvironmentView view, bool background) {
     if ((path.flags & PATH_STRAIGHT) != 0u && background && parameters.film_transparent != 0u)
         return vec4(vec3(0.0), -(path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
-    return vec4(path.throughput * world * environment_weight(path, shadow_ray_pdf), 0.0);
+    return vec4(path.throughput * world * environment_weight(path, view), 0.0);
 }
 
 // Radiance and alpha of a surface that shines by itself or cuts a hole.
@@ -267,13 +286,13 @@ void main() {
     if (!(ray.maximum_distance > 0.0)) return;
     bool hit = closures[index].triangle != NO_TRIANGLE, gathered = (path.flags & PATH_GATHERED) != 0u;
     vec3 world = vec3(0.0);
-    float shadow_ray_pdf = 0.0;
+    EnvironmentView view = EnvironmentView(0.0, 0.0, false);
     if (!hit) {
         world = found_world(path.flags, ray.direction);
-        shadow_ray_pdf = world_shadow_ray_pdf(ray.direction);
+        view = view_environment(ray);
     }
     if (gathered && !hit) {
-        end_gathering_ray(index, path, world, shadow_ray_pdf);
+        end_gathering_ray(index, path, world, view);
         return;
     }
     vec3 lights_passed = vec3(0.0);
@@ -283,7 +302,7 @@ void main() {
                                       light_set_at(ray.source_triangle));
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);
     if (!hit) {
-        radiances[index] += seen + seen_environment(path, world, shadow_ray_pdf, largest(lights_passed) <= 0.0);
+        radiances[index] += seen + seen_environment(path, world, view, largest(lights_passed) <= 0.0);
         return;
     }
     Closure closure = closures[index];

@@ -35,7 +35,13 @@ vec3 world_radiance(vec3 direction, bool seen) {
 // Without textures: gathering rays then find it so well that no shadow rays are sent to it.
 bool environment_is_even() { return parameters.environment_width == 0u; }
 
-// The distribution lists the cumulated shares of the rows, then those of the cells within each row.
+// A distribution lists the cumulated shares of the rows, then those of the cells within each row.
+struct DirectionTable { uint first; uint width; uint height; };
+
+DirectionTable world_table() {
+    return DirectionTable(0u, parameters.environment_width, parameters.environment_height);
+}
+
 uint environment_search(uint first, uint count, float u) {
     uint low = 0u, high = count - 1u;
     while (low < high) {
@@ -50,29 +56,29 @@ float environment_share(uint first, uint index) {
     return environment_distribution[first + index] - (index == 0u ? 0.0 : environment_distribution[first + index - 1u]);
 }
 
-// Pdf in 1/sr with which sample_world gives a direction.
-float world_pdf(vec3 direction) {
-    if (parameters.environment_width == 0u) return 1.0 / (4.0 * PI);
+uvec2 table_cell(DirectionTable table, vec2 uv) {
+    return uvec2(min(uint(fract(uv.x) * float(table.width)), table.width - 1u),
+                 min(uint(uv.y * float(table.height)), table.height - 1u));
+}
+
+// Pdf in 1/sr with which sample_table gives a direction.
+float table_pdf(DirectionTable table, vec3 direction) {
     vec2 uv = direction_to_equirectangular(direction);
-    uint width = parameters.environment_width, height = parameters.environment_height;
-    uint row = min(uint(uv.y * float(height)), height - 1u), column = min(uint(fract(uv.x) * float(width)), width - 1u);
-    float share = environment_share(0u, row) * environment_share(height + row * width, column);
-    return share * float(width) * float(height) / (2.0 * PI * PI * max(sin(PI * (1.0 - uv.y)), 1e-6));
+    uvec2 cell = table_cell(table, uv);
+    float share = environment_share(table.first, cell.y)
+                * environment_share(table.first + table.height + cell.y * table.width, cell.x);
+    return share * float(table.width) * float(table.height) / (2.0 * PI * PI * max(sin(PI * (1.0 - uv.y)), 1e-6));
 }
 
 // A direction toward the world and its pdf in 1/sr.
-vec3 sample_world(vec2 u, out float pdf) {
-    if (parameters.environment_width == 0u) {
-        pdf = 1.0 / (4.0 * PI);
-        return sample_sphere(u);
-    }
-    uint width = parameters.environment_width, height = parameters.environment_height;
-    uint row = environment_search(0u, height, u.y);
-    float row_share = environment_share(0u, row);
-    uint first = height + row * width;
+vec3 sample_table(DirectionTable table, vec2 u, out float pdf) {
+    uint width = table.width, height = table.height;
+    uint row = environment_search(table.first, height, u.y);
+    float row_share = environment_share(table.first, row);
+    uint first = table.first + height + row * width;
     uint column = environment_search(first, width, u.x);
     float column_share = environment_share(first, column);
-    float below_row = row == 0u ? 0.0 : environment_distribution[row - 1u];
+    float below_row = row == 0u ? 0.0 : environment_distribution[table.first + row - 1u];
     float below_column = column == 0u ? 0.0 : environment_distribution[first + column - 1u];
     vec2 uv = vec2((float(column) + clamp((u.x - below_column) / max(column_share, 1e-20), 0.0, 1.0)) / float(width),
                    (float(row) + clamp((u.y - below_row) / max(row_share, 1e-20), 0.0, 1.0)) / float(height));
@@ -80,3 +86,36 @@ vec3 sample_world(vec2 u, out float pdf) {
     pdf = row_share * column_share * float(width) * float(height) / (2.0 * PI * PI * sine);
     return equirectangular_to_direction(uv);
 }
+
+// Pdf in 1/sr with which sample_world gives a direction.
+float world_pdf(vec3 direction) {
+    if (parameters.environment_width == 0u) return 1.0 / (4.0 * PI);
+    return table_pdf(world_table(), direction);
+}
+
+// Of a table; of an even world's, which is empty, from all around.
+vec3 sample_directions(DirectionTable table, vec2 u, out float pdf) {
+    if (table.width != 0u) return sample_table(table, u, pdf);
+    pdf = 1.0 / (4.0 * PI);
+    return sample_sphere(u);
+}
+
+vec3 sample_world(vec2 u, out float pdf) { return sample_directions(world_table(), u, pdf); }
+
+#ifdef PORTALS
+// What sample_table and sample_world make a direction of.
+vec2 table_to_square(DirectionTable table, vec3 direction) {
+    vec2 uv = direction_to_equirectangular(direction);
+    uvec2 cell = table_cell(table, uv);
+    vec2 within = vec2(fract(uv.x) * float(table.width), uv.y * float(table.height)) - vec2(cell);
+    uint first = table.first + table.height + cell.y * table.width;
+    float below_row = cell.y == 0u ? 0.0 : environment_distribution[table.first + cell.y - 1u];
+    float below_column = cell.x == 0u ? 0.0 : environment_distribution[first + cell.x - 1u];
+    return vec2(below_column + within.x * environment_share(first, cell.x),
+                below_row + within.y * environment_share(table.first, cell.y));
+}
+
+vec2 world_to_square(vec3 direction) {
+    return parameters.environment_width == 0u ? sphere_to_square(direction) : table_to_square(world_table(), direction);
+}
+#endif

@@ -15,6 +15,15 @@ layout(std430, binding = 6) readonly buffer Triangles;
 
 #include <Lights>
 
+// Directions from which the photons of the world leave: those of its light through portals have a table of their own.
+DirectionTable directions_of(Light light) {
+#ifdef PORTALS
+    if ((light.flags & LIGHT_THROUGH_PORTALS) != 0u)
+        return DirectionTable(parameters.portal_table, parameters.portal_width, parameters.portal_height);
+#endif
+    return world_table();
+}
+
 // Cycles' spot: a smooth step in the cosine, in the light's own (maybe scaled) space.
 float spot_attenuation(Light light, vec3 direction) {
     vec3 local = vec3(dot(direction, light.axis_u), dot(direction, light.axis_v), dot(direction, light.normal));
@@ -47,7 +56,7 @@ vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
 }
 
-// In 1/sr, of shadow rays to the environment.
+// In 1/sr, of shadow rays to the environment where no portals face the point.
 float world_shadow_ray_pdf(vec3 direction) { return parameters.world_selection * world_pdf(direction); }
 
 // Of direct light of the environment, what photons bring to an importon with this radius; rays find the rest.
@@ -292,13 +301,41 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
     return result;
 }
 
+#ifdef PORTALS
+#include "lights/portals.glsl"
+
+// In place of the world the portal that a shadow ray to it is to pass, or the light with the directions of what passes
+// portals, as mixed_world_pdf has it.
+uint enter_portal(inout Light light, vec3 point, inout float u) {
+    uint portal = NO_PORTAL;
+    if (light.kind == LIGHT_WORLD) portal = choose_portal(point, u);
+    if (portal == NO_PORTAL) return NO_PORTAL;
+    float through = parameters.portal_fraction, by_table = parameters.portal_table_fraction;
+    bool passes = u < through, takes_table = u < through + by_table;
+    float fraction = passes ? through : takes_table ? by_table : 1.0 - through - by_table;
+    u = clamp((u - (passes ? 0.0 : takes_table ? through : through + by_table)) / fraction, 0.0, 0.99999994);
+    if (passes) light = portal_at(portal);
+    else if (takes_table) light.flags |= LIGHT_THROUGH_PORTALS;
+    return passes ? portal : NO_PORTAL;
+}
+
+// What was sampled of the world, or of a portal, as a sample of the world by both ways.
+LightSample world_through_portals(LightSample result, uint portal, vec3 point) {
+    if (!(result.pdf > 0.0)) return NO_LIGHT_SAMPLE;
+    result.distance = INFINITY_DISTANCE;
+    result.pdf = mixed_world_pdf(view_portals(point, result.direction, portal), result.direction);
+    result.weight = world_radiance(result.direction) / result.pdf;
+    return result;
+}
+#endif
+
 // Surfaces first, since they need most registers: what else there is would be kept beside.
 LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 point, vec2 u) {
     bool cone = light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_SUN;
     if (!cone && light.kind != LIGHT_WORLD) return sample_surface_light(light, emissive_triangle, point, u);
     if (cone) return sample_cone_light(light, point, u);
     LightSample result = NO_LIGHT_SAMPLE;
-    result.direction = sample_world(u, result.pdf);
+    result.direction = sample_directions(directions_of(light), u, result.pdf);
     result.distance = INFINITY_DISTANCE;
     result.weight = world_radiance(result.direction) / result.pdf;
     return result;
@@ -329,7 +366,14 @@ vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
 
 // Of the emissive meshes: of one triangle, by its number among emissive_triangles[].
 LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+#ifdef PORTALS
+    bool world = light.kind == LIGHT_WORLD;
+    uint portal = enter_portal(light, point, u.x);
+#endif
     LightSample result = sample_light_at_one_meter(light, emissive_triangle, point, u);
+#ifdef PORTALS
+    if (world) result = world_through_portals(result, portal, point);
+#endif
     vec3 from_center = point + result.distance * result.direction - light.position;
     if (result.pdf == 0.0 && is_sphere(light)) from_center = sample_facing_half(light.radius, -result.direction, u);
     result.weight *= distance_factor(light, result.distance) * emitted_factor(light, from_center, -result.direction);

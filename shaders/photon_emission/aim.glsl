@@ -9,6 +9,15 @@ layout(std430, binding = 2) readonly buffer Targets { vec4 targets[]; };  // bou
 // photons for that.
 uint aiming_period(Light light) { return light.kind == LIGHT_WORLD ? 4u : 2u; }
 
+// Of its photons. What leaves through portals has its aim.
+uint aimed_photons(Light light) {
+    bool aims = parameters.target_count > 0u && (light.flags & LIGHT_THROUGH_PORTALS) == 0u;
+    return aims ? light.photon_count / aiming_period(light) : 0u;
+}
+
+// The share that this rule gives to just so many photons keeps the estimate exact.
+float aimed_share(Light light) { return float(aimed_photons(light)) / float(max(light.photon_count, 1u)); }
+
 // One minus the cosine of the cone under which a sphere is seen; 0 from inside, where it is no target.
 float target_cone(vec4 target, vec3 from) {
     vec3 to_center = target.xyz - from;

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: PORTALS=1
 // DirectPhotonHits, first half: photons leave the lights (paper section 4.3).
 
 layout(local_size_x = 64) in;
@@ -60,20 +62,18 @@ void main() {
     Light light = lights[number];
     // The light's photons take turns: the last of each period is aimed, the others go anywhere.
     uint turn = index - light.first_photon, period = aiming_period(light);
-    bool aimed = parameters.target_count > 0u && turn % period == period - 1u;
-    // The share that this rule gives to just so many photons keeps the estimate exact.
-    uint aimed_photons = parameters.target_count > 0u ? light.photon_count / period : 0u;
-    float aimed_share = float(aimed_photons) / float(max(light.photon_count, 1u));
-    uint within = aimed ? turn / period : turn - (parameters.target_count > 0u ? turn / period : 0u);
+    bool aims = parameters.target_count > 0u && (light.flags & LIGHT_THROUGH_PORTALS) == 0u;
+    bool aimed = aims && turn % period == period - 1u;
+    uint within = aimed ? turn / period : turn - (aims ? turn / period : 0u);
     // A fresh scrambled set for every light and iteration, stratified among the light's photons.
     uvec4 seed = pcg4d(uvec4(2u * number + (aimed ? 1u : 0u), parameters.iteration, parameters.seed, STAGE_EMISSION));
     vec2 u_parts = scrambled_sobol(within, pcg4d(seed + 1u));
     EmissionChoice choice = EmissionChoice(scrambled_sobol(within, seed), scrambled_sobol(within, pcg4d(seed)),
-                                           u_parts.x, u_parts.y, aimed, aimed_share);
+                                           u_parts.x, u_parts.y, aimed, aimed_share(light));
     photon_cells[index] = NO_CELL;
     if (!aimed) {
         // Evenly spaced from a random start: each cell gets its share but for one photon.
-        uint step = 0xffffffffu / max(light.photon_count - aimed_photons, 1u);
+        uint step = 0xffffffffu / max(light.photon_count - aimed_photons(light), 1u);
         uint cell = choose_guide_cell(light, seed.x + within * step + pcg4d(seed + within).y % step);
         vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
         place_in_cell(light, cell, place, choice.direction);

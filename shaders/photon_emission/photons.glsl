@@ -89,8 +89,15 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
                     radiance * (cosine / (area_pdf * pdf)), pdf);
 }
 
+#ifdef PORTALS
+#include "photon_emission/portals.glsl"
+#endif
+
 Emission emit_plain_photon(Light light, EmissionChoice choice) {
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_point(light, choice);
+#ifdef PORTALS
+    if (light.kind == LIGHT_WORLD) return emit_from_world(light, choice);
+#endif
     if (light.kind == LIGHT_SUN || light.kind == LIGHT_WORLD) {
         vec3 direction, flux_density = light.strength;
         if (light.kind == LIGHT_SUN) direction = sample_cone(light.normal, 1.0 - light.cosine_cone, choice.direction);

@@ -82,7 +82,7 @@ COUNTERPARTS = {
 
 EXCLUDED = {
     "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are refused",
-    "CYCLES_LIGHT_PT_settings": "RPPM_PT_light shows bounces and shadows; portals need no sampling of their own",
+    "CYCLES_LIGHT_PT_settings": "RPPM_PT_light shows bounces, shadows and portals",
     "CYCLES_MATERIAL_PT_settings_volume": OF_CYCLES,
     "CYCLES_OBJECT_PT_shading_caustics": "caustics need no switch",
     "CYCLES_OBJECT_PT_shading_gi_approximation": OF_CYCLES,

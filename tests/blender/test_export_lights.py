@@ -9,6 +9,7 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
 from emission import light_strength
 
+from rppm_addon.blender.export.sync import SceneSync
 from rppm_addon.materials.emitted import light_variation
 from rppm_addon.scene import LightKind
 from rppm_addon.scene.meshes import RayVisibility
@@ -122,6 +123,42 @@ def test_light_nodes_of_place_and_direction_at_once(scene):
 def test_lights_without_power_are_left_out(scene, values):
     add_light(scene, "POINT", **values)
     assert export(scene).lights == []
+
+
+@pytest.mark.parametrize("energy", [0.0, 50.0])
+def test_portals_give_no_light(scene, energy):
+    """They say where the world's comes in, whatever their power, nodes and links."""
+    added = add_light(scene, "AREA", energy=energy, shape="ELLIPSE", size=2.0, size_y=0.5, spread=0.3)
+    added.data.use_nodes = True
+    added.data.cycles.is_portal = True
+    added.location = (1.0, 2.0, 3.0)
+    exported = export(scene)
+    (light,) = exported.lights
+    assert light.is_portal and light.kind is LightKind.AREA and light.graph is None and not exported.warnings
+    assert not light.strength.any() and light.shape == "ELLIPSE" and light.size == pytest.approx((2.0, 0.5))
+    assert light.matrix[:3, 3] == pytest.approx((1.0, 2.0, 3.0))
+    assert light.spread == pytest.approx(math.pi)
+    added.data.cycles.is_portal = False
+    added.data.update_tag()
+    assert [light.is_portal for light in export(scene).lights] == [False] * (energy > 0.0)
+
+
+def test_a_viewport_follows_portals(scene):
+    """One that is moved, or no longer is one."""
+    sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
+    camera = export(scene).camera
+    added = add_light(scene, "AREA", energy=50.0)
+    added.data.cycles.is_portal = True
+    for x in (0.0, 2.0):
+        added.location.x = x
+        depsgraph.update()
+        (light,) = sync.update(depsgraph, camera).lights
+        assert light.is_portal and light.matrix[0, 3] == x
+    added.data.cycles.is_portal = False
+    added.data.update_tag()
+    depsgraph.update()
+    (light,) = sync.update(depsgraph, camera).lights
+    assert not light.is_portal and light.strength.all()
 
 
 def test_area_light_without_area(scene):

@@ -32,12 +32,6 @@ def the(scene, kind):
     return next(found for found in scene.objects if found.type == kind)
 
 
-def set_of_cycles(block, name, value):
-    """As the window does: Python's own changes of what add-ons add are not told to depsgraphs."""
-    setattr(block.cycles, name, value)
-    block.update_tag()
-
-
 def subdivide_adaptively(mesh, used=True):
     modifier = next(iter(mesh.modifiers), None) or mesh.modifiers.new("smooth", "SUBSURF")
     owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else mesh.cycles
@@ -100,12 +94,6 @@ def test_passes_that_are_missing(lit):
     lit.view_layers[0].use_pass_shadow = lit.view_layers[0].cycles.pass_render_time = True
     (text,) = warnings_about(lit, "Passes that RPPM does not have")
     assert "Shadow, Render Time" in text
-
-
-def test_portals_give_no_light(lit):
-    assert len(export(lit).lights) == 1
-    set_of_cycles(the(lit, "LIGHT").data, "is_portal", True)
-    assert not export(lit).lights
 
 
 def test_a_viewport_follows_edits(lit):

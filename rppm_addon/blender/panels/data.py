@@ -43,6 +43,8 @@ class RPPM_PT_light(RppmLightPanel, bpy.types.Panel):
             column.prop(light, "spread")
         column.separator()
         cycles = getattr(light, "cycles", None)
+        if light.type == "AREA" and hasattr(cycles, "is_portal"):
+            column.prop(cycles, "is_portal", text="Portal")
         # Once the shadow was a property of Cycles.
         if hasattr(cycles, "cast_shadow"):
             column.prop(cycles, "cast_shadow")

@@ -458,7 +458,15 @@ LIGHT_SOFT = 32
 """Of a light's flags, behind the bits of RayVisibility: a disk that faces each point it lights."""
 LIGHT_SHADOWLESS = 64
 """Likewise: no shadows are cast in its light."""
-Constants("Lights", LIGHT=LightShape, LIGHT_SOFT=LIGHT_SOFT, LIGHT_SHADOWLESS=LIGHT_SHADOWLESS)
+LIGHT_THROUGH_PORTALS = 128
+"""Likewise: photons of the world that leave through portals. It is chosen for nothing else."""
+Constants(
+    "Lights",
+    LIGHT=LightShape,
+    LIGHT_SOFT=LIGHT_SOFT,
+    LIGHT_SHADOWLESS=LIGHT_SHADOWLESS,
+    LIGHT_THROUGH_PORTALS=LIGHT_THROUGH_PORTALS,
+)
 
 LIGHT = Record(
     "Light",

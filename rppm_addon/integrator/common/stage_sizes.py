@@ -42,6 +42,8 @@ class StageSizes:
     """Whether materials scatter as fibers do, of which other programs know nothing."""
     has_ashikhmin: bool = False
     """Whether materials reflect by the model of Ashikhmin and Shirley, likewise."""
+    has_portals: bool = False
+    """Whether portals say where the world's light comes in; likewise."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -65,12 +67,17 @@ class StageSizes:
             demands.has_subsurface or any(has_subsurface(material.graph) for material in scene.materials),
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
+            any(light.is_portal for light in scene.lights),
         )
 
     @property
-    def lobe_defines(self) -> dict[str, int]:
-        """Defines of the programs that evaluate lobes, by which they know more kinds."""
-        known = {"HAIR_LOBES": self.has_hair, "ASHIKHMIN_LOBES": self.has_ashikhmin}
+    def defines(self) -> dict[str, int]:
+        """What programs are told of the scene: kinds of lobes to evaluate, and portals."""
+        known = {
+            "HAIR_LOBES": self.has_hair,
+            "ASHIKHMIN_LOBES": self.has_ashikhmin,
+            "PORTALS": self.has_portals,
+        }
         return {name: 1 for name, has in known.items() if has}
 
     @property

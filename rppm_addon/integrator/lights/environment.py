@@ -32,11 +32,15 @@ def distribution_of(brightness: np.ndarray) -> np.ndarray:
 
     ``brightness`` is (height, width), row 0 at the bottom; rows count by the sine of their polar angle.
     """
+    return _directions_by(brightness + 0.01 * brightness.mean())
+
+
+def _directions_by(brightness: np.ndarray) -> np.ndarray:
     height, _ = brightness.shape
     sine = np.sin(np.pi * (np.arange(height) + 0.5) / height)[:, None]
-    weight = (brightness + 0.01 * brightness.mean()) * sine
+    weight = brightness * sine
     rows = weight.sum(axis=1)
-    cells = np.cumsum(weight, axis=1) / rows[:, None]
+    cells = np.cumsum(weight, axis=1) / np.where(rows > 0, rows, 1.0)[:, None]
     cells[:, -1] = 1.0
     cumulated = np.cumsum(rows) / rows.sum()
     cumulated[-1] = 1.0
@@ -60,6 +64,11 @@ class Environment(BufferSet):
         self._textures: list[moderngl.Texture] = []
         self.width = self.height = 0
         self.radiance = self.mean_radiance = np.zeros(3)
+        self.brightness: np.ndarray | None = None
+        """(height, width) mean of the channels by direction, W/(m^2 sr), as directions are chosen by it; None of an
+        even world."""
+        self._directions = np.zeros(0, np.float32)
+        self._has_others = False
 
     @property
     def is_even(self) -> bool:
@@ -72,6 +81,7 @@ class Environment(BufferSet):
         for texture in self._textures:
             self.disown(texture)
         self.width = self.height = 0
+        self.brightness, self._directions, self._has_others = None, np.zeros(0, np.float32), False
         self.radiance = self.mean_radiance = np.maximum(world.radiance, 0.0).astype(np.float64)
         if world.graph is None or emits(world.graph) is not Emits.VARYING:
             if world.graph is not None:
@@ -91,7 +101,19 @@ class Environment(BufferSet):
         self.mean_radiance = (maps[0] * sine).mean(axis=(0, 1), dtype=np.float64) / sine.mean()
         brightness = _reduced(maps[0].mean(axis=2, dtype=np.float64))
         self.height, self.width = brightness.shape
-        self.distribution.upload(distribution_of(brightness if brightness.max() > 0 else np.ones_like(brightness)))
+        self.brightness = brightness if brightness.max() > 0 else np.ones_like(brightness)
+        self._directions = distribution_of(self.brightness)
+        self.distribution.upload(self._directions)
+
+    def add_directions(self, weights: np.ndarray | None) -> int:
+        """Have another table of directions, chosen by weights (rows, columns) a steradian, behind the world's; None:
+        have none. Returns where it begins."""
+        if weights is not None or self._has_others:
+            others = np.zeros(0, np.float32) if weights is None else _directions_by(weights)
+            both = np.concatenate([self._directions, others])
+            self.distribution.upload(both if len(both) else np.zeros(1, np.float32))
+        self._has_others = weights is not None
+        return len(self._directions)
 
     def _texture(self, pixels: np.ndarray) -> moderngl.Texture:
         rgba = np.ones((*pixels.shape[:2], 4), np.float32)

@@ -94,6 +94,8 @@ class Guide(BufferSet):
         """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
         self.gains = np.ones(0)
         """(lights,) how many times as many of a light's photons are of use as if they left evenly."""
+        self.even_contribution = np.ones(0)
+        """(lights,) the fraction that would contribute if they left evenly."""
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -166,4 +168,5 @@ class Guide(BufferSet):
         self._choose_by([probabilities(estimate) for estimate in estimates])
         even = np.array([estimate.mean() for estimate in estimates])
         self.gains = np.array([now @ estimate for now, estimate in zip(self._probabilities, estimates)]) / even
+        self.even_contribution = even
         return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates

@@ -17,7 +17,15 @@ from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..common.records import LIGHT, LIGHT_LINK, LIGHT_NODE, LIGHT_SOFT, NO_LIGHT_GROUP, LightShape
+from ..common.records import (
+    LIGHT,
+    LIGHT_LINK,
+    LIGHT_NODE,
+    LIGHT_SOFT,
+    LIGHT_THROUGH_PORTALS,
+    NO_LIGHT_GROUP,
+    LightShape,
+)
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
@@ -28,6 +36,7 @@ from .light_entry import light_entry
 from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
+from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
 from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name
 
 log = logging.getLogger(__name__)
@@ -49,6 +58,7 @@ LIGHT_PARAMETERS = {
     "mesh_light": "uint",
     "world_light": "uint",
     **LIGHT_TREE_PARAMETERS,
+    **PORTAL_PARAMETERS,
     "links_lights": "uint",
     "world_visibility": "uint",
     "world_bounces": "uint",
@@ -101,6 +111,7 @@ class Lights(BufferSet):
         self.target_count = 0
         self.table = LIGHT.zeros(0)
         """LIGHT records, all lights'."""
+        self._portals: Portals | None = None
         self._weights = np.zeros(0)
         self._names: list[str] = []
         self._powers: list[float] = []
@@ -119,6 +130,11 @@ class Lights(BufferSet):
         """The rays that see the world."""
         self.world_group = NO_LIGHT_GROUP
         """The world's light group by number."""
+
+    @property
+    def portals(self) -> Portals:
+        """Those of the scene, once it was built."""
+        return known(self._portals)
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -208,6 +224,8 @@ class Lights(BufferSet):
         if not keep_light_objects:
             self.light_maps.build(scene.lights, scene.images, materials)
         for index, light in enumerate(scene.lights):
+            if is_portal(light):
+                continue
             entry, power = light_entry(light, radius)
             entry["link"] = links.of_light(light)
             nodes = self.light_maps.nodes.get(index)
@@ -235,6 +253,13 @@ class Lights(BufferSet):
         entry["max_bounces"] = world_bounces
         power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
         add(ENVIRONMENT, entry, power, group=scene.world.light_group)
+        self._portals = Portals(scene.lights if names[-1:] == [ENVIRONMENT] else [], self.environment, radius)
+        if self._portals.power > 0.0:
+            # The same light as the world's, which all but its photons take by that one: so it has no power.
+            through = entry.copy()
+            through["flags"] |= LIGHT_THROUGH_PORTALS
+            add(ENVIRONMENT, through, np.full(3, self._portals.power), group=scene.world.light_group)
+            powers[-1] = 0.0
         if not entries:
             # As in an animation whose lights go out: the picture is black, as Cycles' is.
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
@@ -245,7 +270,8 @@ class Lights(BufferSet):
         kept = self.table if keep_learned and names == self._names else None
         self._names, self._powers, self._power = names, powers, sum(powers)
         # By power, half of it evenly: what does not choose by the point, and MIS weights.
-        selection = 0.5 * np.array(powers) / sum(powers) + 0.5 / len(powers)
+        shining = np.array(powers) > 0
+        selection = np.where(shining, 0.5 * np.array(powers) / sum(powers) + 0.5 / shining.sum(), 0.0)
         table = np.array(entries, LIGHT.dtype)
         table["selection_probability"] = selection
         table["selection_end"] = np.cumsum(selection)
@@ -257,7 +283,7 @@ class Lights(BufferSet):
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
                 table[column] = kept[column]
-            self._lights.upload(table)
+            self._upload_table()
         else:
             self._weights = np.array(weights)
             self.begin(photons)
@@ -286,6 +312,8 @@ class Lights(BufferSet):
             "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
+            **self._portals.parameters,
+            "portal_light": len(entries) - 1,
             "links_lights": self.links_lights,
             "world_visibility": int(self.world_visibility),
             "world_bounces": world_bounces,
@@ -308,11 +336,23 @@ class Lights(BufferSet):
         self.guide.build(self.table, self._most_photons)
         if photons != self._most_photons:
             self._share_photons(even, photons)
-        self._lights.upload(self.table)
+        self._upload_table()
 
-    def _share_photons(self, contributions: np.ndarray, photons: int) -> None:
+    def _upload_table(self) -> None:
+        records = LIGHT.zeros(len(self.table) + len(self.portals.records))
+        records[: len(self.table)], records[len(self.table) :] = self.table, self.portals.records
+        self._lights.upload(records)
+
+    def _share_photons(self, contributions: np.ndarray, photons: int, fraction: float = FIRST_PHOTON_FRACTION) -> None:
+        """fraction: of the world's photons, those that leave through portals, where there are any."""
         self._photons = photons
-        counts = share_out(photon_shares(np.array(self._powers), self._weights * contributions), photons)
+        powers, worth = np.array(self._powers), self._weights * contributions
+        if self.portals.power > 0.0:
+            shares = photon_shares(powers[:-1], worth[:-1])
+            shares = np.append(shares[:-1], shares[-1] * np.array([1.0 - fraction, fraction]))
+        else:
+            shares = photon_shares(powers, worth)
+        counts = share_out(shares, photons)
         self.table["photon_count"] = counts
         self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
@@ -328,8 +368,8 @@ class Lights(BufferSet):
         """
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
-        self._share_photons(weights, photons)
-        self._lights.upload(self.table)
+        self._share_photons(weights, photons, self._portal_fraction)
+        self._upload_table()
         return float(self.table["photon_count"] @ contributed[:, 1] / before)
 
     def restore(self, tallies: np.ndarray, learned: np.ndarray | None, photons: int) -> None:
@@ -337,8 +377,15 @@ class Lights(BufferSet):
         iteration had so many photons."""
         weights = self.guide.restore(tallies, learned)
         if weights is not None:
-            self._share_photons(weights, photons)
-            self._lights.upload(self.table)
+            self._share_photons(weights, photons, self._portal_fraction)
+            self._upload_table()
+
+    @property
+    def _portal_fraction(self) -> float:
+        """photon_fraction, as the guide knows it."""
+        if not self.portals.power > 0.0:
+            return 0.0
+        return photon_fraction(np.array([self._powers[-2], self.portals.power]) * self.guide.even_contribution[-2:])
 
     @property
     def photon_flux(self) -> float:

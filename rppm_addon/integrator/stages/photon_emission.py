@@ -18,6 +18,7 @@ class PhotonEmission:
     def __init__(self, library: ProgramLibrary) -> None:
         self._emit = library.compute("photon_emission/emit.comp")
         self._falloff = library.compute("photon_emission/falloff.comp")
+        self._library = library
 
     def emit(
         self,
@@ -59,5 +60,22 @@ class PhotonEmission:
         self._falloff.run(
             count,
             {**lights.buffers, "Rays": rays, "Hits": hits, "PhotonPaths": photon_paths},
+            {**lights.parameters(iteration), "count": count},
+        )
+
+    def leave_to_shadow_rays(
+        self,
+        lights: Lights,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        photon_origins: moderngl.Buffer,
+        count: int,
+        iteration: Iteration,
+    ) -> None:
+        """Where photons hit first: mark those that came through a portal, whose direct light shadow rays bring."""
+        program = self._library.compute("photon_emission/portal_passed.comp", {"PORTALS": 1})
+        program.run(
+            count,
+            {**lights.buffers, "Rays": rays, "Hits": hits, "PhotonOrigins": photon_origins},
             {**lights.parameters(iteration), "count": count},
         )

@@ -116,6 +116,9 @@ class Photons(BufferSet):
             self.first_hits.find(context, rays, hits, self._living)
             if context.lights.has_falloff:
                 self._emission.apply_falloff(context.lights, rays, hits, paths, self.photon_count, iteration)
+            if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
+                origins = self.photon_origins.buffer
+                self._emission.leave_to_shadow_rays(context.lights, rays, hits, origins, self.photon_count, iteration)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
 
     def trace(self, context: StageContext) -> bool:

@@ -72,7 +72,7 @@ class StageSet(BufferSet):
         """Raises DeviceError when the device has no room for them."""
         self._sizes = StageSizes.of(scene, demands)
         self.refuse_large(context, self._sizes)
-        with library.defining(self._sizes.lobe_defines):
+        with library.defining(self._sizes.defines):
             super().__init__(context, library, self._sizes)
             self.camera_hits: CameraHits = self.own(_camera_hits(self._sizes)(context, library, self._sizes))
         self.bands = self._sizes.bands

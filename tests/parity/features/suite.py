@@ -12,6 +12,7 @@ from . import (  # noqa: F401
     light_linking,
     lights,
     metallic,
+    portals,
     profiles,
     ray_nodes,
     shaders,

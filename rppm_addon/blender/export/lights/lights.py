@@ -22,7 +22,7 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
     data = light_object.data
     name = light_object.name
     if data.type == "AREA" and getattr(getattr(data, "cycles", None), "is_portal", False):
-        return None  # it says where the world's light comes in
+        return _portal(name, data, matrix)
     power = _power(data, name, report)
     if not power.any():
         return None
@@ -54,6 +54,14 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
         if not light.strength.any():
             report.warn(f'Light "{name}": its area is 0, so it gives no light; give it a size and a scale')
             return None
+    return light
+
+
+def _portal(name: str, data: bpy.types.AreaLight, matrix: np.ndarray) -> Light:
+    """What says where the world's light comes in; of its own light nothing counts."""
+    light = Light(name, LightKind.AREA, matrix, np.ones(3), is_portal=True)
+    _fill_area(light, data, True)
+    light.strength, light.spread = np.zeros(3), math.pi
     return light
 
 

@@ -83,7 +83,7 @@ class InstanceReader:
             self.report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
             return None
         light = export_light(source, matrix, self._context)
-        if light is not None:
+        if light is not None and not light.is_portal:
             light.linking = self.linking(instancer or source)
         return light
 

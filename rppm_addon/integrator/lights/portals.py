@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Portals: area lights without light, which say where the world's comes in (shaders/lights/portals.glsl).
+
+Shadow rays go to the world through a portal by its solid angle, or by the world's map; photons of the world leave by
+what passes the portals, or from all around the scene. Each is divided by the pdf of both ways (balance heuristic, Veach
+1997, section 9.2), so that a portal in a wrong place makes noise and changes no mean.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...scene.lights import Light, LightKind
+from ..common.records import LIGHT, LightShape
+from .environment import Environment
+from .light_entry import light_entry
+
+PORTAL_PARAMETERS = {
+    "portal_count": "uint",
+    "portal_light": "uint",
+    "portal_fraction": "float",
+    "portal_table_fraction": "float",
+    "portal_table": "uint",
+    "portal_width": "uint",
+    "portal_height": "uint",
+}
+"""Of LIGHT_PARAMETERS: portals are lights behind the last of the table. ``portal_light`` is the number of the light
+whose photons leave through them; ``portal_table`` is where their directions begin in the EnvironmentDistribution, with
+so many columns and rows. ``portal_fraction`` is that of the world's shadow rays which pass portals, where these face
+the point, ``portal_table_fraction`` that of those in the directions of the table; the others go by the world's map.
+"""
+
+FIRST_PHOTON_FRACTION = 0.5
+"""Of the world's photons, those that leave through portals as long as nothing was learned."""
+_LEAST_PHOTONS, _MOST_PHOTONS = 0.1, 0.9
+_SHADOW_RAYS = 0.9
+"""Of those to the world, what portals have; the others find other openings."""
+_BRIGHT = 8.0
+"""Times the mean: what is brighter in a world is found by the directions of its light."""
+_BRIGHT_FRACTION = 0.1
+"""Of a world's light: where more comes from bright spots, half of the shadow rays look for these."""
+_EVEN_ROWS = 32
+_SUBCELLS = 2
+"""Places along each side of a cell at which portals are asked what they let pass."""
+
+
+class Portals:
+    """Those among a scene's lights, in the light of its world; none where none of it passes them."""
+
+    def __init__(self, lights: list[Light], environment: Environment, scene_radius: float) -> None:
+        """Puts the directions of what passes them behind the environment's."""
+        self.records = portal_entries(lights, scene_radius)
+        """LIGHT records."""
+        passed, self.power = None, 0.0
+        if len(self.records):
+            passed = light_through(self.records, environment.brightness)
+            self.power = power_through(passed, float(np.mean(environment.radiance)))
+            """W of the world's light, the channels' mean."""
+        if not self.power > 0.0:
+            self.records, passed = self.records[:0], None
+        first = environment.add_directions(passed)
+        fractions = shadow_ray_fractions(environment.brightness) if len(self.records) else (0.0, 0.0)
+        self.parameters = {
+            "portal_count": len(self.records),
+            "portal_fraction": fractions[0],
+            "portal_table_fraction": fractions[1],
+            "portal_table": first,
+            "portal_width": 0 if passed is None else passed.shape[1],
+            "portal_height": 0 if passed is None else passed.shape[0],
+        }
+        """Values of PORTAL_PARAMETERS but for the light's number."""
+
+
+def portal_entries(lights: list[Light], scene_radius: float) -> np.ndarray:
+    """(n,) LIGHT records of the portals among the lights, but for those without an area."""
+    white = (replace(light, strength=np.ones(3), spread=np.pi) for light in lights if is_portal(light))
+    entries = [entry for entry, power in (light_entry(light, scene_radius) for light in white) if power.any()]
+    return np.array(entries, LIGHT.dtype) if entries else LIGHT.zeros(0)
+
+
+def is_portal(light: Light) -> bool:
+    """Whether it stands in no table of lights that shine."""
+    return light.is_portal and light.kind is LightKind.AREA
+
+
+def shadow_ray_fractions(brightness: np.ndarray | None) -> tuple[float, float]:
+    """Of the world's shadow rays those that go anywhere in portals, and those that go where its light through portals
+    comes from, by its map (rows, columns), or None of an even one: where it has bright spots."""
+    if brightness is None:
+        return _SHADOW_RAYS, 0.0
+    light = brightness * _sines(len(brightness))[:, None]
+    bright = light[brightness > _BRIGHT * brightness.mean()].sum() / max(light.sum(), 1e-300)
+    by_light = 0.5 * min(float(bright) / _BRIGHT_FRACTION, 1.0)
+    return _SHADOW_RAYS - by_light, by_light
+
+
+def light_through(portals: np.ndarray, brightness: np.ndarray | None) -> np.ndarray:
+    """(rows, columns) W/sr that pass the portals (LIGHT records) from the directions of each cell of a world's map, the
+    largest in the cell; of an even world's, None, for a radiance of 1."""
+    brightness = np.ones((_EVEN_ROWS, 2 * _EVEN_ROWS)) if brightness is None else _shown(brightness)
+    rows, columns = brightness.shape
+    parts = (np.arange(_SUBCELLS) + 0.5) / _SUBCELLS
+    v = (np.arange(rows)[:, None] + parts).ravel() / rows
+    u = (np.arange(columns)[:, None] + parts).ravel() / columns
+    azimuth, polar = (0.5 - u) * 2.0 * np.pi, (1.0 - v) * np.pi
+    passed = np.zeros((rows, columns))
+    for portal in portals:
+        normal = portal["normal"].astype(np.float64)
+        across = normal[0] * np.cos(azimuth) + normal[1] * np.sin(azimuth)
+        toward = np.sin(polar)[:, None] * across + normal[2] * np.cos(polar)[:, None]
+        cosine = np.maximum(-toward, 0.0).reshape(rows, _SUBCELLS, columns, _SUBCELLS).max(axis=(1, 3))
+        passed += float(portal["area"]) * cosine
+    return brightness * passed
+
+
+def _shown(brightness: np.ndarray) -> np.ndarray:
+    """Means of a map over its cells as textures show it, linear between their middles: what is beside a sun has a part
+    of its light, and would be too bright for how seldom it is chosen."""
+    padded = np.pad(np.pad(brightness, ((0, 0), (1, 1)), "wrap"), ((1, 1), (0, 0)), "edge")
+    across = (padded[:, :-2] + 6.0 * padded[:, 1:-1] + padded[:, 2:]) / 8.0
+    return (across[:-2] + 6.0 * across[1:-1] + across[2:]) / 8.0
+
+
+def photon_fraction(contributing_power: np.ndarray) -> float:
+    """Of the world's photons, those that leave through portals, by what of its power contributes, W: (2,), of all that
+    comes to the scene, and of what passes portals. What other openings let in keeps photons."""
+    everywhere, through = contributing_power
+    return float(np.clip(through / max(everywhere, 1e-300), _LEAST_PHOTONS, _MOST_PHOTONS))
+
+
+def power_through(passed: np.ndarray, radiance: float) -> float:
+    """W of what light_through says, times a radiance."""
+    rows, columns = passed.shape
+    return float(radiance * (passed * _sines(rows)[:, None]).sum() * 2.0 * np.pi**2 / (rows * columns))
+
+
+def passes_portal(portals: np.ndarray, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """(n,) whether rays (n, 3) leave through one of the portals, LIGHT records."""
+    passes = np.zeros(len(origins), bool)
+    for portal in portals:
+        normal, u, v = (portal[name].astype(np.float64) for name in ("normal", "axis_u", "axis_v"))
+        offset = origins - portal["position"]
+        height, leaving = offset @ normal, -(directions @ normal)
+        faces = (height > 0.0) & (leaving > 0.0)
+        place = offset + (height / np.where(faces, leaving, 1.0))[:, None] * directions
+        uu, uv, vv = u @ u, u @ v, v @ v
+        pu, pv = place @ u, place @ v
+        at = np.stack([pu * vv - pv * uv, pv * uu - pu * uv], -1) / max(uu * vv - uv * uv, 1e-300)
+        size = np.linalg.norm(at, axis=1) if portal["kind"] == LightShape.ELLIPSE else np.abs(at).max(axis=1)
+        passes |= faces & (size <= 1.0)
+    return passes
+
+
+def _sines(rows: int) -> np.ndarray:
+    return np.sin(np.pi * (np.arange(rows) + 0.5) / rows)

@@ -1,0 +1,25 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint: PORTALS=1
+// Direct light of the world that comes through a portal is left to shadow rays, which find it there better than photons
+// bring it (direct_photon_share): such photons are marked by a pdf of shadow rays that leaves nothing to photons.
+
+layout(local_size_x = 64) in;
+
+#include <FalloffParameters>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { FalloffParameters parameters; };
+#include "lights/lights.glsl"
+layout(std430, binding = 0) readonly buffer Rays;
+layout(std430, binding = 1) readonly buffer Hits;
+layout(std430, binding = 2) buffer PhotonOrigins;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count || lights[light_of(index)].kind != LIGHT_WORLD) return;
+    Ray ray = rays[index];
+    Hit hit = hits[index];
+    if (!(ray.maximum_distance > 0.0) || hit.triangle == NO_TRIANGLE) return;
+    if (view_portals(ray.origin + hit.distance * ray.direction, -ray.direction, NO_PORTAL).pdf > 0.0)
+        photon_origins[index].pdf = ONLY_SHADOW_RAYS;
+}
