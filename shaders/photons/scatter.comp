@@ -37,8 +37,21 @@ struct Scattering {
 // Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
 const float SHARPEST_ALPHA = 0.05;
 
+// from_light: at once, and not from the world. Huang's hair gets such light by shadow rays in Cycles, and little of
+// it by paths: where those see none, none comes.
+LobeSample of_fiber(LobeSample sampled, MicrofacetLobe lobe, vec3 geometric, vec3 arrival, bool from_light) {
+    vec3 viewer = sampled.direction;
+    sampled.transmitted = dot(viewer, geometric) < 0.0;
+#ifdef HAIR_LOBES
+    if (from_light && lobe.kind == LOBE_HAIR_HUANG && is_hidden(lobe, lobe_normal(lobe), viewer, arrival))
+        sampled.weight = vec3(0.0);
+#endif
+    return sampled;
+}
+
 // One event by its share of the flux; what is left of the probability is absorption.
-Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout RandomSequence random) {
+Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool from_light,
+                   inout RandomSequence random) {
     float scale = 1.0 / largest(flux);
     float diffuse = largest(flux * closure.diffuse) * scale, translucent = largest(flux * closure.translucent) * scale,
           transparent = largest(flux * closure.transparent) * scale;
@@ -73,7 +86,7 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, inout R
         vec3 geometric = unpack_unit_vector(closure.geometric_normal);
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, u_event, false);
         float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
-        if (lobe_is_hair(lobe.kind)) sampled.transmitted = dot(sampled.direction, geometric) < 0.0;
+        if (lobe_is_hair(lobe.kind)) sampled = of_fiber(sampled, lobe, geometric, arrival, from_light);
         result = Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
                             lobe_normal(lobe), sampled.transmitted,
                             (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
@@ -163,7 +176,8 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
-    Scattering scattering = scatter(index, closure, flux, arrival, random);
+    bool from_light = (path_flags & PHOTON_CASTS_SHADOWS) != 0u;
+    Scattering scattering = scatter(index, closure, flux, arrival, from_light, random);
     float side = dot(scattering.direction, geometric);
     bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
     if (!(largest(scattering.weight) > 0.0 && passes)) return vec3(0.0);

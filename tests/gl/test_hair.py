@@ -9,8 +9,8 @@ import pytest
 import scenes
 
 from rppm_addon.gl.records import Record
-from rppm_addon.integrator.common.records import MicrofacetKind
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene
+from rppm_addon.integrator.common.records import MicrofacetKind, PhotonFlag
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene, World
 
 Record(
     "HairTestParameters",
@@ -169,3 +169,37 @@ def test_fibers_store_no_photons_however_smooth_lobes_must_be_to_be_followed(map
             mapper.iterate()
         found.append(mapper.film.read_radiance())
     np.testing.assert_array_equal(*found)
+
+
+@pytest.mark.parametrize("by_sun", [True, False])
+def test_photons_leave_out_where_viewers_see_no_light(mapper, by_sun):
+    """Of hair on a mesh, viewers between light's mirrored and straight way around the fiber and the normal see no light
+    that is sampled, and those elsewhere do. Of a world they see all: paths find it."""
+    graph = NodeGraph()
+    options = {"model": "HUANG", "parametrization": "COLOR"}
+    graph.surface = graph.add("bsdf_hair_principled", "bsdf", options=options, color=(0.9, 0.9, 0.9))
+    sheet = scenes.rectangle("sheet", (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+    sun = Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), (1, 1, -1)), np.ones(3))
+    mapper.build(
+        Scene(
+            Camera(scenes.looking((0, -1, 3), (0, 0, 0)), (-0.3, 0.3, -0.3, 0.3), 8, 8),
+            [sheet],
+            [Instance(0, np.eye(4), [0])],
+            [Material("hair", graph)],
+            [sun] if by_sun else [],
+            World(np.ones(3) * (not by_sun)),
+            settings=RenderSettings(photons=16384, photon_path_length=2),
+        )
+    )
+    mapper.iterate()
+    first, second = mapper.read_photons()
+    on = (first["flags"] & PhotonFlag.ACTIVE != 0) & (first["flags"] & PhotonFlag.ESCAPED == 0)
+    on &= second["flags"] & PhotonFlag.ACTIVE != 0
+    on &= first["position"][:, 1] < first["position"][:, 0]  # the triangle whose fibers run along x
+    light, viewer = first["direction"][on].astype(float), -second["direction"][on].astype(float)
+    side = np.cross((1.0, 0.0, 0.0), viewer)
+    hidden = light[:, 2] * side[:, 2] * (side * light).sum(axis=1)
+    assert len(hidden) > 1000
+    unseen = (hidden < -1e-3).mean()
+    assert unseen == 0.0 if by_sun else unseen > 0.05
+    assert (hidden > 1e-3).mean() > 0.3
