@@ -47,7 +47,14 @@ def sheet_in_a_corner(name: str) -> None:
 
 MODES = {
     "rays": {"direct_light": "RAYS", "photons": 8192, "iterations": 16},
-    "photons": {"direct_light": "PHOTONS", "photons": 65536, "iterations": 10, "use_final_gather": False},
+    # Half of the usual radius, with which the wall's dim edge is still 11 % off after 10 iterations.
+    "photons": {
+        "direct_light": "PHOTONS",
+        "photons": 65536,
+        "iterations": 10,
+        "radius_scale": 5.0,
+        "use_final_gather": False,
+    },
 }
 
 
