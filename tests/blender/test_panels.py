@@ -225,7 +225,7 @@ def test_rates_and_the_last_renders(scene):
 
 
 def test_shares_of_lights(scene):
-    """Power times weight as it is now; lights that no render knows yet come last."""
+    """An eighth by weight, the rest by power times weight, as they are now; lights that no render knows come last."""
     point = add_light(scene, "POINT", "Light")
     add_light(scene, "SUN", "Late")
     point.data.rppm.photon_weight = 3.0
@@ -237,7 +237,9 @@ def test_shares_of_lights(scene):
     reports.record(scene.session_uid, report(source_watts=watts, source_photons=photons))
     rows = panels.lights.source_rows(scene)
     assert [row.name for row in rows] == ["World", "Light", SURFACES, "Gone", "Late"]
-    assert [row.allocated for row in rows] == pytest.approx([60 / 120, 30 / 120, 20 / 120, 10 / 120, None], nan_ok=True)
+    by_power, by_weight = np.array([60, 30, 20, 10]) / 120, np.array([1, 3, 1, 1]) / 6
+    assert [row.allocated for row in rows[:4]] == pytest.approx(7 / 8 * by_power + by_weight / 8)
+    assert rows[4].allocated is None
     assert [row.sent for row in rows[:4]] == [0.25, 0.5, 0.25, 0.0]
     assert [row.light for row in rows] == [None, point.data, None, None, bpy.data.lights["Late"]]
     labels = drawn(panel, context_of(scene)).labels

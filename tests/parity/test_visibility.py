@@ -51,7 +51,8 @@ def test_objects_that_some_rays_do_not_see(renderer, flag, mode):
 
 @pytest.mark.parametrize("flag", ["visible_diffuse", "visible_glossy"])
 def test_lights_that_do_not_light_all(renderer, flag):
-    """A rough metal ball on a floor."""
+    """A rough metal ball on a floor. In so few samples as the other tests have, which all seeds take at the same places
+    of a pixel, its highlight, as large as a block, is 4 % low."""
     new_scene(world=0.1)
     plane(3.0, material(DIFFUSE, Color=(0.7, 0.7, 0.7)))
     ball(0.7, material(GLOSSY, "GGX", Color=(0.9, 0.6, 0.3), Roughness=0.4), place(at=(0.0, 0.0, 0.7)))
@@ -59,7 +60,7 @@ def test_lights_that_do_not_light_all(renderer, flag):
     setattr(made, flag, False)
     camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), 40.0)
     reference = render_cycles(samples=512)
-    result = render_rppm(renderer, direct_light="RAYS", **MODES["RAYS"])
+    result = render_rppm(renderer, direct_light="RAYS", **{**MODES["RAYS"], "iterations": 40})
     compare(f"light_{flag}", result.pictures, reference, CONVERGED)
 
 

@@ -115,6 +115,9 @@ class Lights(BufferSet):
         self._weights = np.zeros(0)
         self._names: list[str] = []
         self._powers: list[float] = []
+        self._first_powers = np.zeros(0)
+        """When what is learned began, as for weights: lights that move share photons alike at all times, so that
+        a render that goes on does as well. The last is what leaves through portals, where there are any."""
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
@@ -285,7 +288,9 @@ class Lights(BufferSet):
                 table[column] = kept[column]
             self._upload_table()
         else:
-            self._weights = np.array(weights)
+            self._weights, self._first_powers = np.array(weights), np.array(powers)
+            if self._portals.power > 0.0:
+                self._first_powers[-1] = self._portals.power
             self.begin(photons)
         targets = caustic_targets(scene, geometry)
         self.target_count = len(targets)
@@ -346,7 +351,7 @@ class Lights(BufferSet):
     def _share_photons(self, contributions: np.ndarray, photons: int, fraction: float = FIRST_PHOTON_FRACTION) -> None:
         """fraction: of the world's photons, those that leave through portals, where there are any."""
         self._photons = photons
-        powers, worth = np.array(self._powers), self._weights * contributions
+        powers, worth = self._first_powers, self._weights * contributions
         if self.portals.power > 0.0:
             shares = photon_shares(powers[:-1], worth[:-1])
             shares = np.append(shares[:-1], shares[-1] * np.array([1.0 - fraction, fraction]))
@@ -385,7 +390,7 @@ class Lights(BufferSet):
         """photon_fraction, as the guide knows it."""
         if not self.portals.power > 0.0:
             return 0.0
-        return photon_fraction(np.array([self._powers[-2], self.portals.power]) * self.guide.even_contribution[-2:])
+        return photon_fraction(self._first_powers[-2:] * self.guide.even_contribution[-2:])
 
     @property
     def photon_flux(self) -> float:
