@@ -288,9 +288,8 @@ class Lights(BufferSet):
                 table[column] = kept[column]
             self._upload_table()
         else:
-            self._weights, self._first_powers = np.array(weights), np.array(powers)
-            if self._portals.power > 0.0:
-                self._first_powers[-1] = self._portals.power
+            self._weights = np.array(weights)
+            self._first_powers = np.array([*powers[:-1], powers[-1] or self._portals.power])
             self.begin(photons)
         targets = caustic_targets(scene, geometry)
         self.target_count = len(targets)
