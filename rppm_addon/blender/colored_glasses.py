@@ -17,6 +17,8 @@ from .export.nodes.links import node_tree
 
 _GLASSES = {"BSDF_GLASS", "BSDF_REFRACTION"}
 _SUMS = {"ADD_SHADER", "MIX_SHADER"}
+_OF_EACH = {"Color", "IOR"}
+"""Inputs in which the three glasses differ."""
 _MOST_IMPURE = 0.1
 """Of a glass's color, what the other two channels may have of the largest."""
 _OPERATIONS: dict[str, Callable[[float, float], float]] = {
@@ -69,15 +71,13 @@ def convert(material: bpy.types.Material, found: ColoredGlasses) -> None:
     glass = tree.nodes.new(green.bl_idname)
     glass.location, glass.parent, glass.distribution = found.root.location, found.root.parent, green.distribution
     for made, copied in zip(glass.inputs, green.inputs, strict=True):
+        if made.name in _OF_EACH:
+            continue
         if copied.is_linked:
             tree.links.new(copied.links[0].from_socket, made)
         elif hasattr(copied, "default_value"):
             made.default_value = copied.default_value
-    for link in list(glass.inputs["IOR"].links):
-        tree.links.remove(link)
     glass.inputs["IOR"].default_value = ior
-    for link in list(glass.inputs["Color"].links):
-        tree.links.remove(link)
     glass.inputs["Color"].default_value = (*np.clip(found.color, 0.0, 1.0), 1.0)
     for link in list(found.root.outputs[0].links):
         tree.links.new(glass.outputs[0], link.to_socket)
@@ -170,7 +170,7 @@ def _are_alike(node: bpy.types.Node, other: bpy.types.Node) -> bool:
     if node.type != other.type or node.distribution != other.distribution:
         return False
     for a, b in zip(node.inputs, other.inputs, strict=True):
-        if a.name in {"Color", "IOR"} or not a.enabled:
+        if a.name in _OF_EACH or not a.enabled:
             continue
         if a.is_linked or b.is_linked:
             if not (a.is_linked and b.is_linked) or a.links[0].from_socket != b.links[0].from_socket:
