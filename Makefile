@@ -108,7 +108,7 @@ TESTS ?= tests/parity
 references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/test_lights.py)
 	.venv/bin/python -m pytest -q $(TESTS) --cycles=write --timeout=3600
 
-parity: setup ## Compare the references with Cycles, and each feature: table, contact sheets in out/parity/, docs/compatibility.md
+parity: setup ## Compare references with Cycles, and each feature (ROWS=--continue): out/parity/, docs/compatibility.md
 	.venv/bin/python -m pytest -q $(TESTS) --cycles=compare --timeout=3600
 	.venv/bin/python -m tests.parity.features.report $(ROWS)
 

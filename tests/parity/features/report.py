@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Prints the parity table, draws contact sheets to out/parity and writes docs/compatibility.md.
 
-Run as `python -m tests.parity.features.report [pattern]`; with a pattern only the rows that it matches are rendered,
-and the page is left as it is.
+Run as `python -m tests.parity.features.report [pattern] [--continue]`; with a pattern only the rows that it matches are
+rendered, and the page is left as it is. What is measured is kept in out/parity/rows: with --continue a row is taken
+from there that the same sources gave, so that all can be measured in parts.
 """
 
+import argparse
+import dataclasses
+import hashlib
 import re
 import sys
 from pathlib import Path
@@ -21,7 +25,8 @@ from .measure import Measurement, encoded, measure, shortcomings, white_of
 from .rows import Kind, Row
 from .suite import ROWS
 
-DOCS = Path(__file__).parents[3] / "docs"
+CHECKOUT = Path(__file__).parents[3]
+DOCS = CHECKOUT / "docs"
 SIDE, LABEL, COLUMNS, PER_SHEET = 64, 13, 4, 48
 INTRODUCTION = """<!-- SPDX-License-Identifier: GPL-3.0-or-later -->
 # Compatibility with Cycles
@@ -59,14 +64,56 @@ def not_rendered() -> str:
     return f"{NOT_RENDERED}{''.join(rows)}| Passes: {passes} | not offered; links from them stay black |\n"
 
 
-def run(pattern: str) -> list[tuple[Row, Measurement | None, list[str]]]:
-    """Measure the rows whose name matches, printing each as it is done."""
+SOURCES = (
+    "rppm_addon/**/*",
+    "shaders/**/*",
+    "tests/parity/comparison.py",
+    "tests/parity/scenes.py",
+    "tests/parity/features/*.py",
+)
+
+
+def sources_digest() -> str:
+    """Of the files that measurements follow from, in hexadecimal."""
+    digest = hashlib.sha256()
+    for pattern in SOURCES:
+        for path in sorted(CHECKOUT.glob(pattern)):
+            if path.is_file() and path.suffix != ".pyc":
+                digest.update(path.relative_to(CHECKOUT).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()[:32]
+
+
+def keep(file: Path, found: Measurement) -> None:
+    """Write a measurement for kept()."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    np.savez_compressed(file, **dataclasses.asdict(found))
+
+
+def kept(file: Path) -> Measurement | None:
+    """What keep() wrote, or None."""
+    if not file.exists():
+        return None
+    with np.load(file) as stored:
+        members = {name: array if array.ndim else array.item() for name, array in stored.items()}
+    return Measurement(**members | {"warnings": tuple(map(str, members["warnings"]))})
+
+
+def run(pattern: str, again: bool = True) -> list[tuple[Row, Measurement, list[str]]]:
+    """Measure the rows whose name matches, printing each as it is done.
+
+    again: also those that are kept.
+    """
     results = []
+    folder = OUTPUT / "rows" / sources_digest()
     rppm_addon.register()
     try:
         with Renderer() as renderer:
             for row in (row for row in ROWS if re.search(pattern, row.id)):
-                found = measure(row, renderer)
+                file = folder / f"{hashlib.sha256(row.id.encode()).hexdigest()[:16]}.npz"
+                found = None if again else kept(file)
+                if found is None:
+                    found = measure(row, renderer)
+                    keep(file, found)
                 wrong = shortcomings(row, found)
                 results.append((row, found, wrong))
                 print(f"{'FAIL' if wrong else 'ok  '} {line(row, found)} {'; '.join(wrong)}", flush=True)
@@ -125,8 +172,11 @@ def write_page(results: list) -> None:
 
 def main() -> int:
     """The number of rows that are not as they should be."""
-    pattern = sys.argv[1] if len(sys.argv) > 1 else ""
-    results = run(pattern)
+    parser = argparse.ArgumentParser(description="Measures how near RPPM is to Cycles, row by row.")
+    parser.add_argument("pattern", nargs="?", default="", help="a regular expression that names of rows match")
+    parser.add_argument("--continue", dest="again", action="store_false", help="leave what the same sources gave")
+    arguments = parser.parse_args()
+    pattern, results = arguments.pattern, run(arguments.pattern, arguments.again)
     OUTPUT.mkdir(parents=True, exist_ok=True)
     for first in range(0, len(results), PER_SHEET):
         sheet(results[first : first + PER_SHEET], 3, COLUMNS).save(OUTPUT / f"features_{first // PER_SHEET + 1}.png")
