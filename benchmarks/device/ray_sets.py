@@ -110,7 +110,7 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
     DeepCubemap.trace = take
     try:
         this = Iteration(iteration, mapper.scene.settings.seed, mapper.scene.photon_count)
-        for _ in trace_photons(mapper.device_scene.context, mapper.stages.photons, this):
+        for _ in trace_photons(mapper.device_scene.context, mapper.stages, this):
             pass
     finally:
         DeepCubemap.trace = plain
