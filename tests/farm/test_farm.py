@@ -170,7 +170,7 @@ def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_s
     with start_rppm(*still, errors=theirs) as process, open(ours, errors="replace", newline="") as terminal:
         os.close(theirs)
         told = ""
-        while not re.search(r"iterations 0 to 1199 on \S+ [1-9]\d?%", told):
+        while not re.search(r"samples 0 to 1199 on \S+ [1-9]\d?%", told):
             told = told[-200:] + terminal.read(1)
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
