@@ -29,9 +29,11 @@ extension: setup ## Build the zip that Blender installs, to build/extension/ (EX
 # the time while nothing is cached.
 COMPILE_BOUND = tests/parity/features tests/parity/test_node_values.py tests/parity/test_texture_values.py \
 	tests/parity/test_shader_nodes.py tests/parity/test_thin_wall.py tests/parity/test_texture_export.py \
-	tests/blender/test_bad_materials.py tests/blender/test_material_fuzz.py tests/blender/test_animation.py \
-	tests/blender/test_animations.py tests/gl/test_material_programs.py tests/gl/test_gl_layer.py \
-	tests/gl/test_adjoint_bsdf.py tests/gl/test_displacement.py tests/gl/test_hair.py tests/gl/test_large_buffers.py
+	tests/blender/export/test_bad_materials.py tests/blender/export/test_material_fuzz.py \
+	tests/blender/render/test_animation.py tests/blender/render/test_animations.py \
+	tests/gl/materials/test_material_programs.py tests/gl/device/test_gl_layer.py \
+	tests/gl/surfaces/test_adjoint_bsdf.py tests/gl/surfaces/test_displacement.py tests/gl/surfaces/test_hair.py \
+	tests/gl/device_scene/test_large_buffers.py
 # Two at a time: most tests compile, or wait for one of the two engines, on a single core.
 PYTEST = timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=2 --dist=worksteal
 

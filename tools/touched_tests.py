@@ -17,8 +17,8 @@ MOST_FILES = 6
 """With long tests, that CI has time for."""
 PICTURES = ("tests/gl", "tests/parity/test_*.py")
 ROOMS: dict[str, tuple[str, ...]] = {
-    "shaders/materials/": ("tests/gl/test_closures.py", "tests/parity"),
-    "rppm_addon/materials/": ("tests/gl/test_closures.py", "tests/parity"),
+    "shaders/materials/": ("tests/gl/surfaces/test_closures.py", "tests/parity"),
+    "rppm_addon/materials/": ("tests/gl/surfaces/test_closures.py", "tests/parity"),
     "rppm_addon/blender/export/": ("tests/blender", "tests/parity"),
     "rppm_addon/blender/": ("tests/blender",),
     "shaders/": PICTURES,

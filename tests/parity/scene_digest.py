@@ -38,9 +38,10 @@ _LEFT_OUT = {
 _GEOMETRY = {
     "vertices", "edges", "loops", "polygons", "loop_triangles", "loop_triangle_polygons", "vertex_normals",
     "polygon_normals", "corner_normals", "uv_layers", "color_attributes", "vertex_colors", "skin_vertices",
-    "sculpt_vertex_colors", "position_data", "points", "curve_offset_data", "normals", "attributes",
+    "sculpt_vertex_colors", "position_data", "points", "curves", "curve_offset_data", "normals", "attributes",
 }  # fmt: skip
-"""Of meshes and the like, whose attributes tell it."""
+"""Of meshes and the like, whose attributes tell it. Normals of curves differ between processors by more than bits."""
+_WITH_ATTRIBUTES = (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)
 _VALUES = {
     "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
     "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4),
@@ -85,7 +86,7 @@ class _Digest:
         """Identifier, type and whether it is an array, of what counts."""
         kind = type(owner)
         if kind not in self.properties:
-            left_out = _LEFT_OUT | (_GEOMETRY if isinstance(owner, bpy.types.Mesh) else set())
+            left_out = _LEFT_OUT | (_GEOMETRY if isinstance(owner, _WITH_ATTRIBUTES) else set())
             if not isinstance(owner, bpy.types.Scene | bpy.types.RenderSettings | bpy.types.ImageFormatSettings):
                 left_out = left_out - {"display"}
             if isinstance(owner, bpy.types.ImageFormatSettings):
@@ -182,6 +183,10 @@ class _Digest:
             data.polygons.foreach_get("loop_start", starts)
             data.loops.foreach_get("vertex_index", corners)
             self.hash.update(starts.tobytes() + corners.tobytes())
+        elif isinstance(data, bpy.types.Curves):
+            starts = np.zeros(len(data.curve_offset_data), np.int32)
+            data.curve_offset_data.foreach_get("value", starts)
+            self.hash.update(starts.tobytes())
 
     def image(self, image: bpy.types.Image) -> None:
         """Bytes of the file, or pixels of what has none."""

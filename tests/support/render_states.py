@@ -54,3 +54,9 @@ def assert_goes_on(mapper: ProgressivePhotonMapper, scene: Scene, *names: str, i
         mapper.iterate()
     assert_same_state(mapper.state(), states[-1], *names)
     return states[-1]
+
+
+def run_until(mapper: ProgressivePhotonMapper, iteration: int) -> RenderState:
+    while mapper.iteration < iteration:
+        mapper.iterate()
+    return mapper.state()

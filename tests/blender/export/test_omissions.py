@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nothing that a file uses is left out in silence."""
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from blender_scenes import add_light, add_mesh, export
+from rna_without_bearing import WITHOUT_BEARING
+
+import rppm_addon.blender
+from rppm_addon.blender.export import export_scene, omissions
+from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.scene.passes import PASSES
+
+
+def warnings_about(scene, title):
+    return [text for text in export(scene).warnings if text.startswith(title)]
+
+
+@pytest.fixture
+def lit(scene):
+    """A scene with a mesh and a light."""
+    add_mesh(scene)
+    add_light(scene, "AREA", energy=10.0)
+    return scene
+
+
+def the(scene, kind):
+    return next(found for found in scene.objects if found.type == kind)
+
+
+def subdivide_adaptively(mesh, used=True):
+    modifier = next(iter(mesh.modifiers), None) or mesh.modifiers.new("smooth", "SUBSURF")
+    owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else mesh.cycles
+    owner.use_adaptive_subdivision = used
+
+
+def subdivide(scene):
+    subdivide_adaptively(the(scene, "MESH"))
+
+
+def roll(scene):
+    scene.render.use_motion_blur = True
+    scene.cycles.rolling_shutter_type = "TOP"
+
+
+def see_through(scene):
+    scene.render.film_transparent = scene.cycles.film_transparent_glass = True
+
+
+def look_around_with_both_eyes(scene):
+    scene.render.use_multiview = True
+    scene.camera.data.type = "PANO"
+    scene.camera.data.stereo.use_spherical_stereo = True
+
+
+USES = {
+    "Adaptive Subdivision": subdivide,
+    "Rolling Shutter": roll,
+    "Spherical Stereo": look_around_with_both_eyes,
+    "Transparent Glass": see_through,
+}
+ALL = (*omissions.OF_OBJECTS, *omissions.OF_SCENES)
+
+
+@pytest.mark.parametrize("omission", ALL, ids=lambda omission: omission.title)
+def test_what_is_used_is_named_once(lit, omission):
+    assert not warnings_about(lit, omission.title)
+    USES[omission.title](lit)
+    (text,) = warnings_about(lit, omission.title)
+    assert omission.consequence in text
+
+
+def test_previews_name_nothing(lit):
+    """Their scene is Blender's own, and none of the user's doing."""
+    subdivide(lit)
+    lit.view_layers[0].update()
+    engine = SimpleNamespace(is_preview=True, test_break=lambda: False, update_stats=lambda *_: None)
+    scene = export_scene(bpy.context.evaluated_depsgraph_get(), engine)
+    assert len(scene.lights) == 1 and not scene.warnings
+
+
+def test_many_objects_make_one_line(scene):
+    for _ in range(5):
+        subdivide_adaptively(add_mesh(scene))
+    (text,) = warnings_about(scene, "Adaptive Subdivision")
+    assert '"Mesh", "Mesh.001", "Mesh.002" and 2 more' in text
+
+
+def test_passes_that_are_missing(lit):
+    lit.view_layers[0].use_pass_shadow = lit.view_layers[0].cycles.pass_render_time = True
+    (text,) = warnings_about(lit, "Passes that RPPM does not have")
+    assert "Shadow, Render Time" in text
+
+
+def test_a_viewport_follows_edits(lit):
+    sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
+    camera = export(lit).camera
+    title = "Adaptive Subdivision"
+
+    def told():
+        depsgraph.update()
+        return any(text.startswith(title) for text in sync.update(depsgraph, camera).warnings)
+
+    assert not told()
+    subdivide_adaptively(the(lit, "MESH"))
+    assert told()
+    subdivide_adaptively(the(lit, "MESH"), used=False)
+    assert not told()
+
+
+def described_types():
+    """By the names of WITHOUT_BEARING, the RNA of what users set."""
+    scene = bpy.context.scene
+    found = {name: getattr(bpy.types, name).bl_rna for name in WITHOUT_BEARING if "." not in name}
+    world, light = bpy.data.worlds.new("World"), bpy.data.lights.new("Light", "AREA")
+    source, material = bpy.data.objects.new("Object", None), bpy.data.materials.new("Material")
+    layer = scene.view_layers[0]
+    owners = {"scene": scene, "world": world, "light": light, "object": source, "material": material}
+    owners["view_layer"] = layer
+    for name in WITHOUT_BEARING:
+        if "." in name:
+            owner, member = name.split(".")
+            found[name] = getattr(owners[owner], member).bl_rna
+    return found
+
+
+def test_each_property_is_read_or_named_or_without_bearing(scene):
+    """A property that comes with a new Blender fails here until someone decides what it is."""
+    folder = Path(rppm_addon.blender.__file__).parent
+    code = "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder.rglob("*.py")))
+    read = set(re.findall(r"\w+", code)) | {entry.switch for entry in PASSES}
+    of_all = {prop.identifier for prop in bpy.types.ID.bl_rna.properties}
+    unknown = []
+    for name, rna in described_types().items():
+        properties = {prop.identifier for prop in rna.properties} - of_all - {"rna_type", "name", "rppm"}
+        unknown += [f"{name}.{prop}" for prop in sorted(properties - read - set(WITHOUT_BEARING[name].split()))]
+    assert not unknown
+
+
+def test_tables_read_what_there_is(scene):
+    """Paths of the tables that no longer lead anywhere are found out."""
+    names = {prop.identifier for rna in described_types().values() for prop in rna.properties}
+    for omission in ALL:
+        assert any(path.rsplit(".", 1)[-1] in names for path in omission.reads), omission.title
+
+
+def test_the_page_lists_them():
+    page = (Path(__file__).parents[3] / "docs" / "compatibility.md").read_text(encoding="utf-8")
+    for omission in ALL:
+        assert f"| {omission.title} | {omission.consequence} |" in page
+    assert all(label in page for label in omissions.PASSES.values())

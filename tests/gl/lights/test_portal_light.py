@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The world's light through portals: pdfs, and pictures that they leave as they are."""
+
+import math
+
+import numpy as np
+import pytest
+import scenes
+from openings import BLACK, FLOOR, HEIGHT, HOLE, hole_form_factor, room, uneven_sky
+from path_comparison import judge, picture_by_seed
+from support.lobes import image_world
+from support.render_states import assert_same_state
+from test_guided_photons import emitted_moments
+from test_light_sampling import FOLDER, Iteration
+
+from rppm_addon.integrator.common.records import LIGHT_THROUGH_PORTALS
+from rppm_addon.integrator.lights import guide
+from rppm_addon.scene import Light, LightKind, Scene
+
+SAMPLES = 1 << 14
+
+
+def portal(half: float = HOLE, shape: str = "SQUARE", x: float = 0.0, z: float = HEIGHT, turn: float = 0.0) -> Light:
+    """A square or disk in the room's ceiling that faces down, or turned about Y."""
+    matrix = scenes.placed(x, 0.0, z)
+    cosine, sine = math.cos(turn), math.sin(turn)
+    matrix[:3, :3] = matrix[:3, :3] @ [[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]]
+    return Light("portal", LightKind.AREA, matrix, np.zeros(3), shape=shape, size=(2 * half, 2 * half), is_portal=True)
+
+
+PORTALS = {
+    "in the hole": [portal()],
+    "a part of it": [portal(0.12, "DISK")],
+    "wherever": [
+        portal(0.3, x=0.2, z=1.05),
+        portal(0.4, "DISK", x=-0.5, z=0.6, turn=0.7),
+        portal(0.2, z=0.2, turn=3.0),
+    ],
+}
+
+
+def with_portals(name: str, sky: bool = False, **settings: object) -> Scene:
+    scene = room(BLACK, **settings)
+    scene.lights = PORTALS[name]
+    if sky:
+        scene.images, scene.world = [uneven_sky(True)], image_world(0)
+    return scene
+
+
+def portal_samples(mapper, library, point) -> tuple[np.ndarray, np.ndarray]:
+    """Samples of the world from a point, (n, 8): direction, distance, weight, pdf; and of even directions (n, 4):
+    direction, pdf."""
+    results = mapper.context.moderngl.buffer(reserve=48 * SAMPLES)
+    lights = mapper.device_scene.lights
+    lights.environment.use()
+    values = {**lights.parameters(Iteration(1, seed=3)), "count": SAMPLES, "point": point, "emitted": 0.0}
+    blocks = {**lights.buffers, "Results": results}
+    library.compute(str(FOLDER / "portal_samples.comp"), {"PORTALS": 1}).run(SAMPLES, blocks, values)
+    table = np.frombuffer(results.read(), np.float32).reshape(SAMPLES, 12).astype(np.float64)
+    results.release()
+    assert np.isfinite(table).all()
+    return table[:, :8], table[:, 8:]
+
+
+@pytest.mark.parametrize("sky", [False, True])
+def test_the_pdf_of_shadow_rays_is_that_of_their_samples(mapper, library, sky):
+    """It integrates to one where all samples count, over any half of the directions to the samples that go there."""
+    mapper.build(with_portals("wherever", sky, photons=64))
+    for point in ((0.1, 0.05, 0.1), (-0.6, 0.3, 0.5), (0.3, -0.2, 3.0)):
+        samples, even = portal_samples(mapper, library, point)
+        direction, pdf = samples[:, :3], samples[:, 7]
+        taken = pdf > 0.0  # of the corners around an ellipse nothing is
+        whole = 4 * math.pi * even[:, 3]
+        for k, (axis, threshold) in enumerate([((1, 0, 0), 0.1), ((0, 0.6, 0.8), 0.2), ((-0.6, 0, 0.8), 0.9)]):
+            expected = whole * (even[:, :3] @ axis > threshold)
+            found = (taken & (direction @ axis > threshold)).astype(float)
+            error = math.sqrt((expected.var() + found.var()) / SAMPLES)
+            difference = found.mean() - expected.mean()
+            print(point, sky, k, f"{found.mean():.4f} {difference:+.4f} +- {error:.4f}")
+            assert abs(difference) < 4 * error + 1e-4
+        inverse = np.where(taken, 1.0 / np.maximum(pdf, 1e-30), 0.0)  # all directions have one
+        assert inverse.mean() == pytest.approx(4 * math.pi, abs=5 * inverse.std() / math.sqrt(SAMPLES))
+
+
+@pytest.mark.parametrize(
+    ("name", "sky"),
+    [("in the hole", False), ("wherever", True), pytest.param("wherever", False, marks=pytest.mark.long)],
+)
+def test_photons_through_portals_emit_the_same_light(mapper, name, sky):
+    """The light field's moments within the scene are those without portals; also when both guides choose at random."""
+    plain_scene = with_portals(name, sky)
+    plain_scene.lights = []
+    mapper.build(plain_scene)
+    plain = emitted_moments(mapper, 8)
+    mapper.build(with_portals(name, sky))
+    lights = mapper.device_scene.lights
+    assert lights.table["flags"][-1] & LIGHT_THROUGH_PORTALS and lights.table["photon_count"].min() > 1000
+    generator = np.random.default_rng(3)
+    for guided in (False, True):
+        if guided:
+            chosen = [
+                guide.probabilities(10.0 ** generator.uniform(-4, 0, int(np.prod(cells))))
+                for cells in lights.guide._cells
+            ]
+            lights.guide._choose_by(chosen)
+        through = emitted_moments(mapper, 8)
+        error = np.sqrt((plain.var(axis=0, ddof=1) + through.var(axis=0, ddof=1)) / 8)
+        worst = (abs(through.mean(axis=0) - plain.mean(axis=0)) / (5 * error + 1e-4 * plain[:, 0].mean())).max()
+        print(
+            name, sky, guided, f"flux {through[:, 0].mean() / plain[:, 0].mean():.4f}, worst {worst:.2f} of its limit"
+        )
+        assert worst < 1.0 and (error[0] < 0.02 * plain[:, 0].mean()).all()
+
+
+def test_the_floor_gets_the_sky_through_a_portal(mapper):
+    """By shadow rays, to the closed form, where photons alone are off by their radius."""
+    scene = with_portals("in the hole")
+    pictures = picture_by_seed(mapper, "portal", scene, 8)
+    assert mapper.learning.direct_world_flux(mapper.device_scene.lights) == 0.0
+    expected = FLOOR * hole_form_factor(scene)[..., None]
+    assert pictures.mean() == pytest.approx(expected.mean(), rel=5e-3)
+    # Without portals the same pictures have five times as much noise.
+    assert pictures.var(axis=0, ddof=1).mean() < 0.015 * expected.mean() ** 2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["a part of it", "wherever"])
+def test_portals_in_wrong_places_change_no_mean(mapper, name):
+    scene = with_portals(name, iterations=8)
+    pictures = picture_by_seed(mapper, f"portals {name}", scene)
+    assert mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0
+    judge(f"portals {name}", pictures, FLOOR * hole_form_factor(scene)[..., None])
+
+
+def test_portals_of_a_black_world_are_none(mapper):
+    scene = with_portals("in the hole", photons=64)
+    scene.world.radiance = np.zeros(3)
+    mapper.build(scene)
+    mapper.iterate()
+    assert len(mapper.device_scene.lights.portals.records) == 0
+    assert not mapper.film.read_radiance()[..., :3].any()
+
+
+@pytest.mark.long
+def test_it_goes_on_bit_for_bit(mapper, other_mapper):
+    """With what was learned of how many photons portals get."""
+    scene = with_portals("a part of it", photons=1 << 12)
+    mapper.build(scene)
+    states = []
+    for _ in range(5):
+        mapper.iterate()
+        states.append(mapper.state())
+    for state in (states[0], states[2]):
+        other_mapper.build(scene)
+        other_mapper.resume(state)
+        while other_mapper.iteration < 5:
+            other_mapper.iterate()
+        assert_same_state(other_mapper.state(), states[-1])

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A room that gets the light of the world through a hole."""
+
+import math
+
+import numpy as np
+import scenes
+from path_classes import lobe, view
+from support.lobes import material
+
+from rppm_addon.scene import Image, Instance, RenderSettings, Scene, World
+
+FLOOR, BLACK, GRAY = np.array([0.9, 0.7, 0.5]), np.zeros(3), np.full(3, 0.6)
+HEIGHT, HALF, HOLE = 1.0, 1.0, 0.25
+"""Of the room, half of its width, and half of that of the square hole in its ceiling, meters."""
+
+
+def room(walls: np.ndarray, hole: float = HOLE, **settings: object) -> Scene:
+    """A floor under a ceiling with a hole, between walls of one color, in a white world, seen from within."""
+    a, b, h = HALF, hole, HEIGHT
+    corners = [(-a, -a), (a, -a), (a, a), (-a, a)]
+    sides = list(zip(corners, [*corners[1:], corners[0]], strict=True))
+    meshes = [scenes.rectangle("floor", *((x, y, 0) for x, y in corners))]
+    meshes += [scenes.rectangle(f"wall {n}", (*p, 0), (*q, 0), (*q, h), (*p, h)) for n, (p, q) in enumerate(sides)]
+    if hole < a:
+        ceiling = [((-a, -a), (a, -b)), ((-a, b), (a, a))]
+        ceiling += [((-a, -b), (-b, b)), ((b, -b), (a, b))] if b else []
+        for n, ((x0, y0), (x1, y1)) in enumerate(ceiling):
+            meshes.append(scenes.rectangle(f"ceiling {n}", (x0, y0, h), (x1, y0, h), (x1, y1, h), (x0, y1, h)))
+    shared = RenderSettings(
+        iterations=6, photons=1 << 16, photon_path_length=4, camera_path_length=4, filter_width=0.0,
+        radius_minimum=0.05, radius_maximum=0.05,
+    )  # fmt: skip
+    return Scene(
+        view((-0.4, 0.0, 0.7), (0.0, 0.0, 0.0), 0.2),
+        meshes,
+        [Instance(index, np.eye(4), [min(index, 1)]) for index in range(len(meshes))],
+        [material("floor", lobe("D", FLOOR)), material("walls", lobe("D", walls))],
+        world=World(np.ones(3)),
+        settings=shared.with_values(**settings),
+    )
+
+
+def hole_form_factor(scene: Scene) -> np.ndarray:
+    """(H, W) of the hole, from what each pixel sees of the floor (Howell, configuration B-4, by corners)."""
+    camera, half = scene.camera, scene.camera.window[1]
+    side = half * ((np.arange(camera.width) + 0.5) / camera.width * 2 - 1)
+    x, y = np.meshgrid(side, side)
+    matrix = np.asarray(camera.matrix)
+    rays = np.stack([x, y, -np.ones_like(x)], -1) @ matrix[:3, :3].T
+    place = matrix[:3, 3] - rays * (matrix[2, 3] / rays[..., 2])[..., None]
+
+    def corner(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Of a rectangle from above the place to (u, v) off it."""
+        s, t = u / np.hypot(HEIGHT, u), v / np.hypot(HEIGHT, v)
+        return (s * np.arctan(v / np.hypot(HEIGHT, u)) + t * np.arctan(u / np.hypot(HEIGHT, v))) / (2 * math.pi)
+
+    right, left = HOLE - place[..., 0], -HOLE - place[..., 0]
+    top, bottom = HOLE - place[..., 1], -HOLE - place[..., 1]
+    return corner(right, top) - corner(left, top) - corner(right, bottom) + corner(left, bottom)
+
+
+def uneven_sky(sun: bool) -> Image:
+    """Clouds of one brightness or another, and a sun seen through the hole."""
+    pixels = np.random.default_rng(3).uniform(0.0, 1.0, (8, 16, 4)).astype(np.float32) * 3.0
+    if sun:
+        pixels = np.repeat(np.repeat(pixels, 16, 0), 16, 1)
+        pixels[116:120, 88:92] = 500.0
+    return Image("world", pixels)

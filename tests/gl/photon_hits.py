@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where photons end first, by rays and by light G-buffers."""
+
+import numpy as np
+
+from rppm_addon.integrator.common.iteration import Iteration
+from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.records import HIT
+from rppm_addon.integrator.stages.light_gbuffer import LightGBuffer
+from rppm_addon.integrator.stages.photon_emission import PhotonEmission
+from rppm_addon.scene import Scene
+
+
+def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, float]:
+    """HIT records of an iteration's photons, traced and rasterized, and the share that light G-buffers settle."""
+    mapper.build(scene)
+    mapper.iterate()
+    context, photons = mapper.device_scene.context, mapper.stages.photons
+    rays, hits = photons._rays.buffer, photons._hits
+    count, lights = scene.settings.photons, context.lights
+    photons._living.fill(count)
+    paths, directions, differentials = photons._paths, photons.photon_origins, photons._differentials
+    PhotonEmission(library).emit(
+        lights, rays, paths.buffer, directions.buffer, differentials.buffer, count, Iteration(2, seed=3)
+    )
+    context.deep_cubemap.trace(rays, hits.buffer, photons._living)
+    traced = hits.read(HIT.dtype, count).copy()
+    hits.clear()
+    gbuffer = LightGBuffer(mapper.context, library)
+    left = LivingPaths(mapper.context, library, "left", "")
+    geometry = context.geometry
+    gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry)
+    gbuffer.find(lights.buffers["Lights"], context.geometry, rays, hits.buffer, count, left)
+    settled = 1.0 - left.read_count() / count
+    context.deep_cubemap.trace(rays, hits.buffer, left)
+    rasterized = hits.read(HIT.dtype, count).copy()
+    gbuffer.release()
+    left.release()
+    return traced, rasterized, settled
