@@ -15,7 +15,8 @@ from test_guided_photons import emitted_moments
 from test_light_sampling import FOLDER, Iteration
 
 from rppm_addon.integrator.common.records import LIGHT_THROUGH_PORTALS
-from rppm_addon.integrator.lights import guide
+from rppm_addon.integrator.lights import guide, portals
+from rppm_addon.integrator.lights.portals import light_through
 from rppm_addon.scene import Instance, Light, LightKind, Scene
 from rppm_addon.scene.meshes import RayVisibility
 
@@ -164,6 +165,25 @@ def test_panes_without_shadow_behind_portals_change_nothing(mapper, behind):
     change = seen_through.mean(axis=(1, 2, 3)) / plain - 1.0
     print(behind, plain.mean(), change)
     assert abs(change.mean()) < 5 * change.std(ddof=1) / math.sqrt(seeds) + 1e-3
+
+
+def test_updates_show_what_builds_do(mapper, other_mapper, monkeypatch):
+    """Portals that come, go and move in one world or another; what passes them is found anew where they or it did."""
+    sky, even = with_portals("in the hole", True, photons=64), with_portals("wherever", photons=64)
+    none, moved = dataclasses.replace(sky, lights=[]), dataclasses.replace(sky, lights=[portal(0.2, x=0.1)])
+    walls = dataclasses.replace(moved, instances=moved.instances[:-1])
+    found, calls = [], []
+    monkeypatch.setattr(portals, "light_through", lambda *given: calls.append(0) or light_through(*given))
+    for scene, known in ((sky, 0), (none, 0), (moved, 0), (walls, 1), (even, 0), (none, 0), (even, 0)):
+        calls.clear()
+        mapper.update(scene)
+        assert len(calls) == (0 if known or not scene.lights else 1)
+        other_mapper.build(scene)
+        for each in (mapper, other_mapper):
+            each.iterate()
+        found.append(mapper.film.read_radiance())
+        np.testing.assert_array_equal(found[-1], other_mapper.film.read_radiance())
+    assert not np.array_equal(found[0], found[2]) and np.array_equal(found[4], found[6])
 
 
 def test_portals_of_a_black_world_are_none(mapper):
