@@ -187,20 +187,27 @@ def _color(socket: bpy.types.NodeSocket) -> tuple[float, ...] | None:
     return tuple(source.outputs[0].default_value[:3]) if source is not None and source.type == "RGB" else None
 
 
-def _number(socket: bpy.types.NodeSocket, depth: int = 0) -> float | None:
-    """What an input gets, None where that varies or is computed in other ways than by plain arithmetic."""
-    value: float | None = None
+def _number(socket: bpy.types.NodeSocket, depth: int = 0, known: dict[str, float | None] | None = None) -> float | None:
+    """What an input gets, None where that varies or is computed in other ways than by plain arithmetic. known: by node,
+    what was found, as sums may have a node twice and panels ask at each drawing."""
     if not socket.is_linked:
-        value = float(socket.default_value)
-    elif depth < _DEEPEST:
-        source, _ = _source(socket)
-        if source is None or source.mute:
-            return None
+        return _finite(float(socket.default_value))
+    source, _ = _source(socket)
+    if source is None or source.mute or depth >= _DEEPEST:
+        return None
+    known = {} if known is None else known
+    if source.name not in known:
+        value: float | None = None
         if source.type == "VALUE":
             value = float(source.outputs[0].default_value)
         elif source.type == "MATH" and source.operation in _OPERATIONS:
-            terms = [_number(term, depth + 1) for term in source.inputs[:2]]
+            terms = [_number(term, depth + 1, known) for term in source.inputs[:2]]
             if None not in terms:
                 value = _OPERATIONS[source.operation](*terms)
                 value = min(max(value, 0.0), 1.0) if source.use_clamp else value
+        known[source.name] = _finite(value)
+    return known[source.name]
+
+
+def _finite(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None

@@ -37,7 +37,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             film.add_passes(context, camera_hits.camera.buffer, importons, band, iteration, segment)
             film.add_caught_shadows(context, importons, stages.shadow_catcher, band, iteration, segment)
             light.add_direct_light(context, importons, stages.direct_light, film, band, iteration, segment)
-            groups.add_direct_light(context, importons, stages.direct_light, iteration)
+            groups.add_direct_light(context, importons, stages.direct_light, stages.final_gather, iteration)
             importons.scatter(context, stages.scatter_blocks(band), band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
             groups.add_seen_light(context, importons, iteration)

@@ -3,7 +3,8 @@
 
 // Caustics where a path gathers, by photons and by the gathering ray: the power heuristic (Veach 1997, section 9.2)
 // with what a photon adds there, flux / (pi r)^2 for white: where the world is as bright as that, both are as noisy.
-// photon_flux: the mean over all lights' photons, W, which are shared out by power. radius: of the importon, meters.
+// photon_flux: the mean over all lights' photons, W, most of which are shared out by power. radius: of the importon,
+// meters.
 float world_photon_share(float radiance, float photon_flux, float radius) {
     return power_heuristic(radiance, photon_flux / (PI * PI * radius * radius));
 }

@@ -136,8 +136,8 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, disk, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
-        PassedLights passed = passed_lights(closure.position, sampled.direction, INFINITY_DISTANCE, RAY_GLOSSY, 0.0,
-                                            light_set, candidates.u);
+        PassedLights passed = passed_lights(closure.position, sampled.direction, vec2(0.0, INFINITY_DISTANCE),
+                                            RAY_GLOSSY, 0.0, light_set, candidates.u);
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;

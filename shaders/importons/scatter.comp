@@ -32,6 +32,7 @@ layout(std430, binding = 9) readonly buffer Camera;
 layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 #include "importons/round_shapes.glsl"
+#include "importons/scattered_at.glsl"
 
 // What does not wait for the lobe is written first: beside one, processors have no registers for all of an importon.
 void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius,
@@ -80,23 +81,15 @@ void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, v
 // as it is at that place; and whether neighbors share what the ray finds.
 struct EnvironmentView { float plain_pdf; float pdf; bool is_shared; };
 
-#ifdef PORTALS
-// Where the ray was scattered, from where shadow rays look for what it finds: straight through surfaces it begins
-// behind them. A path that gathers a third time does so within parameters.gathers_again_below of its second vertex.
-vec3 scattered_at(uint index, uint flags, Ray ray) {
-    if ((flags & PATH_SEEN_THROUGH) == 0u) return ray.origin;
-    return (flags & PATH_GATHERED_AGAIN) != 0u ? gathering_vertices[index].hit : gathering_vertices[index].position;
-}
-#endif
-
 // An even environment is left to rays, but for what comes through portals. Neighbors share it: its shadows are as soft
 // as those of indirect light.
-EnvironmentView view_environment(uint index, uint flags, Ray ray) {
+// start: where the ray was scattered.
+EnvironmentView view_environment(vec3 start, Ray ray) {
     float plain_pdf = world_shadow_ray_pdf(ray.direction);
     bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
     EnvironmentView view = EnvironmentView(plain_pdf, left_to_rays ? 0.0 : plain_pdf, environment_is_even());
 #ifdef PORTALS
-    PortalView portals = view_portals(scattered_at(index, flags, ray), ray.direction, NO_PORTAL);
+    PortalView portals = view_portals(start, ray.direction, NO_PORTAL);
     if (portals.solid_angle > 0.0) view.pdf = parameters.world_selection * mixed_world_pdf(portals, ray.direction);
     if (portals.pdf > 0.0) {
         view.plain_pdf = ONLY_SHADOW_RAYS;
@@ -143,14 +136,14 @@ vec4 seen_environment(CameraPath path, vec3 world, EnvironmentView view, bool ba
     return vec4(path.throughput * world * environment_weight(path, view), 0.0);
 }
 
-// Radiance and alpha of a surface that shines by itself or cuts a hole.
-vec4 seen_surface(CameraPath path, Ray ray, Closure closure) {
+// Radiance and alpha of a surface that shines by itself or cuts a hole. start: where the ray was scattered.
+vec4 seen_surface(CameraPath path, vec3 start, Closure closure) {
     vec4 seen = vec4(0.0);
     bool found = (path.flags & PATH_LIGHTS_FOUND) != 0u && (emitter_traits(closure.triangle) & EMITTER_REFLECTED) != 0u;
     if (largest(closure.emission) > 0.0 && (path.flags & PATH_GATHERED) == 0u && !found) {
         float weight = 1.0;
         if (path.scatter_pdf > 0.0)
-            weight = scatter_mis_weight(path.scatter_pdf, emissive_triangle_pdf(ray.origin, closure.triangle));
+            weight = scatter_mis_weight(path.scatter_pdf, emissive_triangle_pdf(start, closure.triangle));
         seen.rgb = path.throughput * closure.emission * weight;
     }
     if ((path.flags & PATH_STRAIGHT) != 0u)
@@ -193,7 +186,8 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
     bool shadow_rays_pass = (closure.flags & CLOSURE_SHADOWLESS) != 0u;
     return Event(direction, closure.transparent, -direction, shares.x, true,
                  shadow_rays_pass ? path.scatter_pdf : 0.0,
-                 shadow_rays_pass ? path.flags | PATH_SEEN_THROUGH : (path.flags & ~PATH_LIGHTS_FOUND) | PATH_CAUSTIC,
+                 shadow_rays_pass ? path.flags | (path.scatter_pdf > 0.0 ? PATH_SEEN_THROUGH : 0u)
+                                  : (path.flags & ~(PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH)) | PATH_CAUSTIC,
                  SCATTER_NONE);
 }
 
@@ -273,9 +267,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
                                                     pack_unit_vector(-event.direction));
         path.throughput = found_weight;
     }
-#ifdef PORTALS
     else if (!gathered && event.scatter != SCATTER_NONE) gathering_vertices[index].position = closure.position;
-#endif
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     float side = dot(event.direction, geometric);
     if (!(largest(path.throughput) > 0.0) || (event.transmitted ? side >= 0.0 : side <= 0.0)) return;
@@ -299,11 +291,11 @@ void main() {
     }
     if (!(ray.maximum_distance > 0.0)) return;
     bool hit = closures[index].triangle != NO_TRIANGLE, gathered = (path.flags & PATH_GATHERED) != 0u;
-    vec3 world = vec3(0.0);
+    vec3 world = vec3(0.0), start = scattered_at(index, path, ray);
     EnvironmentView view = EnvironmentView(0.0, 0.0, false);
     if (!hit) {
         world = found_world(path.flags, ray.direction);
-        view = view_environment(index, path.flags, ray);
+        view = view_environment(start, ray);
     }
     if (gathered && !hit) {
         end_gathering_ray(index, path, world, view);
@@ -311,9 +303,8 @@ void main() {
     }
     vec3 lights_passed = vec3(0.0);
     if (!gathered && (path.flags & PATH_LIGHTS_FOUND) == 0u)
-        lights_passed = visible_light(ray.origin, ray.direction, hit ? closures[index].distance : INFINITY_DISTANCE,
-                                      camera_ray_kind(path.flags), path.scatter_pdf,
-                                      light_set_at(ray.source_triangle));
+        lights_passed = visible_light(start, ray, hit ? closures[index].distance : INFINITY_DISTANCE,
+                                      camera_ray_kind(path.flags), path.scatter_pdf);
     vec4 seen = vec4(path.throughput * lights_passed, 0.0);
     if (!hit) {
         radiances[index] += seen + seen_environment(path, world, view, largest(lights_passed) <= 0.0);
@@ -322,7 +313,7 @@ void main() {
     Closure closure = closures[index];
     path.throughput *= segment_transmittance(path.flags, closure);
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
-    radiances[index] += seen + seen_surface(path, ray, closure);
+    radiances[index] += seen + seen_surface(path, start, closure);
 
     float radius = vertex_radius(path, ray.direction, closure);
     float caustic_radius = caustic_radius_of(index, radius, gathered);

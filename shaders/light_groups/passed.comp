@@ -10,6 +10,7 @@ layout(local_size_x = 64) in;
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
+#include "common/gathering.glsl"
 layout(std140, binding = 0) uniform Parameters { PassedLightParameters parameters; };
 #include "light_groups/grouped.glsl"
 layout(std430, binding = 0) readonly buffer Closures;
@@ -18,6 +19,8 @@ layout(std430, binding = 2) readonly buffer CameraPaths;
 layout(std430, binding = 3) readonly buffer Radiances;
 layout(std430, binding = 9) writeonly buffer SeenLight;
 layout(std430, binding = 10) readonly buffer LightGroupTable;
+layout(std430, binding = 11) readonly buffer GatheringVertices;
+#include "importons/scattered_at.glsl"
 
 uint path_index;
 vec3 path_throughput;
@@ -32,13 +35,12 @@ void main() {
     if (path_index == NO_PATH) return;
     Ray ray = rays[path_index];
     vec3 passed = vec3(0.0);
-    uint flags = camera_paths[path_index].flags;
-    if (ray.maximum_distance > 0.0 && (flags & (PATH_GATHERED | PATH_LIGHTS_FOUND)) == 0u) {
-        path_throughput = camera_paths[path_index].throughput;
+    CameraPath path = camera_paths[path_index];
+    if (ray.maximum_distance > 0.0 && (path.flags & (PATH_GATHERED | PATH_LIGHTS_FOUND)) == 0u) {
+        path_throughput = path.throughput;
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
-        passed = path_throughput * visible_light(ray.origin, ray.direction, distance, camera_ray_kind(flags),
-                                                 camera_paths[path_index].scatter_pdf,
-                                                 light_set_at(ray.source_triangle));
+        passed = path_throughput * visible_light(scattered_at(path_index, path, ray), ray, distance,
+                                                 camera_ray_kind(path.flags), path.scatter_pdf);
     }
     seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
 }

@@ -154,12 +154,13 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
 // off.
 struct PassedLights { vec3 radiance; vec3 chosen; uint light; float distance; float weights; float u; };
 
-void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direction, float maximum_distance, uint ray,
+void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direction, vec2 distances, uint ray,
                 float scatter_pdf) {
     Light light = lights[number];
     if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return;
     float distance, pdf;
-    vec3 radiance = passed_light(light, origin, direction, maximum_distance, distance, pdf);
+    vec3 radiance = passed_light(light, origin, direction, distances.y, distance, pdf);
+    if (distance <= distances.x && light.kind != LIGHT_SUN) return;
     radiance *= scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
     passed.radiance += radiance;
 #ifdef TELL_OF_PASSED_LIGHT
@@ -174,19 +175,20 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
     passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
-// The light objects that a ray from an object in a light set passes; they hide nothing, and the camera sees all. Suns
-// first, then down the tree: one loop, since drivers without calls have the code of a light as often as it stands here.
-PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf,
-                           uint light_set, float u) {
+// The light objects that a ray from an object in a light set passes between two distances; they hide nothing, and the
+// camera sees all. Suns first, then down the tree: one loop, since drivers without calls have the code of a light as
+// often as it stands here.
+PassedLights passed_lights(vec3 origin, vec3 direction, vec2 distances, uint ray, float scatter_pdf, uint light_set,
+                           float u) {
     PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    uint sun = maximum_distance >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
+    uint sun = distances.y >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
     uint node = parameters.light_tree_leaves > 0u ? 1u : 0u;  // 0: none left
     while (sun < parameters.sun_count || node > 0u) {
         bool is_sun = sun < parameters.sun_count;
         LightNode at = light_nodes[is_sun ? parameters.first_sun + sun : node];
         bool met = is_sun || (at.intensity > 0.0
-                              && ray_meets_box(at.low, at.high, origin, inverse_direction, maximum_distance));
+                              && ray_meets_box(at.low, at.high, origin, inverse_direction, distances.y));
         if (is_sun) sun += 1u;
         else if (met && node < parameters.light_tree_leaves) {
             node *= 2u;
@@ -198,7 +200,7 @@ PassedLights passed_lights(vec3 origin, vec3 direction, float maximum_distance, 
             if (node == 1u) node = 0u;
         }
         if (met && ((ray & RAY_CAMERA) != 0u || has_set(at.light_sets, light_set)))
-            pass_light(passed, at.member, origin, direction, maximum_distance, ray, scatter_pdf);
+            pass_light(passed, at.member, origin, direction, distances, ray, scatter_pdf);
     }
     return passed;
 }
@@ -231,6 +233,9 @@ Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set,
     return nearest;
 }
 
-vec3 visible_light(vec3 origin, vec3 direction, float maximum_distance, uint ray, float scatter_pdf, uint light_set) {
-    return passed_lights(origin, direction, maximum_distance, ray, scatter_pdf, light_set, 0.0).radiance;
+// What a ray passes on so far a way. start: where it was scattered.
+vec3 visible_light(vec3 start, Ray way, float far, uint ray, float scatter_pdf) {
+    float gone = distance(start, way.origin);
+    return passed_lights(start, way.direction, vec2(gone, gone + far), ray, scatter_pdf,
+                         light_set_at(way.source_triangle), 0.0).radiance;
 }

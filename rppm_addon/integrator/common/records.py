@@ -425,7 +425,7 @@ the importon's, meters, and so is ``shared_radius``, but for 0 where what the ra
 marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
 sharp surfaces, but for the photons' share, at once, if the world is even, or from a second such vertex, of which
 ``radius`` then is. ``hit`` is where the ray arrived at a surface that stores photons, ``hit_normal`` on its side; where
-it came to none, far behind all."""
+it came to none, far behind all. Before the path gathers, ``position`` is where it was scattered last."""
 StorageBlock("GatheringVertices", "GatheringVertex gathering_vertices[];")
 StorageBlock("FoundRadiances", "vec4 found_radiances[];")
 

@@ -70,7 +70,12 @@ class LightGroups(BufferSet):
             self._grouped.clear()
 
     def add_direct_light(
-        self, context: StageContext, importons: Importons, direct_light: DirectLight, iteration: Iteration
+        self,
+        context: StageContext,
+        importons: Importons,
+        direct_light: DirectLight,
+        final_gather: FinalGather,
+        iteration: Iteration,
     ) -> None:
         """What DirectLight.add has added, and light objects that the paths pass, before they scatter on."""
         if not (self._groups and iteration.enters_film):
@@ -97,6 +102,7 @@ class LightGroups(BufferSet):
                 {
                     **lights.tree_buffers,
                     **importons.path_blocks,
+                    "GatheringVertices": final_gather.vertices.buffer,
                     "Radiances": importons.radiances.buffer,
                     "SeenLight": self._seen.buffer,
                     "LightGroupTable": lights.group_table.buffer,

@@ -7,6 +7,7 @@ import pytest
 from blender_scenes import add_mesh, add_node, export, link, new_material
 from drawing import context_of, drawn
 
+from rppm_addon.blender import colored_glasses as glasses_of_three
 from rppm_addon.blender.colored_glasses import colored_glasses
 from rppm_addon.blender.panels.shading import RPPM_PT_material_settings
 from rppm_addon.materials import dispersion
@@ -126,3 +127,21 @@ def test_other_glasses_are_left_alone(scene, given):
     material = three_glasses(**given)
     assert colored_glasses(material) is None
     assert converted(material) == {"CANCELLED"}
+
+
+def test_numbers_of_nodes_that_are_used_twice_are_found_once(scene, monkeypatch):
+    """Else a chain of thirty would be computed a billion times whenever the panel is drawn."""
+    material = three_glasses()
+    tree, computed = material.node_tree, []
+    value = add_node(tree, "ShaderNodeValue").outputs[0]
+    value.default_value = INDICES[0] / 2**30
+    for _ in range(30):
+        twice = add_node(tree, "ShaderNodeMath")  # which adds
+        for term in twice.inputs[:2]:
+            link(tree, value, term)
+        value = twice.outputs[0]
+    red = next(node for node in tree.nodes if node.type == "BSDF_GLASS" and node.inputs["Color"].default_value[0] == 1)
+    link(tree, value, red.inputs["IOR"])
+    monkeypatch.setitem(glasses_of_three._OPERATIONS, "ADD", lambda a, b: computed.append(0) or a + b)
+    assert colored_glasses(material).indices == pytest.approx(INDICES, rel=1e-5)
+    assert len(computed) == 30

@@ -22,7 +22,9 @@ void main() {
             float distance, pdf;
             all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
-        results[index] = vec4(visible_light(origin, direction, parameters.reach, RAYS_WITH_VISIBILITY, 0.0, 0u).xy, all.xy);
+        PassedLights passed = passed_lights(origin, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0,
+                                            0u, 0.0);
+        results[index] = vec4(passed.radiance.xy, all.xy);
         return;
     }
     // Evenly spaced numbers: each choice gets the part of them that is its probability.

@@ -139,7 +139,8 @@ def with_pane(scene: Scene, low: float, z: float) -> Scene:
     """Above the hole, from x = low on, a clear pane that stops no shadow rays."""
     corners = [(low, -0.4, z), (0.4, -0.4, z), (0.4, 0.4, z), (low, 0.4, z)]
     clear = material("clear", Lobe(LobeKind.TRANSPARENT, color=(1.0, 1.0, 1.0)))
-    instance = Instance(len(scene.meshes), np.eye(4), [2], visibility=RayVisibility.ALL & ~RayVisibility.SHADOW)
+    number, shown = len(scene.materials), RayVisibility.ALL & ~RayVisibility.SHADOW
+    instance = Instance(len(scene.meshes), np.eye(4), [number], visibility=shown)
     return dataclasses.replace(
         scene,
         meshes=[*scene.meshes, scenes.rectangle("pane", *corners)],
