@@ -15,7 +15,14 @@ from .commands.arguments import parser
 from .commands.compiling import compile_programs
 from .commands.farm.command import farm
 from .commands.interruption import INTERRUPTED
-from .commands.options import is_blend, load_blend_or_saved, refuse_shared_files, split_values, write_json
+from .commands.options import (
+    is_blend,
+    load_blend_or_saved,
+    refuse_shared_files,
+    request_of,
+    split_values,
+    write_json,
+)
 from .commands.picture_set import described
 from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
@@ -96,7 +103,7 @@ def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
     settings, data_values = split_values(options.values)
     apply_settings(RenderSettings(), settings)
     make_folder(options.output)
-    request = blend_file.BlendRequest(options.file, options.frame, options.resolution, data_values, options.view_layers)
+    request = request_of(options.file, options, data_values)
     scene = blend_file.export_blend_file(request, show_output=options.debug)
     scene.settings = apply_settings(scene.settings, settings)
     try:

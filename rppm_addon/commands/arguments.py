@@ -24,6 +24,12 @@ def parser() -> argparse.ArgumentParser:
     scene.add_argument("--resolution", type=_resolution, metavar="WxH", help="size of the whole frame in pixels")
     scene.add_argument("--frame", type=int, metavar="N", help="frame number of a .blend file")
     scene.add_argument(
+        "--scene-name",
+        default="",
+        metavar="NAME",
+        help="scene of a .blend file; default: the one that it was saved with open",
+    )
+    scene.add_argument(
         "--view-layer",
         dest="view_layers",
         action="append",

@@ -40,6 +40,8 @@ class BlendRequest:
     """Data paths and what to set them to."""
     view_layers: list[str] = field(default_factory=list)
     """Names; none are those that are in use."""
+    scene: str = ""
+    """Its name; empty is the one that the file was saved with open."""
 
     def as_plain(self) -> dict[str, Any]:
         """The request as JSON has it, for whoever is to open the same picture's scene later."""
@@ -49,6 +51,7 @@ class BlendRequest:
             "resolution": self.resolution and list(self.resolution),
             "values": [list(value) for value in self.values],
             "view_layers": list(self.view_layers),
+            "scene": self.scene,
         }
 
     @classmethod
@@ -60,6 +63,7 @@ class BlendRequest:
             plain["resolution"] and tuple(plain["resolution"]),
             [tuple(value) for value in plain["values"]],
             list(plain["view_layers"]),
+            plain.get("scene", ""),  # parts of older versions have none
         )
 
 
@@ -195,6 +199,8 @@ def _open(bpy: ModuleType, path: Path) -> None:
 
 
 def _prepare(bpy: ModuleType, request: BlendRequest) -> None:
+    if request.scene:
+        _choose_scene(bpy, request.scene)
     scene = bpy.context.scene
     if request.frame is not None:
         scene.frame_set(request.frame)
@@ -208,6 +214,15 @@ def _prepare(bpy: ModuleType, request: BlendRequest) -> None:
     _choose_layers(scene, request.view_layers)
     for path, value in request.values:
         set_data_path((scene, bpy.data), path, value)
+
+
+def _choose_scene(bpy: ModuleType, name: str) -> None:
+    """Make it the one that is open. Raises SettingsError."""
+    scene = bpy.data.scenes.get(name)
+    if scene is None:
+        known = ", ".join(scene.name for scene in bpy.data.scenes)
+        raise SettingsError(f'there is no scene "{name}"; there are {known}')
+    bpy.context.window_manager.windows[0].scene = scene
 
 
 def _choose_layers(scene: Any, names: Sequence[str]) -> None:

@@ -5,6 +5,7 @@ import argparse
 import json
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..pictures import PictureError, make_folder, renamed_when_whole
 from ..scene import Scene
@@ -14,6 +15,9 @@ from .data_paths import split_assignment
 from .frame_numbers import has_place, path_of_frame
 from .recorder import apply_settings
 from .setting_options import given_settings
+
+if TYPE_CHECKING:
+    from .blend_file import BlendRequest
 
 
 def is_blend(path: Path) -> bool:
@@ -66,6 +70,8 @@ def refuse_blend_options(options: argparse.Namespace, data_values: list[tuple[st
     """Raise SettingsError where options ask of a saved scene what only a .blend file can give."""
     if options.frame is not None:
         raise SettingsError("--frame needs a .blend file; a saved scene holds one frame")
+    if options.scene_name:
+        raise SettingsError("--scene-name needs a .blend file; a saved scene is one alone")
     if options.view_layers:
         raise SettingsError("--view-layer needs a .blend file; a saved scene holds one view layer")
     if data_values:
@@ -93,6 +99,13 @@ def _same_file(first: Path, second: Path) -> bool:
     return first.resolve() == second.resolve() or (first.exists() and second.exists() and first.samefile(second))
 
 
+def request_of(file: Path, options: argparse.Namespace, data_values: list[tuple[str, str]]) -> "BlendRequest":
+    """Which picture of a .blend file the options name."""
+    from .blend_file import BlendRequest
+
+    return BlendRequest(file, options.frame, options.resolution, data_values, options.view_layers, options.scene_name)
+
+
 def load_blend_or_saved(
     file: Path, options: argparse.Namespace, settings: dict[str, object], data_values: list[tuple[str, str]]
 ) -> Scene:
@@ -100,7 +113,7 @@ def load_blend_or_saved(
     if is_blend(file):
         from . import blend_file
 
-        request = blend_file.BlendRequest(file, options.frame, options.resolution, data_values, options.view_layers)
+        request = request_of(file, options, data_values)
         scene = blend_file.export_blend_file(request, show_output=options.debug)
     else:
         from ..scene import load_scene

@@ -17,6 +17,7 @@ from .options import (
     outputs_of_still,
     refuse_blend_options,
     refuse_shared_files,
+    request_of,
     seconds_of,
     values_and_limits,
     values_of_frames,
@@ -39,9 +40,7 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
         from . import blend_file
 
         data_values += values_of_frames(settings)
-        blend_request = blend_file.BlendRequest(
-            options.file, options.frame, options.resolution, data_values, options.view_layers
-        )
+        blend_request = request_of(options.file, options, data_values)
     apply_settings(RenderSettings(), settings)  # a wrong value is better reported now than after Blender's start
     if options.frames is not None:
         return _render_frames(options, bar, blend_request, settings)

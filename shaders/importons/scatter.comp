@@ -80,14 +80,23 @@ void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, v
 // as it is at that place; and whether neighbors share what the ray finds.
 struct EnvironmentView { float plain_pdf; float pdf; bool is_shared; };
 
+#ifdef PORTALS
+// Where the ray was scattered, from where shadow rays look for what it finds: straight through surfaces it begins
+// behind them. A path that gathers a third time does so within parameters.gathers_again_below of its second vertex.
+vec3 scattered_at(uint index, uint flags, Ray ray) {
+    if ((flags & PATH_SEEN_THROUGH) == 0u) return ray.origin;
+    return (flags & PATH_GATHERED_AGAIN) != 0u ? gathering_vertices[index].hit : gathering_vertices[index].position;
+}
+#endif
+
 // An even environment is left to rays, but for what comes through portals. Neighbors share it: its shadows are as soft
 // as those of indirect light.
-EnvironmentView view_environment(Ray ray) {
+EnvironmentView view_environment(uint index, uint flags, Ray ray) {
     float plain_pdf = world_shadow_ray_pdf(ray.direction);
     bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
     EnvironmentView view = EnvironmentView(plain_pdf, left_to_rays ? 0.0 : plain_pdf, environment_is_even());
 #ifdef PORTALS
-    PortalView portals = view_portals(ray.origin, ray.direction, NO_PORTAL);
+    PortalView portals = view_portals(scattered_at(index, flags, ray), ray.direction, NO_PORTAL);
     if (portals.solid_angle > 0.0) view.pdf = parameters.world_selection * mixed_world_pdf(portals, ray.direction);
     if (portals.pdf > 0.0) {
         view.plain_pdf = ONLY_SHADOW_RAYS;
@@ -174,7 +183,8 @@ Event diffuse_event(CameraPath path, Closure closure, float u, vec2 disk, vec4 s
     event.direction = cosine_hemisphere(event.normal, disk);
     event.weight = event.transmitted ? closure.translucent : closure.diffuse;
     event.pdf = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
-    event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND)) | PATH_DIFFUSE;
+    event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH))
+                | PATH_DIFFUSE;
     event.scatter = SCATTER_DIFFUSE;
     return event;
 }
@@ -183,7 +193,7 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
     bool shadow_rays_pass = (closure.flags & CLOSURE_SHADOWLESS) != 0u;
     return Event(direction, closure.transparent, -direction, shares.x, true,
                  shadow_rays_pass ? path.scatter_pdf : 0.0,
-                 shadow_rays_pass ? path.flags : (path.flags & ~PATH_LIGHTS_FOUND) | PATH_CAUSTIC,
+                 shadow_rays_pass ? path.flags | PATH_SEEN_THROUGH : (path.flags & ~PATH_LIGHTS_FOUND) | PATH_CAUSTIC,
                  SCATTER_NONE);
 }
 
@@ -209,7 +219,8 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     bool lights_found = parameters.next_event != 0u && !sampled.transmitted
                      && looks_for_reflected_lights(lobe, shares, total, chosen, viewer,
                                                    min(SMOOTHEST_LIT, parameters.specular_alpha));
-    event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND))
+    event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND
+                                  | PATH_SEEN_THROUGH))
                 | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
                 | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
                 | dispersed_flag(closure, lobe, sampled.transmitted);
@@ -262,6 +273,9 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
                                                     pack_unit_vector(-event.direction));
         path.throughput = found_weight;
     }
+#ifdef PORTALS
+    else if (!gathered && event.scatter != SCATTER_NONE) gathering_vertices[index].position = closure.position;
+#endif
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     float side = dot(event.direction, geometric);
     if (!(largest(path.throughput) > 0.0) || (event.transmitted ? side >= 0.0 : side <= 0.0)) return;
@@ -289,7 +303,7 @@ void main() {
     EnvironmentView view = EnvironmentView(0.0, 0.0, false);
     if (!hit) {
         world = found_world(path.flags, ray.direction);
-        view = view_environment(ray);
+        view = view_environment(index, path.flags, ray);
     }
     if (gathered && !hit) {
         end_gathering_ray(index, path, world, view);

@@ -69,7 +69,7 @@ struct LightChoice { uint light; uint triangle; float probability; };
 
 // Down a tree: sets the leaf's member, and returns its probability.
 float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep, out uint member) {
-    float probability = 1.0, even_fraction = EVEN_FRACTION_OF_TREE / float(max(findMSB(leaves), 1));
+    float probability = 1.0, even_fraction = EVEN_FRACTION_OF_TREE / float(max(findMSB(2u * leaves - 1u), 1));
     uint node = 1u;
     for (uint level = 1u; node < leaves; ++level) {
         float low = node_importance(light_nodes[first + 2u * node], point),

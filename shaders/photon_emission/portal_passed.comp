@@ -6,17 +6,20 @@
 
 layout(local_size_x = 64) in;
 
-#include <FalloffParameters>
-#include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { FalloffParameters parameters; };
+#include <PortalPassedParameters>
+#include <PhotonFlags>
+#include "common/living_paths.glsl"
+layout(std140, binding = 0) uniform Parameters { PortalPassedParameters parameters; };
 #include "lights/lights.glsl"
 layout(std430, binding = 0) readonly buffer Rays;
 layout(std430, binding = 1) readonly buffer Hits;
-layout(std430, binding = 2) buffer PhotonOrigins;
+layout(std430, binding = 2) readonly buffer PhotonPaths;
+layout(std430, binding = 3) buffer PhotonOrigins;
 
 void main() {
-    uint index = invocation_index();
-    if (index >= parameters.count || lights[light_of(index)].kind != LIGHT_WORLD) return;
+    uint index = living_path();
+    if (index == NO_PATH || (photon_paths[index].flags & PHOTON_DIRECT) == 0u) return;
+    if (lights[light_of(index)].kind != LIGHT_WORLD) return;
     Ray ray = rays[index];
     Hit hit = hits[index];
     if (!(ray.maximum_distance > 0.0) || hit.triangle == NO_TRIANGLE) return;

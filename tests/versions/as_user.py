@@ -81,8 +81,8 @@ def apply_presets() -> dict[str, int]:
 
 
 def raycast() -> list[str]:
-    """What is read of a Raycast node, where there is one: kinds of nodes, and what is exported with a mesh that comes
-    before the material that samples it."""
+    """What is read of a Raycast node, where there is one: kinds of nodes, and, from Blender 5.2 on, what is exported with
+    a mesh that comes before the material that samples it."""
     if not hasattr(bpy.types, "ShaderNodeRaycast"):
         return []
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -98,9 +98,12 @@ def raycast() -> list[str]:
     tree = material.node_tree
     tree.nodes.clear()
     node, output = tree.nodes.new("ShaderNodeRaycast"), tree.nodes.new("ShaderNodeOutputMaterial")
-    node.sample_attribute_items.new("FLOAT", "Heat")
-    node.inputs["Heat"].default_value = "Heat"
-    tree.links.new(node.outputs["Heat"], output.inputs["Surface"])
+    read = "Hit Distance"
+    if hasattr(node, "sample_attribute_items"):  # Blender 5.2 and later
+        read = "Heat"
+        node.sample_attribute_items.new("FLOAT", read)
+        node.inputs[read].default_value = read
+    tree.links.new(node.outputs[read], output.inputs["Surface"])
     scene = module("blender.export").export_scene(bpy.context.evaluated_depsgraph_get())
     meshes = [name for mesh in scene.meshes for name in mesh.attributes]
     return [node.kind for material in scene.materials for node in material.graph.nodes] + meshes + scene.warnings

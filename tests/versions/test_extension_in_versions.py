@@ -68,6 +68,11 @@ def test_a_raycast_samples_meshes_that_come_before_it(used):
     assert sorted(found) == ["Heat", "Heat", "bsdf_principled", "cast_attribute", "emission", "raycast"]
 
 
+def test_a_raycast_is_exported_before_it_samples_attributes(used):
+    """Blender 5.1 has the node, and 5.2 its attributes."""
+    assert sorted(used("5.1.2")[0]["raycast"]) == ["bsdf_principled", "emission", "raycast"]
+
+
 @pytest.mark.parametrize("version", WHEELS)
 def test_what_the_window_needs_is_there(version, used):
     report, _ = used(version)

@@ -5,6 +5,8 @@ import numpy as np
 
 FLATTEST = 1e-6
 """Least ratio of the smallest scale of a placement to its largest."""
+_SKEW = 1e-3
+"""Cosine between axes from which on pictures show that they are not at right angles: a pixel of a thousand."""
 
 
 def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -50,3 +52,9 @@ def rigid(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
     result[:3, 0], result[:3, 1], result[:3, 2] = np.cross(up, backward), up, backward
     result[:3, 3] = matrix[:3, 3]
     return result, bool(np.linalg.det(linear) < 0.0)
+
+
+def is_sheared(matrix: np.ndarray) -> bool:
+    """Whether the axes of a regular matrix (4, 4) are so far from right angles that pictures show it."""
+    axes = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
+    return bool(np.abs(axes.T @ axes - np.eye(3)).max() > _SKEW)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import bpy
 
 from .meshes.dicing import adaptive_modifier
+from .passes import passes_of_cycles_only
 from .report import Report, listed
 from .slices import Slices
 
@@ -136,7 +137,8 @@ class OmissionList:
 
     def tell(self, depsgraph: bpy.types.Depsgraph, report: Report) -> None:
         """Have the report name what the objects so far, the scene and its view layer use, each once."""
-        scene, without = depsgraph.scene_eval, _passes_without(depsgraph.view_layer_eval)
+        scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+        without, switched_off = _passes_without(layer), passes_of_cycles_only(layer)
         with report.about("omissions"):
             for omission, users in self._users.items():
                 if users:
@@ -146,6 +148,11 @@ class OmissionList:
                     report.warn(f"{omission.title}: {omission.consequence}")
             if without:
                 report.warn(f"Passes that RPPM does not have: {', '.join(without)}; links from them stay black")
+            if switched_off:
+                report.warn(
+                    f"Passes that are on for Cycles only: {', '.join(switched_off)}; switch them on in View Layer > "
+                    "Passes, or take all of Cycles' settings with Sampling > From Cycles"
+                )
 
 
 def objects_of(depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Object]:

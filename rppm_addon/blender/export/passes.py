@@ -5,6 +5,13 @@ import bpy
 
 from ...scene.passes import ALWAYS_TAKEN, PASSES, RenderPass, light_group_passes
 
+OF_CYCLES = {
+    "denoising_store_passes": "use_pass_denoising_data",
+    "use_pass_shadow_catcher": "use_pass_shadow_catcher",
+    "pass_debug_sample_count": "use_pass_debug_sample_count",
+}
+"""Switches that Cycles adds to view layers, with those of the add-on for the same passes."""
+
 
 def switch_of(layer: bpy.types.ViewLayer, entry: RenderPass) -> tuple[bpy.types.bpy_struct | None, str]:
     """What holds the pass's switch, and its name: the view layer, or the add-on's properties of it, which are None
@@ -24,6 +31,18 @@ def aovs_of_layer(layer: bpy.types.ViewLayer) -> tuple[str, ...]:
 def light_groups_of_layer(layer: bpy.types.ViewLayer) -> tuple[str, ...]:
     """The names of a view layer's light groups."""
     return tuple(layer.lightgroups.keys())
+
+
+def passes_of_cycles_only(layer: bpy.types.ViewLayer) -> list[str]:
+    """Labels of the passes that both have a switch for, of which that of Cycles alone is on."""
+    own, cycles = getattr(layer, "rppm", None), getattr(layer, "cycles", None)
+    if own is None:
+        return []
+    return [
+        own.bl_rna.properties[name].name
+        for of_cycles, name in OF_CYCLES.items()
+        if getattr(cycles, of_cycles, False) and not getattr(own, name)
+    ]
 
 
 def passes_of_layer(layer: bpy.types.ViewLayer) -> tuple[RenderPass, ...]:

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 
 import bpy
 
+from ..export.passes import OF_CYCLES
+
 SHARED = {
     "samples": "samples",
     "preview_samples": "preview_samples",
@@ -52,7 +54,7 @@ class _CopySettings(bpy.types.Operator):
 
 
 class RPPM_OT_copy_from_cycles(_CopySettings):
-    """Take samples, noise threshold, denoising, bounces, time limit, seed, exposure and pixel filter from Cycles"""
+    """Take samples, noise threshold, denoising, bounces, time limit, seed, exposure, filter and passes from Cycles"""
 
     bl_idname = "rppm.copy_from_cycles"
     bl_label = "Copy from Cycles"
@@ -61,6 +63,8 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
         """Copy; photons take as many bounces as the camera's paths."""
         own, cycles = context.scene.rppm, context.scene.cycles
         _copy(cycles, own, ((other, name) for name, other in SHARED.items()))
+        for layer in context.scene.view_layers:
+            _copy(layer.cycles, layer.rppm, OF_CYCLES.items())
         own.max_photon_bounces = own.max_camera_bounces
         for prefix in ("", "preview_"):
             if getattr(cycles, f"{prefix}adaptive_threshold") == 0.0:  # automatic, by the samples
@@ -70,7 +74,7 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
 
 
 class RPPM_OT_copy_to_cycles(_CopySettings):
-    """Give Cycles the samples, noise threshold, denoising, bounces, time limit, seed, exposure and pixel filter"""
+    """Give Cycles the samples, noise threshold, denoising, bounces, time limit, seed, exposure, filter and passes"""
 
     bl_idname = "rppm.copy_to_cycles"
     bl_label = "Copy to Cycles"
@@ -78,6 +82,8 @@ class RPPM_OT_copy_to_cycles(_CopySettings):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Copy."""
         _copy(context.scene.rppm, context.scene.cycles, SHARED.items())
+        for layer in context.scene.view_layers:
+            _copy(layer.rppm, layer.cycles, ((own, other) for other, own in OF_CYCLES.items()))
         return {"FINISHED"}
 
 

@@ -82,6 +82,8 @@ def _task_options(options: argparse.Namespace, names: list[str]) -> list[str]:
             words += [f"--{name}", f"{getattr(options, name):.15g}"]
     if options.resolution is not None:
         words += ["--resolution", "{}x{}".format(*options.resolution)]
+    if options.scene_name:
+        words += ["--scene-name", options.scene_name]
     for name in options.view_layers:
         words += ["--view-layer", name]
     for value in options.values:

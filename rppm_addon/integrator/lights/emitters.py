@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Triangles that emit light: how brightly, and how likely each is chosen."""
 
+import contextlib
 import math
 from collections.abc import Callable, Iterator
 
@@ -32,7 +33,7 @@ from ..common.records import (
 from ..surfaces.geometry import Geometry, Placement, objects_of_most
 from ..surfaces.resolve import Resolve
 from .light_links import NO_LINK, LightLinkTable
-from .light_tree import triangle_leaves
+from .light_tree import LightTree, triangle_leaves
 
 Record("EmittersParameters", photons="uint")
 Record("MarkParameters", count="uint", first_triangle="uint", triangle_count="uint")
@@ -226,10 +227,17 @@ def chances(weights: np.ndarray) -> np.ndarray:
 
 
 def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables, refuse: Callable[[int], None]) -> None:
-    """Have ``refuse`` judge how many triangles may emit, before anything is asked of them. Raises its DeviceError, with
-    the objects that have the most."""
-    if all(emits is Emits.NOTHING for emits in materials.emits):
-        return
+    """Have ``refuse`` judge how many triangles may emit, before anything is asked of them; they are counted only where
+    not all of the scene have room. Raises its DeviceError, or one for more than can be chosen from, with the objects
+    that have the most."""
+
+    def judge(count: int) -> None:
+        if count > _STEPS:
+            raise DeviceError(f"no more than {_STEPS:,} triangles can emit light; {LightTree.remedy}")
+        refuse(count)
+
+    with contextlib.suppress(DeviceError):
+        return judge(geometry.triangle_count)
     known_counts: dict[tuple[int, ...], int] = {}
     instances = [placement.instance for placement in geometry.placements]
     keys = [(instance.mesh, *instance.materials) for instance in instances]
@@ -238,7 +246,7 @@ def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables,
             known_counts[key] = len(_emitting(scene, instance, materials)[1])
     counts = [known_counts[key] for key in keys]
     try:
-        refuse(sum(counts))
+        judge(sum(counts))
     except DeviceError as error:
         most = objects_of_most(instances, counts)
         raise DeviceError(f"{error} (of {sum(counts):,} that do, instances counted each: {most})") from error

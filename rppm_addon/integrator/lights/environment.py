@@ -68,7 +68,8 @@ class Environment(BufferSet):
         """(height, width) mean of the channels by direction, W/(m^2 sr), as directions are chosen by it; None of an
         even world."""
         self._directions = np.zeros(0, np.float32)
-        self._has_others = False
+        self.has_others = False
+        """Whether there is another table of directions behind the world's."""
 
     @property
     def is_even(self) -> bool:
@@ -81,7 +82,7 @@ class Environment(BufferSet):
         for texture in self._textures:
             self.disown(texture)
         self.width = self.height = 0
-        self.brightness, self._directions, self._has_others = None, np.zeros(0, np.float32), False
+        self.brightness, self._directions, self.has_others = None, np.zeros(0, np.float32), False
         self.radiance = self.mean_radiance = np.maximum(world.radiance, 0.0).astype(np.float64)
         if world.graph is None or emits(world.graph) is not Emits.VARYING:
             if world.graph is not None:
@@ -108,11 +109,11 @@ class Environment(BufferSet):
     def add_directions(self, weights: np.ndarray | None) -> int:
         """Have another table of directions, chosen by weights (rows, columns) a steradian, behind the world's; None:
         have none. Returns where it begins."""
-        if weights is not None or self._has_others:
+        if weights is not None or self.has_others:
             others = np.zeros(0, np.float32) if weights is None else _directions_by(weights)
             both = np.concatenate([self._directions, others])
             self.distribution.upload(both if len(both) else np.zeros(1, np.float32))
-        self._has_others = weights is not None
+        self.has_others = weights is not None
         return len(self._directions)
 
     def _texture(self, pixels: np.ndarray) -> moderngl.Texture:

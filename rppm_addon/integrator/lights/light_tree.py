@@ -3,8 +3,8 @@
 (shaders/lights/light_tree.glsl).
 
 After Conty Estevez and Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting (HPG 2018). The tree is a
-complete binary one over the lights in Morton order: children of node i are 2 i and 2 i + 1, and any number of
-lights that move is built anew in a few array operations.
+complete binary one over the lights in Morton order: children of node i are 2 i and 2 i + 1, and its n leaves are the
+nodes from n on. So any number of lights that move is built anew in a few array operations.
 """
 
 import math
@@ -57,7 +57,7 @@ class LightTree(BufferSet):
 
     def refuse(self, lights: int, triangles: int) -> None:
         """Raise DeviceError where the device has no room for so many emissive triangles beside so many lights."""
-        self.nodes.refuse_items(sum(2 * _places(leaves) for leaves in (lights, triangles) if leaves) + lights)
+        self.nodes.refuse_items(2 * (lights + triangles) + lights)
 
 
 LIGHT_TREE_PARAMETERS = {
@@ -115,24 +115,20 @@ def triangle_leaves(emissive: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def tree_of(leaves: np.ndarray) -> np.ndarray:
-    """(2 p,) LIGHT_NODE records of a complete tree over the leaves, p the next power of two; node 0 is none, and
-    leaves that are missing have no intensity."""
-    if not len(leaves):
-        return LIGHT_NODE.zeros(0)
-    places = _places(len(leaves))
-    nodes = LIGHT_NODE.zeros(2 * places)
-    nodes[places : places + len(leaves)] = leaves[_morton_order(leaves)]
-    level = places
+    """(2 n,) LIGHT_NODE records of a complete tree over n leaves; node 0 is none."""
+    count = len(leaves)
+    nodes = LIGHT_NODE.zeros(2 * count)
+    if not count:
+        return nodes
+    level = 1 << ((2 * count - 1).bit_length() - 1)  # the first node of the lowest
+    ordered = leaves[_morton_order(leaves)]
+    nodes[level:], nodes[count:level] = np.split(ordered, [2 * count - level])  # from left to right
     while level > 1:
-        children = nodes[level : 2 * level]
-        nodes[level // 2 : level] = _merged(children[0::2], children[1::2])
         level //= 2
+        end = min(2 * level, count)
+        children = nodes[2 * level : 2 * end]
+        nodes[level:end] = _merged(children[0::2], children[1::2])
     return nodes
-
-
-def _places(leaves: int) -> int:
-    """Of a complete tree's lowest level."""
-    return 1 << (leaves - 1).bit_length()
 
 
 def _widened(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -256,7 +256,8 @@ class Lights(BufferSet):
         entry["max_bounces"] = world_bounces
         power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
         add(ENVIRONMENT, entry, power, group=scene.world.light_group)
-        self._portals = Portals(scene.lights if names[-1:] == [ENVIRONMENT] else [], self.environment, radius)
+        shown_through = scene.lights if names[-1:] == [ENVIRONMENT] else []
+        self._portals = Portals(shown_through, self.environment, radius, self._portals)
         if self._portals.power > 0.0:
             # The same light as the world's, which all but its photons take by that one: so it has no power.
             through = entry.copy()

@@ -47,20 +47,33 @@ _SUBCELLS = 2
 class Portals:
     """Those among a scene's lights, in the light of its world; none where none of it passes them."""
 
-    def __init__(self, lights: list[Light], environment: Environment, scene_radius: float) -> None:
-        """Puts the directions of what passes them behind the environment's."""
+    def __init__(
+        self, lights: list[Light], environment: Environment, scene_radius: float, before: "Portals | None" = None
+    ) -> None:
+        """Puts the directions of what passes them behind the environment's. before: those of the last call; where they
+        are the same, in the same environment, their directions stay."""
         self.records = portal_entries(lights, scene_radius)
         """LIGHT records."""
-        passed, self.power = None, 0.0
+        if before is not None and environment.has_others and np.array_equal(self.records, before.records):
+            found: tuple[float, dict[str, object]] = (before.power, before.parameters)
+        else:
+            found = self._light_up(environment)
+        self.power: float = found[0]
+        """W of the world's light, the channels' mean."""
+        self.parameters: dict[str, object] = found[1]
+        """Values of PORTAL_PARAMETERS but for the light's number."""
+
+    def _light_up(self, environment: Environment) -> tuple[float, dict[str, object]]:
+        """Power and parameters; forgets the records where no light passes."""
+        passed, power = None, 0.0
         if len(self.records):
             passed = light_through(self.records, environment.brightness)
-            self.power = power_through(passed, float(np.mean(environment.radiance)))
-            """W of the world's light, the channels' mean."""
-        if not self.power > 0.0:
+            power = power_through(passed, float(np.mean(environment.radiance)))
+        if not power > 0.0:
             self.records, passed = self.records[:0], None
         first = environment.add_directions(passed)
         fractions = shadow_ray_fractions(environment.brightness) if len(self.records) else (0.0, 0.0)
-        self.parameters = {
+        return power, {
             "portal_count": len(self.records),
             "portal_fraction": fractions[0],
             "portal_table_fraction": fractions[1],
@@ -68,7 +81,6 @@ class Portals:
             "portal_width": 0 if passed is None else passed.shape[1],
             "portal_height": 0 if passed is None else passed.shape[0],
         }
-        """Values of PORTAL_PARAMETERS but for the light's number."""
 
 
 def portal_entries(lights: list[Light], scene_radius: float) -> np.ndarray:

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The first part of DirectPhotonHits: photons leave the lights."""
 
+from collections.abc import Mapping
+
 import moderngl
 
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.iteration import Iteration
+from ..common.living_paths import LivingPaths
 from ..lights.lights import LIGHT_PARAMETERS, Lights
 
 Record("EmitParameters", **LIGHT_PARAMETERS, count="uint", target_count="uint")
 Record("FalloffParameters", **LIGHT_PARAMETERS, count="uint")
+Record("PortalPassedParameters", **LIGHT_PARAMETERS)
 
 
 class PhotonEmission:
@@ -64,18 +68,9 @@ class PhotonEmission:
         )
 
     def leave_to_shadow_rays(
-        self,
-        lights: Lights,
-        rays: moderngl.Buffer,
-        hits: moderngl.Buffer,
-        photon_origins: moderngl.Buffer,
-        count: int,
-        iteration: Iteration,
+        self, lights: Lights, blocks: Mapping[str, moderngl.Buffer], living: LivingPaths, iteration: Iteration
     ) -> None:
-        """Where photons hit first: mark those that came through a portal, whose direct light shadow rays bring."""
+        """Where direct photons hit: mark those that came through a portal, whose light shadow rays bring. blocks: Rays,
+        Hits, PhotonPaths and PhotonOrigins."""
         program = self._library.compute("photon_emission/portal_passed.comp", {"PORTALS": 1})
-        program.run(
-            count,
-            {**lights.buffers, "Rays": rays, "Hits": hits, "PhotonOrigins": photon_origins},
-            {**lights.parameters(iteration), "count": count},
-        )
+        living.run(program, {**lights.buffers, **blocks}, lights.parameters(iteration))

@@ -116,9 +116,6 @@ class Photons(BufferSet):
             self.first_hits.find(context, rays, hits, self._living)
             if context.lights.has_falloff:
                 self._emission.apply_falloff(context.lights, rays, hits, paths, self.photon_count, iteration)
-            if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
-                origins = self.photon_origins.buffer
-                self._emission.leave_to_shadow_rays(context.lights, rays, hits, origins, self.photon_count, iteration)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
 
     def trace(self, context: StageContext) -> bool:
@@ -152,6 +149,14 @@ class Photons(BufferSet):
         # Nothing goes on from the last segment's hits.
         has_adjoint_queries = context.materials.any_depends_on_view and segment < self.segments - 1
         with context.timers.stage("photon scattering"):
+            if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
+                blocks = {
+                    "Rays": self._rays.buffer,
+                    "Hits": self._hits.buffer,
+                    "PhotonPaths": self._paths.buffer,
+                    "PhotonOrigins": self.photon_origins.buffer,
+                }
+                self._emission.leave_to_shadow_rays(context.lights, blocks, self._living, iteration)
             self._living.run(
                 self._scatter,
                 {

@@ -17,7 +17,8 @@ void node_raycast(Surface surface, int only_local, uint place, uint level, vec3 
         uint beside = parameters.ray_stride * path_of_node_rays + place + 1u;
         if (parameters.ray_level == level) node_rays[beside].direction = position;
         vec3 found = node_rays[beside].found;
-        if (found.y > 0.0) {
+        // Until then it is of another hit, maybe on a triangle that is no more.
+        if (parameters.ray_level > level && found.y > 0.0) {
             is_hit = 1.0;
             self_hit = found.z;
             hit_distance = found.x / size;

@@ -118,5 +118,5 @@ WITHOUT_BEARING = {
     """,
     "scene.cycles": f"{_SAMPLING_OF_CYCLES} {_CYCLES_TRADES_TRUTH_FOR_NOISE} {_OF_WHAT_IS_NAMED}",
     "scene.cycles_curves": "subdivisions",
-    "view_layer.cycles": "pass_debug_sample_count use_pass_shadow_catcher denoising_store_passes",
+    "view_layer.cycles": "",
 }

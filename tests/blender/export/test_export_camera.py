@@ -10,7 +10,7 @@ from blender_scenes import add_object, export
 from bpy_extras.object_utils import world_to_camera_view
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 from rppm_addon.scene.errors import SceneError
 
@@ -123,11 +123,14 @@ def test_mirrored_and_sheared_cameras_become_rigid(scene):
     exported = export(scene)
     assert np.linalg.det(exported.camera.matrix) == pytest.approx(1.0)
     assert any("mirrored" in warning for warning in exported.warnings)
+    assert not any("shears" in warning for warning in exported.warnings)
     parent = add_object(scene, "Parent", None)
-    parent.matrix_world = Matrix(((1, 0.5, 0, 0), (0, 1, 0, 0), (0, 0, 2, 0), (0, 0, 0, 1)))
-    scene.camera.scale = (1.0, 1.0, 1.0)
+    parent.scale = (1.0, 1.0, 2.0)
+    scene.camera.scale, scene.camera.rotation_euler = (1.0, 1.0, 1.0), (0.8, 0.0, 0.0)
     scene.camera.parent = parent
-    matrix = export(scene).camera.matrix[:3, :3]
+    exported = export(scene)
+    assert any("shears" in warning and "Apply" in warning for warning in exported.warnings)
+    matrix = exported.camera.matrix[:3, :3]
     np.testing.assert_allclose(matrix.T @ matrix, np.eye(3), atol=1e-12)
 
 

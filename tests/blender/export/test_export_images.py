@@ -153,6 +153,21 @@ def test_an_image_on_two_inputs_is_one_node(scene):
     assert warnings == []
 
 
+def test_a_file_that_is_no_picture(scene, tmp_path):
+    """It is there: looking for it would not help."""
+    path = tmp_path / "damaged.png"
+    path.write_bytes(b"\x89PNG and no more")
+    image = bpy.data.images.new("damaged.png", 4, 4)
+    image.source, image.filepath = "FILE", str(path)
+    material = new_material()
+    node = add_node(material.node_tree, "ShaderNodeTexImage")
+    node.image = image
+    to_surface(material, node)
+    add_mesh(scene).data.materials.append(material)
+    (text,) = export(scene).warnings
+    assert "damaged.png" in text and "cannot read" in text and "save it anew" in text and "missing" not in text.lower()
+
+
 def test_missing_file(scene, tmp_path):
     image = new_image("Lost", PIXELS)
     image.source = "FILE"

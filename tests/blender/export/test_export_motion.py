@@ -47,6 +47,17 @@ def test_the_shutter_opens_when_it_is_told_to(quad, position, expected):
     assert bpy.context.scene.frame_current == FRAME and bpy.context.scene.frame_subframe == 0.0
 
 
+def test_time_remapping_counts_once(quad):
+    """A frame of a scene is half a frame of what moves: keys are half as far around where it is seen then."""
+    render = bpy.context.scene.render
+    render.frame_map_old, render.frame_map_new = 100, 200
+    blur(2.0)
+    bpy.context.scene.frame_set(2 * FRAME - 1)
+    movement = movement_of(taken_scene())
+    np.testing.assert_allclose(places(movement), [-1.0, -0.5, 0.0], atol=1e-6)
+    assert bpy.context.scene.frame_current_final == FRAME - 0.5
+
+
 def test_objects_have_as_many_keys_as_they_ask_for(quad):
     other = add_mesh(bpy.context.scene, "Other")
     animate(other, "location", (0.0, -1.0, 0.0), (0.0, 0.0, 0.0), (0.0, 2.0, 0.0))

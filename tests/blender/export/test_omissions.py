@@ -96,6 +96,16 @@ def test_passes_that_are_missing(lit):
     assert "Shadow, Render Time" in text
 
 
+def test_passes_that_are_on_for_cycles_only(lit):
+    """Cycles keeps such switches where no other engine looks."""
+    layer = lit.view_layers[0]
+    layer.cycles.denoising_store_passes = layer.cycles.pass_debug_sample_count = True
+    (text,) = warnings_about(lit, "Passes that are on for Cycles only")
+    assert "Denoising Data, Debug Sample Count;" in text and "From Cycles" in text
+    layer.rppm.use_pass_denoising_data = layer.rppm.use_pass_debug_sample_count = True
+    assert not warnings_about(lit, "Passes that are on for Cycles only")
+
+
 def test_a_viewport_follows_edits(lit):
     sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
     camera = export(lit).camera

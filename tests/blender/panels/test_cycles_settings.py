@@ -3,6 +3,7 @@
 
 import bpy
 
+from rppm_addon.blender.export.passes import OF_CYCLES
 from rppm_addon.blender.panels.cycles_settings import SHARED
 
 
@@ -42,3 +43,15 @@ def test_what_is_out_of_range_is_brought_into_it(scene):
     scene.rppm.filter_width = 0.0
     bpy.ops.rppm.copy_to_cycles()
     assert scene.cycles.filter_width > 0.0
+
+
+def test_passes_of_all_view_layers(scene):
+    """Those for which Cycles has switches of its own."""
+    other = scene.view_layers.new("Other")
+    other.cycles.denoising_store_passes = other.cycles.pass_debug_sample_count = True
+    bpy.ops.rppm.copy_from_cycles()
+    assert [getattr(other.rppm, name) for name in OF_CYCLES.values()] == [True, False, True]
+    assert not any(getattr(scene.view_layers[0].rppm, name) for name in OF_CYCLES.values())
+    other.rppm.use_pass_denoising_data, other.rppm.use_pass_shadow_catcher = False, True
+    bpy.ops.rppm.copy_to_cycles()
+    assert [getattr(other.cycles, name) for name in OF_CYCLES] == [False, True, True]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The world's light through portals: pdfs, and pictures that they leave as they are."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -8,14 +9,16 @@ import pytest
 import scenes
 from openings import BLACK, FLOOR, HEIGHT, HOLE, hole_form_factor, room, uneven_sky
 from path_comparison import judge, picture_by_seed
-from support.lobes import image_world
+from support.lobes import Lobe, LobeKind, image_world, material
 from support.render_states import assert_same_state
 from test_guided_photons import emitted_moments
 from test_light_sampling import FOLDER, Iteration
 
 from rppm_addon.integrator.common.records import LIGHT_THROUGH_PORTALS
-from rppm_addon.integrator.lights import guide
-from rppm_addon.scene import Light, LightKind, Scene
+from rppm_addon.integrator.lights import guide, portals
+from rppm_addon.integrator.lights.portals import light_through
+from rppm_addon.scene import Instance, Light, LightKind, Scene
+from rppm_addon.scene.meshes import RayVisibility
 
 SAMPLES = 1 << 14
 
@@ -130,6 +133,57 @@ def test_portals_in_wrong_places_change_no_mean(mapper, name):
     pictures = picture_by_seed(mapper, f"portals {name}", scene)
     assert mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0
     judge(f"portals {name}", pictures, FLOOR * hole_form_factor(scene)[..., None])
+
+
+def with_pane(scene: Scene, low: float, z: float) -> Scene:
+    """Above the hole, from x = low on, a clear pane that stops no shadow rays."""
+    corners = [(low, -0.4, z), (0.4, -0.4, z), (0.4, 0.4, z), (low, 0.4, z)]
+    clear = material("clear", Lobe(LobeKind.TRANSPARENT, color=(1.0, 1.0, 1.0)))
+    instance = Instance(len(scene.meshes), np.eye(4), [2], visibility=RayVisibility.ALL & ~RayVisibility.SHADOW)
+    return dataclasses.replace(
+        scene,
+        meshes=[*scene.meshes, scenes.rectangle("pane", *corners)],
+        materials=[*scene.materials, clear],
+        instances=[*scene.instances, instance],
+    )
+
+
+@pytest.mark.parametrize("behind", ["gathering rays", "glossy rays", pytest.param("photons", marks=pytest.mark.long)])
+def test_panes_without_shadow_behind_portals_change_nothing(mapper, behind):
+    """What goes straight through one is weighted by how shadow rays find it from where it was scattered."""
+    scene, low, seeds = with_portals("in the hole", iterations=2), -0.4, 2
+    if behind == "glossy rays":
+        scene.materials[0] = material("floor", Lobe(LobeKind.GLOSSY, roughness=0.2, color=FLOOR))
+        scene.settings = scene.settings.with_values(use_final_gather=False, specular_roughness=0.3)
+    elif behind == "photons":  # half of the hole is left to them
+        half = dataclasses.replace(portal(x=0.5 * HOLE, shape="RECTANGLE"), size=(HOLE, 2 * HOLE))
+        scene, low, seeds = dataclasses.replace(with_portals("in the hole"), lights=[half]), 0.0, 4
+    plain = picture_by_seed(mapper, f"pane {behind}", scene, seeds).mean(axis=(1, 2, 3))
+    assert (mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0) == (behind == "photons")
+    seen_through = picture_by_seed(mapper, f"pane {behind}", with_pane(scene, low, HEIGHT + 1e-3), seeds)
+    assert (mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0) == (behind == "photons")
+    change = seen_through.mean(axis=(1, 2, 3)) / plain - 1.0
+    print(behind, plain.mean(), change)
+    assert abs(change.mean()) < 5 * change.std(ddof=1) / math.sqrt(seeds) + 1e-3
+
+
+def test_updates_show_what_builds_do(mapper, other_mapper, monkeypatch):
+    """Portals that come, go and move in one world or another; what passes them is found anew where they or it did."""
+    sky, even = with_portals("in the hole", True, photons=64), with_portals("wherever", photons=64)
+    none, moved = dataclasses.replace(sky, lights=[]), dataclasses.replace(sky, lights=[portal(0.2, x=0.1)])
+    walls = dataclasses.replace(moved, instances=moved.instances[:-1])
+    found, calls = [], []
+    monkeypatch.setattr(portals, "light_through", lambda *given: calls.append(0) or light_through(*given))
+    for scene, known in ((sky, 0), (none, 0), (moved, 0), (walls, 1), (even, 0), (none, 0), (even, 0)):
+        calls.clear()
+        mapper.update(scene)
+        assert len(calls) == (0 if known or not scene.lights else 1)
+        other_mapper.build(scene)
+        for each in (mapper, other_mapper):
+            each.iterate()
+        found.append(mapper.film.read_radiance())
+        np.testing.assert_array_equal(found[-1], other_mapper.film.read_radiance())
+    assert not np.array_equal(found[0], found[2]) and np.array_equal(found[4], found[6])
 
 
 def test_portals_of_a_black_world_are_none(mapper):

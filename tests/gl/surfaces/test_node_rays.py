@@ -2,12 +2,15 @@
 """Ambient Occlusion, Bevel and Raycast nodes against closed forms."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 import scenes
 from support.render_states import assert_goes_on
 
+from rppm_addon.gl.records import Record
+from rppm_addon.integrator.surfaces.node_rays import NODE_RAY
 from rppm_addon.scene import (
     AovOutput,
     Camera,
@@ -22,6 +25,8 @@ from rppm_addon.scene import (
 )
 
 SAMPLES, ITERATIONS, SIDE = 64, 4, 8
+Record("RaycastAnswerParameters", ray_stride="uint", ray_level="uint", ray_levels="uint")
+SHADER = str(Path(__file__).parent / "raycast_answer.comp")
 
 
 def glowing(kind: str, output: str, shown=None, **members) -> Material:
@@ -158,3 +163,16 @@ def test_a_pass_holds_what_rays_find(renderer):
     scene.settings = scene.settings.with_values(aovs=("Shade.X",))
     frame = renderer.render(scene).frame
     np.testing.assert_allclose(frame.passes["Shade"].mean(), 0.64, atol=0.02)
+
+
+@pytest.mark.parametrize("level", [0, 1])
+def test_a_raycast_meets_nothing_until_it_was_traced(context, library, level):
+    """What another hit left would name a triangle that is no more."""
+    left = NODE_RAY.zeros(2)
+    left["found"], left["direction"], left["reach"] = (1.0, 1.0, 0.0), (0.25, 0.25, 7.0), 3.0
+    rays, results = context.moderngl.buffer(left.tobytes()), context.moderngl.buffer(reserve=16)
+    blocks = {"NodeRays": rays, "Results": results}
+    library.compute(SHADER).run(1, blocks, {"ray_stride": 2, "ray_level": level, "ray_levels": 1})
+    assert np.frombuffer(results.read(), np.float32).tolist() == ([7.0, 3.0, 1.0, 1.0] if level else [0.0] * 4)
+    rays.release()
+    results.release()

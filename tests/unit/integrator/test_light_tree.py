@@ -51,5 +51,19 @@ def test_nodes_hold_their_leaves(count, two_sided):
     assert tight.any()
 
 
+@pytest.mark.parametrize("count", [1, 5, 8, 100])
+def test_leaves_are_in_order_and_nothing_else_is_there(count):
+    """From left to right as from one end to the other, on two levels at most."""
+    leaves = random_leaves(count, True)
+    leaves["low"] = leaves["high"] = np.linspace(0, 1, count)[:, None]
+    nodes = tree_of(leaves[np.random.default_rng(1).permutation(count)])
+    assert len(nodes) == 2 * count and (nodes["intensity"][1:] > 0).all()
+    levels = [place.bit_length() for place in range(count, 2 * count)]
+    depth = max(levels)
+    assert min(levels) >= depth - 1
+    from_left = sorted(range(count, 2 * count), key=lambda place: place << (depth - place.bit_length()))
+    assert (np.diff(nodes["low"][from_left], axis=0) >= 0).all()
+
+
 def test_no_leaves_are_no_tree():
     assert len(tree_of(LIGHT_NODE.zeros(0))) == 0

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..matrices import rigid
+from ..matrices import is_sheared, rigid
 from ..report import Report
 from .eyes import Eye
 from .lens import export_aperture, export_panorama
@@ -42,7 +42,8 @@ def export_camera(
             "set its lens type to Perspective, Orthographic or Panoramic"
         )
     try:
-        matrix, mirrored = rigid(eye.matrix_of(camera_object))
+        given = eye.matrix_of(camera_object)
+        matrix, mirrored = rigid(given)
     except ValueError:
         raise SceneError(
             f'the matrix of camera "{camera_object.name}" cannot be inverted; '
@@ -50,6 +51,11 @@ def export_camera(
         ) from None
     if mirrored:
         report.warn(f'Camera "{camera_object.name}": its negative scale is ignored; the picture is not mirrored')
+    if is_sheared(given):
+        report.warn(
+            f'Camera "{camera_object.name}": the scale of its parents shears it, which is ignored; the picture is not '
+            "skewed. Apply their scale"
+        )
     width, height = frame_size(scene.render)
     across, upward = frame_shape(scene.render, width, height)
     panoramic = camera.type == "PANO"

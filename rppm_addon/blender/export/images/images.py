@@ -98,8 +98,7 @@ class ImageTable:
                 self._indices[key] = len(self.images)
                 self.images.append(exported)
         if self._indices[key] == MISSING:
-            place = image.filepath or "no file"
-            warn(f'needs image "{image.name}", which is missing ({place}); {_REMEDY}')
+            warn(f'needs image "{image.name}", {_reason(image)}; magenta stands in')
         return self._indices[key]
 
     def _pixels(self, image: bpy.types.Image, load: Callable[[], bpy.types.Image | None], record: dict) -> Image | None:
@@ -151,9 +150,8 @@ def _is_no_file(path: str, image: bpy.types.Image) -> bool:
     opens it as soon as it is asked for the image's size."""
     if not path or image.packed_file is not None:
         return False
-    place = Path(bpy.path.abspath(path, library=image.library))
     try:
-        return is_no_file(place)
+        return is_no_file(_place(path, image))
     except (OSError, ValueError):
         return False
 
@@ -279,7 +277,22 @@ def is_associated(image: bpy.types.Image | None) -> bool:
 
 
 _DATA = {"Non-Color", "Raw"}
-_REMEDY = "find it with File > External Data > Find Missing Files; magenta stands in"
+
+
+def _reason(image: bpy.types.Image) -> str:
+    """Why an image has no pixels, and what to do."""
+    place = image.filepath or "no file"
+    try:
+        is_there = image.source in {"FILE", "MOVIE"} and _place(image.filepath, image).is_file()
+    except (OSError, ValueError):  # such as a name that is too long
+        is_there = False
+    if is_there and image.packed_file is None:
+        return f"whose file Blender cannot read ({place}); it is damaged or no picture: save it anew or choose another"
+    return f"which is missing ({place}); find it with File > External Data > Find Missing Files"
+
+
+def _place(path: str, image: bpy.types.Image) -> Path:
+    return Path(bpy.path.abspath(path, library=image.library))
 
 
 def read_pixels(image: bpy.types.Image) -> np.ndarray | None:

@@ -149,7 +149,7 @@ def _ambient_occlusion(
     return exporter.add("ambient_occlusion", node, path, snake_case(output.identifier), inputs=inputs)
 
 
-@handles("MATERIAL_RAYCAST")  # of Blender 5.2
+@handles("MATERIAL_RAYCAST")  # of Blender 5.1; the attributes that it samples are of 5.2
 def _raycast(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     found = re.fullmatch(r"Attribute_(\d+)(_Alpha)?", output.identifier)
     if found is None:

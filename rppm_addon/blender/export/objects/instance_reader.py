@@ -16,6 +16,7 @@ from ..meshes.attributes import attribute_of
 from ..nodes.materials import MaterialTable
 from ..strands.round_meshes import RoundSource
 from ..visibility import visibility_of
+from .instance_attributes import InstanceAttributes
 from .mesh_table import MeshTable
 
 _USE_UV = {"tex_coord", "attribute", "normal_map", "tangent", "uvmap", "tex_image", "tex_image_tiles"}
@@ -32,10 +33,12 @@ class InstanceReader:
         self.report = context.report
         self._context = context
         self._wants: dict[tuple[tuple[int, ...], frozenset[str]], tuple[set[str], bool]] = {}
+        self.instance_attributes = InstanceAttributes()
 
     def begin_pass(self) -> None:
-        """Materials may ask for other attributes than before."""
+        """Materials may ask for other attributes than before, and these may have changed."""
         self._wants = {}
+        self.instance_attributes.forget()
 
     def instance(self, source: bpy.types.Object, matrix: np.ndarray, before: Instance | None) -> Instance | None:
         """The instance of an object that stands for itself alone; None when it is not to be rendered.
@@ -91,12 +94,13 @@ class InstanceReader:
         self,
         source: bpy.types.Object,
         visibility: RayVisibility,
-        instancer: bpy.types.Object | None = None,
+        multiplied: bpy.types.DepsgraphObjectInstance | None = None,
     ) -> dict[str, object]:
         """Materials of an instance and what their nodes may ask about it: members of scene.Instance.
 
-        instancer: what multiplies the object.
+        multiplied: the instance of an object that another one multiplies.
         """
+        instancer = None if multiplied is None else multiplied.parent
         materials = self._material_slots(source)
         geometry_offset, shading_offset = _terminator_offsets(source)
         visibility, holdout = self.masked(instancer or source, visibility, source.is_holdout)
@@ -107,7 +111,7 @@ class InstanceReader:
             "visibility": visibility,
             "holdout": holdout,
             "shadow_catcher": source.is_shadow_catcher,
-            "attributes": self.attribute_values(source, materials, instancer),
+            "attributes": self.attribute_values(source, materials, multiplied),
             "light_group": self._light_group(source),
             "linking": self.linking(instancer or source),
             "terminator_geometry_offset": geometry_offset,
@@ -161,19 +165,23 @@ class InstanceReader:
         return self._context.masks.of(owner, visibility, holdout)
 
     def attribute_values(
-        self, source: bpy.types.Object, materials: list[int], instancer: bpy.types.Object | None
+        self, source: bpy.types.Object, materials: list[int], multiplied: bpy.types.DepsgraphObjectInstance | None
     ) -> dict[str, tuple[float, ...]]:
-        """Values of attributes that the object or what multiplies it has as a whole."""
+        """Values of attributes that the object, what multiplies it or its instance there has as a whole."""
         names, of_objects = self.wanted_attributes(materials)
         values: dict[str, tuple[float, ...]] = {}
         for name in names if of_objects else ():
             domain, _, path = name.partition(":")
-            if domain in _WHOLE:
-                owners = (instancer, source) if domain == "INSTANCER" else (source,)
-                found = (attribute_of(owner, path) or attribute_of(owner and owner.data, path) for owner in owners)
+            if domain not in _WHOLE:
+                continue
+            of_instance = domain == "INSTANCER" and multiplied is not None
+            value = self.instance_attributes.value(multiplied, path) if of_instance else None
+            if value is None:
+                owners = (multiplied.parent, source) if of_instance else (source,)
+                found = (attribute_of(owner, path) or attribute_of(owner.data, path) for owner in owners)
                 value = next((value for value in found if value is not None), None)
-                if value is not None:
-                    values[name] = value
+            if value is not None:
+                values[name] = value
         return values
 
     def wanted_attributes(self, materials: list[int]) -> tuple[set[str], bool]:

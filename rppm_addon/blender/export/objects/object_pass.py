@@ -149,7 +149,7 @@ class ObjectPass:
         shown: which of the original objects are to be seen, all if None. Raises Unfinished when the slice is over, to
         be called again, and ExportStopped when the user wants no more.
         """
-        self._shown = shown
+        self._shown, self._reader.instance_attributes.depsgraph = shown, depsgraph
         try:
             self._export_all(depsgraph)
             self._convert(depsgraph)
@@ -158,7 +158,7 @@ class ObjectPass:
                 self._export_all(depsgraph)
                 self._convert(depsgraph)
         finally:
-            self._shown = None  # it may hold something of Blender's
+            self._shown = self._reader.instance_attributes.depsgraph = None  # they may hold something of Blender's
             self._particles.forget()
             self._keep_usable()
         self._tell_lost()
@@ -248,7 +248,7 @@ class ObjectPass:
             self._export_instance(source, matrix, owner.uid, instance, parent)
             return
         if not kind.learned:
-            self._learn(kind, source, owner, parent)
+            self._learn(kind, source, owner, instance)
         if kind.mesh is None:
             return
         self._reader.meshes.add_owner(kind.mesh, owner.uid)
@@ -277,7 +277,7 @@ class ObjectPass:
             shading["terminator_shading_offset"],
         )
         if kind.asks_instancer:
-            placed.attributes = self._reader.attribute_values(source, placed.materials, parent)
+            placed.attributes = self._reader.attribute_values(source, placed.materials, instance)
         if kind.asks_instancer or not kind.placed:
             self._note_missing(placed)
             kind.placed = True
@@ -302,18 +302,20 @@ class ObjectPass:
         self._multiple.add(source.original.session_uid)
         if self._identify:
             self._identity = identity_of_hair(identity_of(instance, source.original, owner), source.original)
-        shading = self._reader.shading(source, visibility, instancer=instancer)
+        shading = self._reader.shading(source, visibility, None if instancer is None else instance)
         if instancer is not None:
             shading |= {"random": _random_of(instance)}
         hair = Hair(source, systems, self._reader.uses_uv(shading["materials"]))
         self._place(source, hair, matrix, shading, owner.session_uid)
 
-    def _learn(self, kind: _Kind, source: bpy.types.Object, owner: _Owner, parent: bpy.types.Object) -> None:
+    def _learn(
+        self, kind: _Kind, source: bpy.types.Object, owner: _Owner, instance: bpy.types.DepsgraphObjectInstance
+    ) -> None:
         visibility = visibility_of(source)
         if not visibility or len(source.data.polygons) == 0:
             kind.learned = True
             return
-        kind.shading = self._reader.shading(source, visibility, instancer=parent)
+        kind.shading = self._reader.shading(source, visibility, instance)
         wanted, _ = self._reader.wanted_attributes(kind.shading["materials"])
         kind.asks_instancer = any(name.startswith("INSTANCER:") for name in wanted)
         original = source.original
@@ -359,8 +361,8 @@ class ObjectPass:
             return
         if kind == "MESH" and len(source.data.polygons) == 0:
             return  # and its materials are not needed
-        shading = self._reader.shading(source, visibility, instancer=instancer)
-        if instancer is not None:
+        shading = self._reader.shading(source, visibility, instance)
+        if instance is not None:
             shading |= {"random": _random_of(instance), "particle": self._particles.of(instance)}
         if kind in CONVERTED_TYPES:
             original = source.original

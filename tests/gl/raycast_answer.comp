@@ -1,0 +1,21 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a Raycast node tells at a level.
+
+layout(local_size_x = 1) in;
+
+#include <RaycastAnswerParameters>
+layout(std140, binding = 0) uniform Parameters { RaycastAnswerParameters parameters; };
+struct Surface { vec3 position; };
+#include "materials/node_rays.glsl"
+#include "materials/nodes/raycast.glsl"
+layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+
+void main() {
+    float is_hit, self_hit, hit_distance;
+    vec3 hit_position, hit_normal, hit_triangle, hit_barycentrics;
+    path_of_node_rays = 0u;
+    node_raycast(Surface(vec3(0.0)), 0, 0u, 0u, vec3(0.0, 0.0, -3.0), vec3(0.0, 0.0, 1.0), 2.0, is_hit, self_hit,
+                 hit_distance, hit_position, hit_normal, hit_triangle, hit_barycentrics);
+    results[0] = vec4(hit_triangle, is_hit);
+}
