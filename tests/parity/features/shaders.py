@@ -267,16 +267,20 @@ CLEAR, GLOW = shader("BsdfTransparent"), shader("Emission", {"Strength": 0.5})
 lit("Mix Shader", "diffuse and glossy", mixed(DIFFUSE, GLOSSY))
 lit("Mix Shader", "by Fresnel", mixed(DIFFUSE, GLOSSY, lambda net: net.out("Fresnel")))
 lit("Mix Shader", "by noise", mixed(DIFFUSE, GLOSSY, _noise))
+HOLES = {"camera_path_length": 8, "photon_path_length": 8}
+"""Light goes in and out by them."""
 lit(
     "Mix Shader",
     "cut out by an image",
     mixed(CLEAR, DIFFUSE, texture("Alpha", interpolation="Closest")),
+    settings=HOLES,
     effort=3,
 )
 lit(
     "Mix Shader",
     "cut out by a checker",
     mixed(CLEAR, DIFFUSE, lambda net: net.out("TexChecker", "Fac", {"Scale": 3.3})),
+    settings=HOLES,
     effort=3,
 )
 lit("Mix Shader", "nested", mixed(mixed(DIFFUSE, GLOSSY), GLOW, 0.3))
