@@ -3,7 +3,8 @@
 
 import bpy
 import numpy as np
-from blender_scenes import add_mesh, add_object, export, new_material, shaders
+import pytest
+from blender_scenes import add_light, add_mesh, add_object, export, new_material, shaders
 from mathutils import Matrix
 
 from rppm_addon.scene import RayVisibility
@@ -75,7 +76,7 @@ def test_hidden_things_stay_out(scene):
     scene.collection.objects.unlink(out)
     scene.view_layers[0].layer_collection.children["Excluded"].exclude = True
     unseen = add_mesh(scene, "Unseen")
-    for name in ("camera", "diffuse", "glossy", "transmission", "shadow"):
+    for name in _RAYS:
         setattr(unseen, f"visible_{name}", False)
     partly = add_mesh(scene, "Partly")
     partly.visible_shadow = False
@@ -83,6 +84,79 @@ def test_hidden_things_stay_out(scene):
     assert sorted(instance.object_name for instance in exported.instances) == ["Partly", "Seen"]
     partly, seen = sorted(exported.instances, key=lambda instance: instance.object_name)
     assert partly.visibility == RayVisibility.ALL ^ RayVisibility.SHADOW and seen.visibility == RayVisibility.ALL
+
+
+@pytest.mark.parametrize("kind", ["mesh", "hair"])
+def test_rays_that_see_what_multiplies(scene, kind):
+    """An instance is seen by rays that see both its object and what shows the collection."""
+    collection = bpy.data.collections.new("Shown")
+    if kind == "mesh":
+        member = add_mesh(scene, "Member")
+    else:
+        curves = bpy.data.hair_curves.new("Member")
+        curves.add_curves([2])
+        curves.points[1].position = (0.0, 0.0, 1.0)
+        member = add_object(scene, "Member", curves)
+    scene.collection.objects.unlink(member)
+    collection.objects.link(member)
+    member.visible_glossy = False
+    for name, hidden in (("All", ()), ("Some", ("camera", "shadow")), ("None", _RAYS), ("Rest", ("diffuse",))):
+        empty = add_object(scene, name, None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        for rays in hidden:
+            setattr(empty, f"visible_{rays}", False)
+    seen = RayVisibility.ALL ^ RayVisibility.GLOSSY
+    found = [instance.visibility for instance in export(scene).instances]
+    expected = [seen, seen & ~(RayVisibility.CAMERA | RayVisibility.SHADOW), seen & ~RayVisibility.DIFFUSE]
+    assert sorted(found, key=int) == sorted(expected, key=int)
+
+
+@pytest.mark.parametrize(("own", "shown_by", "is_one"), [(True, False, False), (False, True, True)])
+def test_holdouts_are_those_that_multiply(scene, own, shown_by, is_one):
+    """As in Cycles, which asks the object itself only where it stands for itself."""
+    member, empty = _shown_in_a_collection(scene)
+    member.is_holdout, empty.is_holdout = own, shown_by
+    (instance,) = export(scene).instances
+    assert instance.holdout == is_one
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_shadow_catchers_are_either(scene, which):
+    _shown_in_a_collection(scene)[which].is_shadow_catcher = True
+    (instance,) = export(scene).instances
+    assert instance.shadow_catcher
+
+
+@pytest.mark.parametrize(("own", "group"), [("", "Key"), ("Rim", "Rim")])
+def test_light_groups_of_what_multiplies(scene, own, group):
+    """Where an object has none itself; what multiplies a light hides nothing of it."""
+    for name in ("Key", "Rim"):
+        scene.view_layers[0].lightgroups.add(name=name)
+    member, empty = _shown_in_a_collection(scene)
+    lamp = add_light(scene, "POINT")
+    scene.collection.objects.unlink(lamp)
+    empty.instance_collection.objects.link(lamp)
+    empty.lightgroup, member.lightgroup, lamp.lightgroup = "Key", own, own
+    exported = export(scene)
+    assert [instance.light_group for instance in exported.instances] == [group]
+    assert [light.light_group for light in exported.lights] == [group]
+    for rays in _RAYS:
+        setattr(empty, f"visible_{rays}", False)
+    exported = export(scene)
+    assert (len(exported.instances), len(exported.lights)) == (0, 1)
+
+
+def _shown_in_a_collection(scene):
+    """A mesh object, and the empty that shows it."""
+    collection, member = bpy.data.collections.new("Shown"), add_mesh(scene, "Member")
+    empty = add_object(scene, "Empty", None)
+    scene.collection.objects.unlink(member)
+    collection.objects.link(member)
+    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    return member, empty
+
+
+_RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 def test_object_slots_win_over_those_of_the_mesh(scene):

@@ -548,3 +548,20 @@ def test_links_are_to_earlier_nodes(scene):
     graph, _ = export_graph(scene, material)
     for index, node in enumerate(graph.nodes):
         assert all(value.node < index for value in node.inputs.values() if isinstance(value, Link))
+
+
+def test_rotations_are_attributes_of_four_numbers(scene):
+    """As geometry nodes store them: W, X, Y, Z, of which Cycles takes the first three for a color."""
+    material = new_material()
+    attribute = add_node(material.node_tree, "ShaderNodeAttribute")
+    attribute.attribute_name = "turn"
+    shader = add_node(material.node_tree, "ShaderNodeEmission")
+    link(material.node_tree, attribute.outputs["Color"], shader.inputs["Color"])
+    to_surface(material, shader)
+    quad = add_mesh(scene)
+    quad.data.materials.append(material)
+    given = np.linspace(-1.0, 1.0, 16, dtype=np.float32).reshape(4, 4)
+    quad.data.attributes.new("turn", "QUATERNION", "POINT").data.foreach_set("value", given.reshape(-1))
+    exported = export(scene)
+    assert exported.warnings == []
+    np.testing.assert_array_equal(exported.meshes[0].attributes["turn"].values, given)

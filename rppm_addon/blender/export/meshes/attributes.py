@@ -30,7 +30,7 @@ NO_ATTRIBUTE = ".none"
 _FIELDS = {
     "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
     "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4),
-    "INT32_2D": ("value", 2),
+    "INT32_2D": ("value", 2), "QUATERNION": ("value", 4),
 }  # fmt: skip
 
 

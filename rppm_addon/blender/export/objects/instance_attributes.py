@@ -169,8 +169,8 @@ def _integers(attribute: bpy.types.Attribute) -> list[int]:
 
 
 def _colors(attribute: bpy.types.Attribute) -> np.ndarray | None:
-    """As Blender converts them: a number is gray, what is missing of a vector 0."""
-    values = attribute_values(attribute)
+    """As Blender converts them: a number is gray, what is missing of a vector 0, and a rotation is no color."""
+    values = None if attribute.data_type == "QUATERNION" else attribute_values(attribute)
     if values is None:
         return None
     colors = np.zeros((len(values), 4), np.float32)

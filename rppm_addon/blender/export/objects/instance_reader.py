@@ -73,7 +73,7 @@ class InstanceReader:
             holdout,
             source.is_shadow_catcher,
             self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
-            self._light_group(source),
+            self.light_group(source, source),
             self.linking(source),
             *_terminator_offsets(source),
         )
@@ -87,7 +87,8 @@ class InstanceReader:
             return None
         light = export_light(source, matrix, self._context)
         if light is not None and not light.is_portal:
-            light.linking = self.linking(instancer or source)
+            owner = instancer or source
+            light.linking, light.light_group = self.linking(owner), self.light_group(source, owner)
         return light
 
     def shading(
@@ -101,25 +102,27 @@ class InstanceReader:
         multiplied: the instance of an object that another one multiplies.
         """
         instancer = None if multiplied is None else multiplied.parent
+        owner = instancer or source
         materials = self._material_slots(source)
         geometry_offset, shading_offset = _terminator_offsets(source)
-        visibility, holdout = self.masked(instancer or source, visibility, source.is_holdout)
+        visibility, holdout = self.masked(owner, visibility, owner.is_holdout)
         return {
             "materials": materials,
             "color": tuple(source.color),
             "random": 0.0 if instancer is not None else _random(source.name),
             "visibility": visibility,
             "holdout": holdout,
-            "shadow_catcher": source.is_shadow_catcher,
+            "shadow_catcher": source.is_shadow_catcher or owner.is_shadow_catcher,
             "attributes": self.attribute_values(source, materials, multiplied),
-            "light_group": self._light_group(source),
-            "linking": self.linking(instancer or source),
+            "light_group": self.light_group(source, owner),
+            "linking": self.linking(owner),
             "terminator_geometry_offset": geometry_offset,
             "terminator_shading_offset": shading_offset,
         }
 
-    def _light_group(self, source: bpy.types.Object) -> str:
-        return light_group_of(source) if self._context.has_light_groups else ""
+    def light_group(self, source: bpy.types.Object, owner: bpy.types.Object) -> str:
+        """That of an object, or else of what multiplies it."""
+        return (light_group_of(source) or light_group_of(owner)) if self._context.has_light_groups else ""
 
     def linking(self, owner: bpy.types.Object) -> LightLinking | None:
         """The light linking of what an object brings, itself or what it multiplies."""
@@ -154,11 +157,6 @@ class InstanceReader:
     def culling(self) -> Culling:
         """What is left out."""
         return self._context.culling
-
-    @property
-    def has_masks(self) -> bool:
-        """Whether any collection of the view layer is a mask."""
-        return self._context.masks.any
 
     def masked(self, owner: bpy.types.Object, visibility: RayVisibility, holdout: bool) -> tuple[RayVisibility, bool]:
         """Visibility and holdout in the view layer (LayerMasks.of)."""

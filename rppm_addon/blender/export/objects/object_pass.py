@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ....scene import Instance, Light
+from ....scene import Instance, Light, RayVisibility
 from ....scene.meshes import SMOOTH_NORMALS
 from ..matrices import usable_matrices
 from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
@@ -93,6 +93,11 @@ class _Owner:
 
     uid: int
     shown: bool
+    visibility: RayVisibility
+    """Of what it multiplies, beside that of each itself."""
+    holdout: bool
+    """Of what it multiplies, in place of that of each itself, as in Cycles."""
+    shadow_catcher: bool
     has_particles: bool
 
 
@@ -231,7 +236,15 @@ class ObjectPass:
         if owner is None:
             original = parent.original
             shown = self._shown is None or self._shown(original)
-            owner = _Owner(original.session_uid, shown, len(parent.particle_systems) > 0)
+            has_particles = len(parent.particle_systems) > 0
+            owner = _Owner(
+                original.session_uid,
+                shown,
+                visibility_of(parent),
+                parent.is_holdout,
+                parent.is_shadow_catcher,
+                has_particles,
+            )
             self._owners[parent.as_pointer()] = owner
             self._multiple.add(owner.uid)
         data = source.data
@@ -240,7 +253,9 @@ class ObjectPass:
         if kind is None:
             kind = self._kinds[key] = _Kind(source.original.session_uid)
             self._multiple.add(kind.uid)
-        if not owner.shown or not instance.show_self or self._reader.culling.leaves_out(source, matrix):
+        if not (owner.shown and instance.show_self) or not (owner.visibility or source.type == "LIGHT"):
+            return
+        if self._reader.culling.leaves_out(source, matrix):
             return
         if self._identify:
             self._identity = identity_of(instance, source.original, parent.original)
@@ -255,9 +270,9 @@ class ObjectPass:
         if kind.converted:
             self._converted.add((kind.converted, matrix.tobytes()))
         shading = kind.shading
-        visibility, holdout = shading["visibility"], shading["holdout"]
-        if self._reader.has_masks:  # another one may multiply it that is in other collections
-            visibility, holdout = self._reader.masked(parent, visibility_of(source), source.is_holdout)
+        # Another one may multiply it that is in other collections.
+        own = visibility_of(source) & owner.visibility
+        visibility, holdout = self._reader.masked(parent, own, owner.holdout)
         placed = Instance(
             kind.mesh,
             matrix,
@@ -269,9 +284,9 @@ class ObjectPass:
             self._particles.of(instance) if owner.has_particles else None,
             visibility,
             holdout,
-            shading["shadow_catcher"],
+            source.is_shadow_catcher or owner.shadow_catcher,
             shading["attributes"],
-            shading["light_group"],
+            self._reader.light_group(source, parent),
             self._reader.linking(parent),
             shading["terminator_geometry_offset"],
             shading["terminator_shading_offset"],
@@ -296,6 +311,8 @@ class ObjectPass:
         if not (self._shown is None or self._shown(owner)) or self._reader.culling.leaves_out(source, matrix):
             return
         visibility = visibility_of(source)
+        if instancer is not None:
+            visibility &= visibility_of(instancer)
         systems = list(hair_systems(source, self._reader.is_render)) if visibility else []
         if not systems:
             return
@@ -357,6 +374,8 @@ class ObjectPass:
         if kind == "CURVES" and not self._reader.shows_strands:
             return
         visibility = visibility_of(source)
+        if instancer is not None:
+            visibility &= visibility_of(instancer)
         if not visibility:
             return
         if kind == "MESH" and len(source.data.polygons) == 0:
