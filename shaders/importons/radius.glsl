@@ -12,12 +12,10 @@ float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {
     if (parameters.segment == 0u) {
         // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
         float facing = max(abs(dot(unpack_unit_vector(closure.geometric_normal), direction)), 1e-4);
-        path.primary_distance = path.total_length;
-        path.primary_radius *= parameters.radius_scale * (parallel ? 1.0 : path.primary_distance) / sqrt(facing);
+        path.primary_radius *= parameters.radius_scale / sqrt(facing);
     }
     // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
-    float growth = parallel ? 1.0 : path.total_length / max(path.primary_distance, 1e-12);
-    float radius = path.primary_radius * growth;
+    float radius = path.primary_radius * (parallel ? 1.0 : path.total_length);
     return parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
 }
 

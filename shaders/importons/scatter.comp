@@ -252,6 +252,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     if (event.probability <= 0.0) return;
     importons[index].history = history_word(history, scattered_history(history, event.scatter));
     path.flags = event.flags;
+    path.straight_length = event.scatter == SCATTER_NONE ? path.straight_length + closure.distance : 0.0;
     path.scatter_pdf = event.pdf;
     path.throughput *= event.weight * (total / (event.probability * survival));
     // What a gathering ray finds serves neighbors, of other wavelengths: it begins white.

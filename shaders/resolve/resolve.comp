@@ -40,16 +40,14 @@ uint path_flags(uint index) {
            ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
 }
 
-// What the camera sees through transparent surfaces is as far as without them; from the clip start on.
-float length_from_camera(Surface surface) {
-    vec3 at = (parameters.world_to_camera * vec4(surface.position, 1.0)).xyz;
-    vec3 way = mat3(parameters.world_to_camera) * surface.viewer;
-    if (parameters.panoramic != 0u) return length(at) - parameters.clip_start;
-    return (abs(at.z) - parameters.clip_start) / max(abs(way.z), 1e-6);
+// How far a path had come straight through surfaces before its ray began.
+float straight_length(uint index) {
+    return parameters.path_kind == PATH_OF_CAMERA
+           ? uintBitsToFloat(path_words[parameters.camera_stride * index + parameters.camera_straight_length]) : 0.0;
 }
 
-// flags: of the path that came there.
-Surface surface_at(Ray ray, Hit hit, uint flags) {
+// flags: of the path that came there; index: its number.
+Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     vec3 v0, v1, v2;
     triangle_points(hit.triangle, v0, v1, v2);
     vec3 b = vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2);
@@ -74,12 +72,11 @@ Surface surface_at(Ray ray, Hit hit, uint flags) {
     // Where lights are sampled, no path has come to them, and it is of no kind, as in Cycles.
     surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags)
                 : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
-    surface.ray_length = hit.distance;
+    surface.ray_length = straight_length(index) + hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
     surface.transparent_depth = 0u;
     bool seen_through = parameters.path_kind == PATH_OF_CAMERA && (flags & PATH_STRAIGHT) != 0u;
     if (seen_through && parameters.segment > 0u) {
-        surface.ray_length = length_from_camera(surface);
         surface.ray_depth = 0u;
         surface.transparent_depth = parameters.segment;
     }
@@ -200,7 +197,7 @@ void main() {
     path_of_node_rays = index;
 #endif
     uint flags = path_flags(index);
-    Surface surface = surface_at(ray, hit, flags);
+    Surface surface = surface_at(ray, hit, flags, index);
     uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
                                             parameters.segment + variant, index);

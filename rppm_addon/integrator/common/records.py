@@ -332,15 +332,15 @@ CAMERA_PATH = Record(
     throughput="vec3",
     scatter_pdf="float",
     total_length="float",
-    primary_distance="float",
+    straight_length="float",
     primary_radius="float",
     flags="uint",
 )
 """A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
-the clip start,
-``primary_radius`` the Eq. 3 radius of iteration 1 at the primary hit (before it, the radius of a pixel's
-cone at distance 1, or of its beam of parallel rays), ``scatter_pdf`` that of the
-scattered direction in 1/sr where shadow rays sample the same light, else 0."""
+the clip start, ``straight_length`` of those that led straight through surfaces since the last event of another kind,
+``primary_radius`` the radius of a pixel's cone at distance 1, or of its beam of parallel rays, from the primary hit on
+that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`` that of the scattered direction in
+1/sr where shadow rays sample the same light, else 0."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Of the pixels of a band, W/(m^2 sr), and alpha."""

@@ -357,6 +357,23 @@ value(
     prepare=_panes,
     settings={"camera_path_length": 4},
 )
+
+
+def _bending_pane() -> None:
+    _panes()
+    surface, net = material("Bending Pane")
+    net.output(net.out("BsdfRefraction", inputs={"Roughness": 0.0, "IOR": 1.05}))
+    plane(3.0, surface, place((0.2, -3.8, 1.5), (65.0, 0.0, 0.0)))
+
+
+value(
+    "Light Path",
+    "length behind two panes and one that bends rays",
+    lambda net: net.out("LightPath", "Ray Length"),
+    0.2,
+    prepare=_bending_pane,
+    settings={"camera_path_length": 5},
+)
 lit(
     "Light Path",
     "glass without shadows",
