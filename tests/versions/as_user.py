@@ -81,8 +81,8 @@ def apply_presets() -> dict[str, int]:
 
 
 def raycast() -> list[str]:
-    """What is read of a Raycast node, where there is one: kinds of nodes, and, from Blender 5.2 on, what is exported with
-    a mesh that comes before the material that samples it."""
+    """What is read of a Raycast node, where there is one: kinds of nodes, and, from Blender 5.2 on, what is exported
+    with a mesh that comes before the material that samples it."""
     if not hasattr(bpy.types, "ShaderNodeRaycast"):
         return []
     bpy.ops.wm.read_factory_settings(use_empty=True)
