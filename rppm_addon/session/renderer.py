@@ -154,7 +154,7 @@ class SlicedRender:
         self._remaining.add(self.elapsed)
         if self._limit.is_first_too_long(self.elapsed):
             self._late_warnings = [
-                f"the first sample ended after {self.elapsed:.1f} s, past the time limit of {self._limit.limit:g} s: "
+                f"the first sample ended after {self.elapsed:.1f} s, past the time limit of {self._limit.limit:.3g} s: "
                 "there would be no picture without it; fewer photons or pixels make samples shorter"
             ]
             log.warning("%s", self._late_warnings[0])

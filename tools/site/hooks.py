@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Takes pages beside docs/ into the site, and links to them; links to other files become names."""
+"""Takes pages beside docs/ into the site, and links to them; links to other files become names, pictures open large."""
 
 import os
 import re
@@ -11,6 +11,7 @@ from mkdocs.structure.files import File, Files
 ROOT = Path(__file__).parents[2]
 BESIDE = ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
 _OF_CHECKOUT = re.compile(r"\[([^\]]+)\]\((?!docs/|http|#)[^)]+\)")
+_PICTURE = re.compile(r'<img [^>]*?src="([^"]+)"[^>]*>')
 _COMMENT = re.compile(r"\A<!--.*?-->\s*", re.DOTALL)
 
 
@@ -34,3 +35,8 @@ def on_page_markdown(markdown: str, **_: object) -> str:
     for name in BESIDE:
         markdown = markdown.replace(f"](../{name}", f"]({name}")
     return _COMMENT.sub("", markdown)
+
+
+def on_page_content(html: str, **_: object) -> str:
+    """A click on a picture, which may be small in a table or on a phone, opens it in its own size."""
+    return _PICTURE.sub(r'<a href="\1">\g<0></a>', html)
