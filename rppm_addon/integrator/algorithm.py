@@ -41,6 +41,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.scatter(context, stages.scatter_blocks(band), band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
             groups.add_seen_light(context, importons, iteration)
+            stages.coverage.probe(context, importons, band, iteration, segment, radii)
             raster = camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield

@@ -3,3 +3,4 @@
 #include <GatheringVertex>
 
 #include <GatherFlags>
+#include <PhotonFactor>

@@ -7,6 +7,7 @@
 #include "common/gathering.glsl"
 #include "common/world_light.glsl"
 #include "common/path_history.glsl"
+#include "common/surface_tolerance.glsl"
 layout(std430, binding = 6) readonly buffer PhotonOrigins;
 
 // An importon, by its number: its members are read where they are asked for, since processors have no registers for
@@ -54,12 +55,6 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
     return value;
 }
 
-// How far the geometric normals of photon and importon may part, as a cosine, and how far a photon may lie off the
-// importon's tangent plane in radii: beyond, they are on different surfaces. Around a bend photons count, since their
-// flux is weighted by the importon's own BSDF; around an edge they do not.
-const float PHOTON_NORMAL_TOLERANCE = 0.7;
-const float PHOTON_PLANE_TOLERANCE = 0.35;
-
 // Of direct light: rays find the rest. All of it where only the photons bring it.
 float direct_share(uint photon_number, float radius) {
     if (!(parameters.direct_world_flux > 0.0)) return 1.0;
@@ -90,6 +85,9 @@ bool exceeds_bounces(uint importon_history, uint photon_flags, uint photon_numbe
     return bounces > photon_origins[photon_number % parameters.photon_count].max_bounces;
 }
 
+// What diffused photons count for: the disk's area over that of the surface in it (coverage/probe.comp).
+float photon_factor(uint gathers) { return float(max(gathers >> PHOTON_FACTOR_SHIFT, 1u)); }
+
 // Light that a photon adds to an importon, what of it is diffuse, and whether it came from the viewer's side.
 struct Estimate { vec3 radiance; vec3 diffuse; bool front; };
 
@@ -118,6 +116,7 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     vec3 radiance = evaluate_importon(importon, direction, estimate.front, abs(dot(photon_normal, direction)),
                                       estimate.diffuse);
     vec3 flux = photons[photon_number].flux;
+    if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) kernel *= photon_factor(ITS.gathers);
     radiance = radiance * flux * kernel;
     estimate.diffuse = estimate.diffuse * flux * kernel;
     float share = 1.0, disk = disk_radius(ITS.least_radius, ITS.radius);

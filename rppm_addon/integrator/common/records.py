@@ -34,6 +34,7 @@ class RandomStage(enum.IntEnum):
     SUBSURFACE = 11
     SUBSURFACE_PHOTONS = 12
     NODE_RAYS = 13
+    COVERAGE = 14
 
 
 Constants("RandomStages", STAGE=RandomStage)
@@ -407,6 +408,9 @@ class GatherFlag(enum.IntFlag):
     """It stands where that led, and counts for the vertex that the path set out from."""
 
 
+PHOTON_FACTOR_SHIFT = 8
+"""Above the flags, what diffused photons are multiplied by; 0 is 1."""
+Constants("PhotonFactor", PHOTON_FACTOR_SHIFT=PHOTON_FACTOR_SHIFT)
 Constants("GatherFlags", GATHERS_BY_RAY=GatherFlag.GATHERS_BY_RAY, GATHERED_BY_RAY=GatherFlag.GATHERED_BY_RAY)
 
 GATHERING_VERTEX = Record(

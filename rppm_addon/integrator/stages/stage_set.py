@@ -16,6 +16,7 @@ from ..density_estimation.caustic_radii import CausticRadii
 from ..density_estimation.density_estimator import DensityEstimator
 from ..device_scene.stage_context import StageContext
 from .camera_hits import CameraHits
+from .coverage import Coverage
 from .direct_light import DirectLight
 from .film import Film
 from .final_gather import FinalGather
@@ -75,6 +76,7 @@ class StageSet(BufferSet):
         with library.defining(self._sizes.defines):
             super().__init__(context, library, self._sizes)
             self.camera_hits: CameraHits = self.own(_camera_hits(self._sizes)(context, library, self._sizes))
+        self.coverage = Coverage(library)
         self.bands = self._sizes.bands
 
     def fits(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> bool:

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How much of the disks in which photons count lies on surfaces, where gathering rays end."""
+
+from ...gl.constants import Constants
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..density_estimation.radii import Radii
+from ..device_scene.stage_context import StageContext
+from .importons import Importons
+
+Record("CoverageParameters", seed="uint", iteration="uint", segment="uint", first_pixel="uint", wide_radius="float")
+
+MOST_PROBES = 8
+"""Points of a disk that are looked at; of disks with less surface photons stay too dark."""
+Constants("Coverage", MOST_PROBES=MOST_PROBES)
+
+
+class Coverage:
+    """Multiplies the diffused photons that importons will take where gathering rays end, and the path does not gather
+    again, by the disk's area over that of the surface in it (Importon.gathers)."""
+
+    def __init__(self, library: ProgramLibrary) -> None:
+        self._library = library
+
+    def probe(
+        self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int, radii: Radii
+    ) -> None:
+        """Of the importons that the living paths have just left."""
+        if not context.gathers or segment == 0:
+            return
+        with context.timers.stage("coverage"):
+            cubemap = context.deep_cubemap
+            program = self._library.compute("coverage/probe.comp", cubemap.traversal_defines)
+            importons.living.run(
+                program,
+                {
+                    **cubemap.traversal_buffers,
+                    "Importons": importons.importons.buffer,
+                    "Closures": importons.lit_blocks["Closures"],
+                },
+                {
+                    "seed": iteration.seed,
+                    "iteration": iteration.number,
+                    "segment": segment,
+                    "first_pixel": band.first_pixel,
+                    "wide_radius": radii.splats.wide,
+                },
+            )
