@@ -4,7 +4,17 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_object, export, new_material, shaders
+from blender_scenes import (
+    add_light,
+    add_mesh,
+    add_node,
+    add_object,
+    export,
+    link,
+    new_material,
+    shaders,
+    to_surface,
+)
 from mathutils import Matrix
 
 from rppm_addon.scene import RayVisibility
@@ -157,6 +167,37 @@ def _shown_in_a_collection(scene):
 
 
 _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
+
+
+@pytest.mark.parametrize(("kind", "output"), [("TexCoord", "Generated"), ("TexCoord", "UV"), ("UVMap", "UV")])
+def test_coordinates_from_the_instancer(scene, kind, output):
+    """Each instance has one value: UV of the face's middle, and Generated, of which Blender has none for faces, less a
+    half as in Cycles. What stands for itself has zero."""
+    material = new_material()
+    node = add_node(material.node_tree, f"ShaderNode{kind}")
+    node.from_instancer = True
+    shader = add_node(material.node_tree, "ShaderNodeEmission")
+    link(material.node_tree, node.outputs[output], shader.inputs["Color"])
+    to_surface(material, shader)
+    points = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (6, 0, 0), (6, 2, 0)]
+    faces = add_mesh(scene, "Faces", points, [(0, 1, 2, 3), (1, 4, 5, 2)])
+    uv = faces.data.uv_layers.new(name="UVMap")
+    uv.data.foreach_set("uv", [0.1, 0.2, 0.3, 0.2, 0.3, 0.8, 0.1, 0.8, 0.5, 0.0, 0.9, 0.0, 0.9, 0.4, 0.5, 0.4])
+    child, alone = add_mesh(scene, "Child"), add_mesh(scene, "Alone")
+    for one in (child, alone):
+        one.data.materials.append(material)
+    child.parent, faces.instance_type = faces, "FACES"
+    exported = export(scene)
+    assert exported.warnings == []
+    found = {round(i.matrix[0, 3]): list(i.attributes.values()) for i in exported.instances if i.attributes}
+    if output == "UV":
+        expected = {1: (0.2, 0.5, 0.0), 4: (0.7, 0.2, 0.0), 0: (0.0, 0.0, 0.0)}
+    else:
+        expected = {1: (-0.5, -0.5), 4: (-0.5, -0.5), 0: (0.0, 0.0)}
+    assert found.keys() == expected.keys()
+    for place, values in expected.items():
+        (value,) = found[place]
+        np.testing.assert_allclose(value[: len(values)], values, atol=1e-6)
 
 
 def test_object_slots_win_over_those_of_the_mesh(scene):

@@ -24,6 +24,8 @@ TANGENT = ".tangent:"
 """Before the name of a UV map, the name under which its tangents are exported; alone, those of the map in use."""
 ACTIVE_COLOR = ".active_color"
 """Stands for the color attribute that is rendered when none is named."""
+INSTANCER_GENERATED, INSTANCER_UV = "INSTANCER:.generated", "INSTANCER:.uv"
+"""Names under which what multiplies an object gives each instance generated coordinates and UV of its own."""
 NO_ATTRIBUTE = ".none"
 """Stands for the UV map in use, which every triangle has at hand."""
 

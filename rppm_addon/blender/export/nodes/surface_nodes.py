@@ -15,7 +15,17 @@ from ....scene import Image, Link
 from ....scene.sky import Sky
 from ....scene.whole_files import is_no_file
 from ..images.images import is_associated
-from ..meshes.attributes import ACTIVE_COLOR, GENERATED, ISLAND, NO_ATTRIBUTE, POINTINESS, TANGENT, attribute_of
+from ..meshes.attributes import (
+    ACTIVE_COLOR,
+    GENERATED,
+    INSTANCER_GENERATED,
+    INSTANCER_UV,
+    ISLAND,
+    NO_ATTRIBUTE,
+    POINTINESS,
+    TANGENT,
+    attribute_of,
+)
 from ..strands.attributes import CURVE_RANDOM, INTERCEPT, LENGTH, POINT_PLACE, POINT_RADIUS, POINT_RANDOM, THICKNESS
 from .graphs import GraphExporter, handles, snake_case
 from .links import Path
@@ -59,9 +69,14 @@ def _principled(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types
     )
 
 
+_OF_INSTANCERS = {"generated": INSTANCER_GENERATED, "uv": INSTANCER_UV}
+
+
 @handles("TEX_COORD")
 def _coordinates(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     name = snake_case(output.identifier)
+    if node.from_instancer and name in _OF_INSTANCERS:
+        return exporter.shared("attribute", "vector", _OF_INSTANCERS[name], exporter.name_of(node))
     if name == "generated":
         return exporter.shared("generated_coord", "generated", GENERATED)
     if name == "object" and node.object is not None:
@@ -85,6 +100,8 @@ def _geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.N
 
 @handles("UVMAP")
 def _uv_map(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
+    if node.from_instancer:
+        return exporter.shared("attribute", "vector", INSTANCER_UV, exporter.name_of(node))
     if not node.uv_map:
         return exporter.shared("tex_coord", "uv")
     return exporter.shared("uvmap", "uv", node.uv_map, exporter.name_of(node))

@@ -2,6 +2,7 @@
 """Instances and lights of single objects: their meshes, materials and the values that nodes ask for."""
 
 import functools
+from collections.abc import Callable
 
 import bpy
 import numpy as np
@@ -12,7 +13,7 @@ from ..culling import Culling
 from ..hashing import hashed
 from ..layers import light_group_of
 from ..lights.lights import export_light
-from ..meshes.attributes import attribute_of
+from ..meshes.attributes import INSTANCER_GENERATED, INSTANCER_UV, attribute_of
 from ..nodes.materials import MaterialTable
 from ..strands.round_meshes import RoundSource
 from ..visibility import visibility_of
@@ -20,6 +21,11 @@ from .instance_attributes import InstanceAttributes
 from .mesh_table import MeshTable
 
 _USE_UV = {"tex_coord", "attribute", "normal_map", "tangent", "uvmap", "tex_image", "tex_image_tiles"}
+_COORDINATES: dict[str, Callable[[bpy.types.DepsgraphObjectInstance], tuple[float, ...]]] = {
+    INSTANCER_GENERATED: lambda multiplied: tuple(0.5 * value - 0.5 for value in multiplied.orco),
+    INSTANCER_UV: lambda multiplied: (*multiplied.uv, 0.0),
+}
+"""What instances have of that which multiplies them, as Cycles takes it; zero where an object stands for itself."""
 _WHOLE = {"OBJECT", "INSTANCER"}
 """Domains of attributes that objects have as a whole."""
 
@@ -171,6 +177,9 @@ class InstanceReader:
         for name in names if of_objects else ():
             domain, _, path = name.partition(":")
             if domain not in _WHOLE:
+                continue
+            if name in _COORDINATES:
+                values[name] = _COORDINATES[name](multiplied) if multiplied is not None else (0.0, 0.0, 0.0)
                 continue
             of_instance = domain == "INSTANCER" and multiplied is not None
             value = self.instance_attributes.value(multiplied, path) if of_instance else None
