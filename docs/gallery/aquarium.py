@@ -31,7 +31,7 @@ def water(surface, columns=96, rows=48):
     a, b = HALF[0] - GAP, HALF[1] - GAP
 
     def height(x, y, time):
-        waves = ((0.23, 20, 0.0022), (0.17, -35, 0.0018), (0.11, 100, 0.0012), (0.08, 160, 0.0009))
+        waves = ((0.23, 20, 0.0022), (0.17, -35, 0.0018), (0.11, 100, 0.0016), (0.08, 160, 0.0012))
         total = LEVEL
         for number, (length, degrees, amplitude) in enumerate(waves):
             k = math.tau / length
@@ -88,13 +88,20 @@ def fish(name, color, place, turn, size):
         diffuse(name, color),
         32,
     )
-    tail = add_faces(
-        f"{name} Tail",
-        [(0, 0, 0.40), (0.17, 0.0, 0.66), (0.06, 0.0, 0.60), (-0.06, 0.0, 0.60), (-0.17, 0, 0.66)],
-        [(0, 1, 2), (0, 2, 3), (0, 3, 4)],
-        diffuse(f"{name} Tail", color),
+    fins = add_faces(
+        f"{name} Fins",
+        [
+            *((0.0, 0.0, 0.38), (0.20, 0.0, 0.70), (0.05, 0.0, 0.60), (-0.05, 0.0, 0.60), (-0.20, 0.0, 0.70)),
+            *((-0.14, 0.0, -0.24), (-0.31, 0.0, -0.02), (-0.27, 0.0, 0.14), (-0.10, 0.0, 0.24)),
+            *((0.14, 0.0, -0.08), (0.29, 0.0, 0.10), (0.11, 0.0, 0.10)),
+        ],
+        [(0, 1, 2), (0, 2, 3), (0, 3, 4), (5, 6, 7, 8), (9, 10, 11)],
+        diffuse(f"{name} Fins", tuple(0.75 * c for c in color)),
     )
-    tail.parent = body
+    black = diffuse(f"{name} Eye", (0.01, 0.01, 0.01))
+    eyes = [ball(f"{name} Eye", (-0.045, side, -0.33), 0.028, black, 12) for side in (-0.105, 0.105)]
+    for part in (fins, *eyes):
+        part.parent = body
     body.scale, body.location = (size, 0.45 * size, size), place
     body.rotation_euler = (0.0, math.radians(90), turn)
     for frame, along in ((1, 0.0), (FRAMES + 1, -0.06)):
@@ -133,13 +140,14 @@ def build(scene):
     water(glass("Water", (0.93, 0.985, 0.99), 1.333))
     rng = random.Random(2)
     columns, rows, sand = 80, 36, []
-    for j in range(rows + 1):
+    for j in range(-1, rows + 1):  # the first row is the edge below, behind the pane
         for i in range(columns + 1):
-            x, y = (2 * i / columns - 1) * (a - 0.004), (2 * j / rows - 1) * (b - 0.004)
-            sand.append((x, y, 0.022 + 0.010 * math.sin(9 * x + 2) * math.cos(13 * y) + 0.0012 * rng.random()))
+            x, y = (2 * i / columns - 1) * (a - 0.004), (2 * max(j, 0) / rows - 1) * (b - 0.004)
+            z = 0.022 + 0.010 * math.sin(9 * x + 2) * math.cos(13 * y) + 0.0012 * rng.random()
+            sand.append((x, y, z if j >= 0 else 0.002))
     faces = [
         (k, k + 1, k + columns + 2, k + columns + 1)
-        for j in range(rows)
+        for j in range(rows + 1)
         for k in range(j * (columns + 1), j * (columns + 1) + columns)
     ]
     add_faces("Sand", sand, faces, diffuse("Sand", (0.76, 0.66, 0.48))).data.shade_smooth()
@@ -159,7 +167,7 @@ def build(scene):
         "Lamp",
         (0.14, -0.04, 1.10),
         (0.0, 0.0, 0.0),
-        36.0,
+        60.0,
         (1.0, 0.95, 0.85),
         shadow_soft_size=0.008,
         spot_size=math.radians(48),
@@ -176,9 +184,9 @@ def build(scene):
         size=0.9,
         size_y=0.05,
     )
-    color_world(scene, (0.5, 0.65, 0.8), 0.16)
-    camera((-0.16, -1.03, 0.37), (-0.005, 0.0, 0.128), 41.0)
-    set_up(scene, bounces=12)
+    color_world(scene, (0.5, 0.65, 0.8), 0.14)
+    camera((-0.16, -1.03, 0.37), (0.012, 0.0, 0.128), 38.0)
+    set_up(scene, bounces=12, exposure=0.3)
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
 
 

@@ -6,6 +6,7 @@ import math
 from stage import (
     Vector,
     add_faces,
+    ball,
     block,
     camera,
     color_world,
@@ -24,6 +25,7 @@ RADIUS, FRAMES = 0.33, 48
 
 
 BOTTLE = ((0.0, 0.0), (0.036, 0.0), (0.038, 0.01), (0.038, 0.17), (0.014, 0.22), (0.013, 0.29), (0.0, 0.29))
+STOOL = ((0.0, 0.0), (0.19, 0.0), (0.17, 0.02), (0.025, 0.03), (0.025, 0.70), (0.16, 0.71), (0.17, 0.75), (0.0, 0.76))
 DRINKS = ((0.05, 0.22, 0.10), (0.45, 0.20, 0.04), (0.40, 0.03, 0.05), (0.06, 0.12, 0.30), (0.40, 0.34, 0.14))
 
 
@@ -60,11 +62,17 @@ def build(scene):
     for number, x in enumerate((-2.05, -1.80, -1.50, -1.25, -1.02)):
         bottle = lathe(f"Bottle {number}", smooth_line(BOTTLE), varnished(f"Bottle {number}", DRINKS[number], 0.06), 48)
         bottle.location, bottle.scale.z = (x, 1.6 - 0.06 * (number % 2), 1.05), 1.0 + 0.12 * (number % 3)
+    chrome = metal("Chrome", (0.80, 0.80, 0.82), 0.08)
+    for number, x in enumerate((-2.0, -1.5, -1.0)):
+        stool = lathe(f"Stool {number}", STOOL, chrome, 64)
+        stool.data.set_sharp_from_angle(angle=math.radians(40))
+        stool.location = (x, 1.02, 0.0)
     for x in (1.45, 2.05):
-        block("Speaker", (x, 1.55, 0.0), (x + 0.46, 1.95, 1.25), diffuse("Speaker", (0.07, 0.07, 0.08)), 0.02)
-    place = Vector((0.2, 0.55, 1.98))
-    ball = mirrored_ball(metal("Mirror", (0.93, 0.93, 0.93), 0.0))
-    ball.location = place
+        block("Speaker", (x, 1.55, 0.0), (x + 0.46, 1.95, 1.25), diffuse("Speaker", (0.11, 0.11, 0.13)), 0.02)
+    place = Vector((0.2, 0.30, 1.92))
+    mirrors = mirrored_ball(metal("Mirror", (0.93, 0.93, 0.93), 0.0))
+    mirrors.location = place
+    ball("Core", place, 0.985 * RADIUS, diffuse("Core", (0.02, 0.02, 0.02)))
     block(
         "Rod",
         (place.x - 0.01, place.y - 0.01, place.z + RADIUS - 0.01),
@@ -72,8 +80,8 @@ def build(scene):
         diffuse("Rod", (0.1, 0.1, 0.1)),
     )
     for frame, turns in ((1, 0.0), (FRAMES + 1, 0.25)):
-        ball.rotation_euler.z = math.tau * turns
-        ball.keyframe_insert("rotation_euler", frame=frame)
+        mirrors.rotation_euler.z = math.tau * turns
+        mirrors.keyframe_insert("rotation_euler", frame=frame)
     spots = (
         ((-2.3, -1.9, 2.6), (1.0, 0.10, 0.26), 11000.0),
         ((2.4, -1.6, 2.4), (0.10, 0.34, 1.0), 11000.0),
@@ -116,8 +124,8 @@ def build(scene):
         size_y=0.4,
     )
     color_world(scene, (0.4, 0.3, 0.8), 0.10)
-    camera((0.05, -2.6, 1.22), (0.02, 0.9, 1.50), 26.0)
-    set_up(scene, look="AgX - Punchy", exposure=0.6)
+    camera((0.05, -2.6, 1.25), (0.02, 0.9, 1.36), 26.0)
+    set_up(scene, look="AgX - Punchy", exposure=0.9)
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
     scene.render.use_motion_blur = True
 

@@ -6,6 +6,7 @@ import math
 from stage import (
     Vector,
     add_faces,
+    ball,
     block,
     camera,
     color_world,
@@ -49,7 +50,7 @@ def ribbed_pane(surface, columns=192):
 
 
 def build(scene):
-    plate("Floor", 0.0, 1.0, 6.0, 6.0, 0.0, diffuse("Concrete", (0.24, 0.24, 0.25)))
+    plate("Floor", 0.0, 1.0, 6.0, 6.0, 0.0, diffuse("Concrete", (0.27, 0.265, 0.26)))
     black = varnished("Black", (0.012, 0.012, 0.014), 0.25)
     inside = [(RADIUS * k / 48, (RADIUS * k / 48) ** 2 / (4 * FOCUS)) for k in range(49)]
     outside = [
@@ -82,6 +83,9 @@ def build(scene):
     for part in parts:
         part.parent = seat
     block("Stand", (-0.03, 0.01, 0.0), (0.03, 0.05, HEIGHT - 0.05), black, 0.004)
+    steel = metal("Steel", (0.75, 0.75, 0.77), 0.03)
+    for number, (x, y, radius) in enumerate(((-0.10, -0.33, 0.016), (0.035, -0.37, 0.011), (-0.055, -0.385, 0.008))):
+        ball(f"Steel Ball {number}", (x, y, radius), radius, steel)
     light(
         "AREA",
         "Window",
@@ -94,7 +98,7 @@ def build(scene):
         size_y=1.0,
     )
     color_world(scene, (0.3, 0.4, 0.6), 0.03)
-    camera((0.42, -0.86, 0.40), (0.03, -0.20, 0.065), 40.0)
+    camera((0.40, -0.80, 0.36), (0.0, -0.19, 0.07), 41.0)
     set_up(scene, bounces=12)
 
 

@@ -6,15 +6,15 @@ import random
 
 from stage import add_faces, ball, block, camera, color_world, diffuse, glass, light, metal, save, set_up
 
-SIDE, LENGTH = 0.05, 0.30
+SIDE, LENGTH, SCREEN = 0.05, 0.345, 0.346
 COLORS = (
-    (1.00, 0.24, 0.28),
-    (0.20, 0.48, 1.00),
-    (1.00, 0.84, 0.20),
-    (0.22, 0.90, 0.50),
-    (0.80, 0.32, 0.98),
-    (1.00, 0.58, 0.22),
-    (0.24, 0.90, 0.98),
+    (1.00, 0.36, 0.42),
+    (0.36, 0.60, 1.00),
+    (1.00, 0.88, 0.34),
+    (0.38, 0.94, 0.60),
+    (0.86, 0.46, 0.99),
+    (1.00, 0.68, 0.36),
+    (0.40, 0.93, 0.99),
 )
 
 
@@ -28,16 +28,16 @@ def build(scene):
         add_faces(f"Mirror {number}", [(a, 0, b), (c, 0, d), (c, LENGTH, d), (a, LENGTH, b)], [(0, 1, 2, 3)], mirror)
     add_faces(
         "Screen",
-        [(-0.12, 0.348, -0.12), (0.12, 0.348, -0.12), (0.12, 0.348, 0.12), (-0.12, 0.348, 0.12)],
+        [(-0.06, SCREEN, -0.06), (0.06, SCREEN, -0.06), (0.06, SCREEN, 0.06), (-0.06, SCREEN, 0.06)],
         [(0, 1, 2, 3)],
-        diffuse("Screen", (0.62, 0.60, 0.56)),
+        diffuse("Screen", (0.80, 0.79, 0.76)),
     )
     rng = random.Random(11)
     surfaces = [glass(f"Glass {number}", color, 1.5) for number, color in enumerate(COLORS)]
     for number in range(30):
         surface = surfaces[number % len(surfaces)]
         radius, angle = 0.043 * math.sqrt(rng.uniform(0.0, 1.0)), rng.uniform(0.0, math.tau)
-        place = (radius * math.cos(angle), rng.uniform(0.311, 0.334), radius * math.sin(angle))
+        place = (radius * math.cos(angle), rng.uniform(0.312, 0.334), radius * math.sin(angle))
         if number % 4:
             size = rng.uniform(0.005, 0.0095)
             shard = block(f"Shard {number}", (-size, -0.0016, -1.7 * size), (size, 0.0016, 1.7 * size), surface, 0.0007)
@@ -45,24 +45,25 @@ def build(scene):
             shard.rotation_euler = (rng.uniform(-0.35, 0.35), rng.uniform(0, 3), rng.uniform(-0.35, 0.35))
         else:
             ball(f"Bead {number}", place, rng.uniform(0.0045, 0.008), surface, 24)
+    # Beside the eye: their light comes by the mirrors, too.
     for name, place, watts, color in (
-        ("Lamp", (0.13, 0.22, 0.15), 3.0, (1.0, 0.93, 0.82)),
-        ("Second Lamp", (-0.17, 0.24, 0.05), 1.8, (0.80, 0.90, 1.0)),
+        ("Lamp", (0.010, -0.025, 0.016), 0.5, (1.0, 0.93, 0.82)),
+        ("Second Lamp", (-0.016, -0.025, -0.004), 0.3, (0.80, 0.90, 1.0)),
     ):
         light(
             "SPOT",
             name,
             place,
-            (0.0, 0.34, 0.0),
+            (0.0, LENGTH, 0.0),
             watts,
             color,
-            shadow_soft_size=0.002,
-            spot_size=math.radians(46),
-            spot_blend=0.6,
+            shadow_soft_size=0.001,
+            spot_size=math.radians(30),
+            spot_blend=0.3,
         )
     color_world(scene, (0.75, 0.85, 1.0), 0.14)
     camera((0.0, -0.02, 0.0), (0.0, 0.34, 0.0), 26.0)
-    set_up(scene, width=640, height=640, bounces=16, look="AgX - Punchy", exposure=1.2)
+    set_up(scene, width=640, height=640, bounces=16, look="AgX - Punchy", exposure=1.4)
 
 
 if __name__ == "__main__":
