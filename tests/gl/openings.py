@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A room that gets the light of the world through a hole."""
 
+import dataclasses
 import math
 
 import numpy as np
 import scenes
 from path_classes import lobe, view
-from support.lobes import material
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import Image, Instance, RenderSettings, Scene, World
+from rppm_addon.scene.meshes import RayVisibility
 
 FLOOR, BLACK, GRAY = np.array([0.9, 0.7, 0.5]), np.zeros(3), np.full(3, 0.6)
 HEIGHT, HALF, HOLE = 1.0, 1.0, 0.25
@@ -67,3 +69,17 @@ def uneven_sky(sun: bool) -> Image:
         pixels = np.repeat(np.repeat(pixels, 16, 0), 16, 1)
         pixels[116:120, 88:92] = 500.0
     return Image("world", pixels)
+
+
+def with_pane(scene: Scene, low: float, z: float) -> Scene:
+    """Above the hole, from x = low on, a clear pane that stops no shadow rays."""
+    corners = [(low, -0.4, z), (0.4, -0.4, z), (0.4, 0.4, z), (low, 0.4, z)]
+    clear = material("clear", Lobe(LobeKind.TRANSPARENT, color=(1.0, 1.0, 1.0)))
+    number, shown = len(scene.materials), RayVisibility.ALL & ~RayVisibility.SHADOW
+    instance = Instance(len(scene.meshes), np.eye(4), [number], visibility=shown)
+    return dataclasses.replace(
+        scene,
+        meshes=[*scene.meshes, scenes.rectangle("pane", *corners)],
+        materials=[*scene.materials, clear],
+        instances=[*scene.instances, instance],
+    )

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import scenes
-from openings import BLACK, FLOOR, HEIGHT, HOLE, hole_form_factor, room, uneven_sky
+from openings import BLACK, FLOOR, HEIGHT, HOLE, hole_form_factor, room, uneven_sky, with_pane
 from path_comparison import judge, picture_by_seed
 from support.lobes import Lobe, LobeKind, image_world, material
 from support.render_states import assert_same_state
@@ -17,8 +17,7 @@ from test_light_sampling import FOLDER, Iteration
 from rppm_addon.integrator.common.records import LIGHT_THROUGH_PORTALS
 from rppm_addon.integrator.lights import guide, portals
 from rppm_addon.integrator.lights.portals import light_through
-from rppm_addon.scene import Instance, Light, LightKind, Scene
-from rppm_addon.scene.meshes import RayVisibility
+from rppm_addon.scene import Light, LightKind, Scene
 
 SAMPLES = 1 << 14
 
@@ -133,20 +132,6 @@ def test_portals_in_wrong_places_change_no_mean(mapper, name):
     pictures = picture_by_seed(mapper, f"portals {name}", scene)
     assert mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0
     judge(f"portals {name}", pictures, FLOOR * hole_form_factor(scene)[..., None])
-
-
-def with_pane(scene: Scene, low: float, z: float) -> Scene:
-    """Above the hole, from x = low on, a clear pane that stops no shadow rays."""
-    corners = [(low, -0.4, z), (0.4, -0.4, z), (0.4, 0.4, z), (low, 0.4, z)]
-    clear = material("clear", Lobe(LobeKind.TRANSPARENT, color=(1.0, 1.0, 1.0)))
-    number, shown = len(scene.materials), RayVisibility.ALL & ~RayVisibility.SHADOW
-    instance = Instance(len(scene.meshes), np.eye(4), [number], visibility=shown)
-    return dataclasses.replace(
-        scene,
-        meshes=[*scene.meshes, scenes.rectangle("pane", *corners)],
-        materials=[*scene.materials, clear],
-        instances=[*scene.instances, instance],
-    )
 
 
 @pytest.mark.parametrize("behind", ["gathering rays", "glossy rays", pytest.param("photons", marks=pytest.mark.long)])

@@ -5,9 +5,8 @@ where the reflection begins, not from the pane."""
 import numpy as np
 import pytest
 import scenes
+from openings import BLACK, FLOOR, room, with_pane
 from support.lobes import Lobe, LobeKind, material
-from test_portal_light import with_pane
-from test_world_light import BLACK, FLOOR, room
 
 from rppm_addon.scene import Instance, Light, LightKind, Scene, World
 
