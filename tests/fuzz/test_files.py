@@ -12,7 +12,7 @@ import OpenEXR
 import pytest
 from hypothesis import given
 from support.full_scene import full_scene
-from unit.checkpoints import write_part
+from unit.session.checkpoints import write_part
 
 from fuzz.counting import fuzzed, may_refuse
 from fuzz.values import NUMBERS, changed_documents, damaged_bytes

@@ -51,7 +51,7 @@ def surfaces():
     for entry in FIRST_SURFACE:
         if entry.switch:
             setattr(scene.view_layers[0], entry.switch, True)
-    scene.view_layers[0].cycles.denoising_store_passes = True
+    scene.view_layers[0].cycles.denoising_store_passes = scene.view_layers[0].rppm.use_pass_denoising_data = True
     unfilter()
     return scene
 

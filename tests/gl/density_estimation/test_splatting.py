@@ -6,7 +6,7 @@ import pytest
 import scenes
 from packed_normals import unpack
 
-from rppm_addon.integrator.common.records import IMPORTON, PHOTON_FLAG_BITS, GatherFlag, PhotonFlag
+from rppm_addon.integrator.common.records import IMPORTON, PHOTON_FACTOR_SHIFT, PHOTON_FLAG_BITS, GatherFlag, PhotonFlag
 from rppm_addon.integrator.density_estimation import splat_sums, splatting
 from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
 from rppm_addon.scene import DensityEstimation, DirectLight
@@ -20,7 +20,8 @@ def brute_force(importons, photons, wide):
     """(n, 3) radiance of diffuse importons: Eq. 1 over all pairs, with the side and plane tests, each photon within its
     footprint's radius.
 
-    Importons of paths that gather take no indirect photons.
+    Importons of paths that gather take no indirect photons. Diffused ones count as often as points of the disk were
+    tried, which is taken from the importon.
     """
     stored = photons[(photons["flags"] & PhotonFlag.STORED) != 0]
     normals, flux = unpack(stored["geometric_normal"]), stored["flux"].astype(np.float64)
@@ -45,6 +46,7 @@ def brute_force(importons, photons, wide):
         cosine = (stored["direction"][near] * normals[near]).sum(1)
         correction = np.minimum(abs(stored["direction"][near] @ shading) / np.maximum(abs(cosine), 1e-5), 4)
         kernel = 2 * (1 - distance2[near] / radius[near] ** 2) / (np.pi * radius[near] ** 2)
+        kernel *= np.where(diffused[near], max(importon["gathers"] >> PHOTON_FACTOR_SHIFT, 1), 1)
         result[index] = importon["diffuse"] * (flux[near] * (kernel * correction)[:, None]).sum(0)
     return result
 
@@ -121,6 +123,7 @@ def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
     sums = mapper.stages.density_estimator.sums
     got = sums.read(count) * sums.quantum
     found = (last["gathers"][:, None] & GatherFlag.GATHERED_BY_RAY) != 0
+    assert (last["gathers"] >> PHOTON_FACTOR_SHIFT).max() > 1  # of some disks a part lies off the surface
     assert all((part > 0).any(axis=1).mean() > 0.5 for part in parts)
     # What the ray finds is summed apart; behind the mirror the last segment is the first that stores.
     for place, expected in enumerate((parts[0] + np.where(found, 0, parts[1]), np.where(found, parts[1], 0))):
