@@ -36,7 +36,7 @@ class RenderState:
     radius_factors: np.ndarray
     """(height, width) float32: times Eq. 3's radius, that for caustics of the iterations to come."""
     tallies: np.ndarray
-    """(cells, 2) uint32 of the guide: photons that left through each cell, and those that were of use."""
+    """(cells, 2) uint32 of the guide: photons that left through each cell, and those that contributed."""
     learned: np.ndarray | None
     """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
     half: np.ndarray | None = None

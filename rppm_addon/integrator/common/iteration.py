@@ -24,7 +24,7 @@ class Iteration:
     skipped: int = 0
     """So many iterations come before those of the film."""
     direct_world_flux: float = 0.0
-    """W of a photon of the world that is of use, where photons share the world's direct light with rays; else 0."""
+    """W of a photon of the world that contributes, where photons share the world's direct light with rays; else 0."""
     shadow_rays: int = 1
     """Of each vertex of a camera path."""
 

@@ -93,7 +93,7 @@ class Guide(BufferSet):
         self.learned: np.ndarray | None = None
         """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
         self.gains = np.ones(0)
-        """(lights,) how many times as many of a light's photons are of use as if they left evenly."""
+        """(lights,) how many times as many of a light's photons contribute as if they left evenly."""
         self.even_contribution = np.ones(0)
         """(lights,) the fraction that would contribute if they left evenly."""
 

@@ -368,8 +368,8 @@ class Lights(BufferSet):
     def learn(self, photons: int) -> float:
         """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.
 
-        Lights get photons by the power that is of use (guide.py), and a part by use alone. Returns how many times more
-        photons should be of use from now on.
+        Lights get photons by the power that contributes (guide.py), and a part by how many contribute. Returns how many
+        times more photons should contribute from now on.
         """
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
@@ -399,7 +399,7 @@ class Lights(BufferSet):
 
     @property
     def world_photon_flux(self) -> float:
-        """Mean flux of those of the world's photons that are of use, W, the channels' mean; 0 where there are none."""
+        """Mean flux of those of the world's photons that contribute, W, the channels' mean; 0 where there are none."""
         worlds = np.flatnonzero((self.table["kind"] == LightShape.WORLD) & (self.table["photon_count"] > 0))
         return sum(
             self._powers[index] / int(self.table["photon_count"][index]) / float(self.guide.gains[index])
