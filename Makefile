@@ -34,7 +34,7 @@ COMPILE_BOUND = tests/parity/features tests/parity/test_node_values.py tests/par
 	tests/gl/materials/test_material_programs.py tests/gl/device/test_gl_layer.py \
 	tests/gl/surfaces/test_adjoint_bsdf.py tests/gl/surfaces/test_displacement.py tests/gl/surfaces/test_hair.py \
 	tests/gl/device_scene/test_large_buffers.py
-# Three at a time also on two cores: most tests compile or render on a single core, and some wait for processes and clocks.
+# Three at a time also on two cores: most tests compile or render on a single core, and some wait for processes.
 PYTEST = timeout --kill-after=10 4500 .venv/bin/python -m pytest --numprocesses=3 --dist=worksteal
 
 test: setup ## Run the tests, but for those that take long
