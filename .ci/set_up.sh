@@ -66,7 +66,7 @@ install_python_packages() {
     # A hundred megabytes of Python take half a minute to compile; what is imported is compiled then, and kept.
     local install=(.venv/bin/python -m pip install --no-compile --quiet --disable-pip-version-check)
     install+=(--root-user-action=ignore)
-    "${install[@]}" --require-hashes -r .ci/requirements.txt
+    "${install[@]}" --require-hashes --no-deps -r .ci/requirements.txt
     "${install[@]}" --no-deps --no-build-isolation -e .
     echo "$wanted" >"$stamp"
 }
