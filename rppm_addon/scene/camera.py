@@ -96,7 +96,7 @@ class Camera:
     """
 
     matrix: np.ndarray = field(metadata=declared(4, 4))
-    """(4, 4) float64, camera to world, a rigid motion (scale removed)."""
+    """(4, 4) float64, camera to world, a rigid motion, or a mirrored one (scale removed)."""
     window: tuple[float, float, float, float]
     """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1), meters
     (orthographic), or shares of the frame, 0 to 1 without a shift (panorama)."""

@@ -47,6 +47,7 @@ def equalize(scene: bpy.types.Scene, effort: Effort) -> None:
     cycles.samples, cycles.time_limit = effort.cycles_samples, effort.seconds
     ours.pixel_filter_type, ours.filter_width = FILTER
     ours.max_camera_bounces = ours.max_photon_bounces = BOUNCES
+    ours.film_exposure = cycles.film_exposure
     ours.use_denoising = ours.use_adaptive_sampling = False
     ours.samples, ours.time_limit = effort.samples, effort.seconds
     used = [layer for layer in scene.view_layers if layer.use] or list(scene.view_layers)

@@ -17,6 +17,8 @@ RAYS = (48, 36)
 """Rays across and down the picture that look for coincident faces."""
 NEAR = 2.0**-20
 """Distance that counts as none, as a share of the coordinates: eight float32 steps."""
+PARALLEL = 1.0 - 1e-6
+"""Least cosine between the normals of faces that coincide and do not just meet."""
 INSIDE = 1e-3
 """Least barycentric coordinate of a point inside a triangle, so that neighbors do not count."""
 
@@ -51,12 +53,13 @@ class _Surfaces:
 
     def coincident(self, origin: np.ndarray, direction: np.ndarray) -> tuple[int, int] | None:
         """Two triangles that a ray meets at one point, the first there; or None."""
-        point, _, triangle, _ = self.tree.ray_cast(Vector(origin), Vector(direction))
+        point, normal, triangle, _ = self.tree.ray_cast(Vector(origin), Vector(direction))
         if point is None or not self.contains(triangle, np.array(point)):
             return None
         near = NEAR * max(np.abs(np.array(point)).max(), np.abs(origin).max(), 1e-3)
-        for _, _, other, _ in self.tree.find_nearest_range(point, near):
-            if other != triangle and self.contains(other, np.array(point)):
+        for _, other_normal, other, _ in self.tree.find_nearest_range(point, near):
+            parallel = abs(normal.dot(other_normal)) > PARALLEL
+            if other != triangle and parallel and self.contains(other, np.array(point)):
                 return triangle, other
         return None
 

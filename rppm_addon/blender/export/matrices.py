@@ -36,11 +36,10 @@ def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return result, usable
 
 
-def rigid(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
-    """The matrix (4, 4) without scale, shear and mirroring, keeping -Z and then Y.
+def unscaled(matrix: np.ndarray) -> np.ndarray:
+    """The matrix (4, 4) of a camera without scale and shear, keeping -Z and then Y; what is mirrored stays so.
 
-    Returns the rigid motion, and whether the matrix was mirrored. Raises ValueError when the
-    matrix is not finite or singular.
+    Raises ValueError when the matrix is not finite or singular.
     """
     linear = matrix[:3, :3]
     if not np.isfinite(matrix).all() or abs(np.linalg.det(linear)) <= 1e-12 * np.abs(linear).max() ** 3:
@@ -50,8 +49,9 @@ def rigid(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
     up /= np.linalg.norm(up)
     result = np.eye(4)
     result[:3, 0], result[:3, 1], result[:3, 2] = np.cross(up, backward), up, backward
+    result[:3, 0] *= np.sign(np.linalg.det(linear))
     result[:3, 3] = matrix[:3, 3]
-    return result, bool(np.linalg.det(linear) < 0.0)
+    return result
 
 
 def is_sheared(matrix: np.ndarray) -> bool:
