@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 
-from . import added, arranged, lit, modified, settings, shaded, simulated  # noqa: F401 (they list their files)
+from . import added, arranged, lit, modified, settings, shaded, simulated, textured  # noqa: F401 (they list their files)
 from .files import FILES
 
 
