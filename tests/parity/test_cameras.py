@@ -264,6 +264,24 @@ def _mirrored_panorama(made: bpy.types.Object) -> None:
     made.data.type, made.data.panorama_type = "PANO", "EQUIRECTANGULAR"
 
 
+def _sheared(made: bpy.types.Object) -> None:
+    """As a child of what is scaled unevenly."""
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.scale = (1.4, 1.0, 0.7)
+    made.parent, made.rotation_euler = parent, (1.3, 0.4, 0.6)
+
+
+def _sheared_orthographic(made: bpy.types.Object) -> None:
+    _sheared(made)
+    made.data.type, made.data.ortho_scale = "ORTHO", 2.0
+
+
+def _sheared_panorama(made: bpy.types.Object) -> None:
+    _sheared(made)
+    made.data.type, made.data.panorama_type = "PANO", "EQUIRECTANGULAR"
+
+
 def _through_an_empty(made: bpy.types.Object) -> None:
     _look_through(bpy.data.objects.new("Empty", None), made)
 
@@ -280,13 +298,15 @@ def _look_through(other: bpy.types.Object, made: bpy.types.Object) -> None:
     bpy.context.scene.camera = other
 
 
-@pytest.mark.parametrize(
-    "change",
-    [_mirrored, _upside_down, _mirrored_panorama, _through_an_empty, _through_a_spot],
-    ids=lambda it: it.__name__,
+AS_THEY_COME = (
+    *(_mirrored, _upside_down, _mirrored_panorama, _sheared, _sheared_orthographic, _sheared_panorama),
+    *(_through_an_empty, _through_a_spot),
 )
+
+
+@pytest.mark.parametrize("change", AS_THEY_COME, ids=lambda change: change.__name__)
 def test_depth_of_cameras_as_they_come(renderer, change):
-    """Mirrored ones, and objects that are no cameras: the distance of what is seen in each pixel."""
+    """Mirrored and sheared ones, and objects that are no cameras: the distance of what is seen in each pixel."""
     made = room()
     ball(0.3, material(DIFFUSE), place(at=(-0.6, 1.2, 0.4)))
     change(made)

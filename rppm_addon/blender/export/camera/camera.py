@@ -6,8 +6,7 @@ import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..matrices import is_sheared, unscaled
-from ..report import Report
+from ..matrices import unscaled
 from .eyes import Eye
 from .lens import export_aperture, export_panorama
 from .stand_in import StandInCamera, camera_data
@@ -18,7 +17,6 @@ _SINGLE = Eye()
 def export_camera(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph,
-    report: Report,
     used: bpy.types.Object | None = None,
     eye: Eye = _SINGLE,
 ) -> Camera:
@@ -38,18 +36,12 @@ def export_camera(
             "set its lens type to Perspective, Orthographic or Panoramic"
         )
     try:
-        given = eye.matrix_of(camera_object)
-        matrix = unscaled(given)
+        matrix = unscaled(eye.matrix_of(camera_object))
     except ValueError:
         raise SceneError(
             f'the matrix of camera "{camera_object.name}" cannot be inverted; '
             "give it and its parents a scale that is not 0"
         ) from None
-    if is_sheared(given):
-        report.warn(
-            f'Camera "{camera_object.name}": the scale of its parents shears it, which is ignored; the picture is not '
-            "skewed. Apply their scale"
-        )
     width, height = frame_size(scene.render)
     across, upward = frame_shape(scene.render, width, height)
     panoramic = camera.type == "PANO"
