@@ -73,7 +73,7 @@ HOURS ?= 2
 soak: setup ## Use a real Blender window for long (HOURS=2), and tell what grew, or was another picture: out/soak/
 	.venv/bin/python tools/soak.py $$(awk 'BEGIN { print 60 * $(HOURS) }')
 
-lock: setup ## Pin anew what set-up installs, by version and hash
+lock: setup ## Pin anew what make installs, by version and hash
 	.venv/bin/python tools/lock.py
 
 lint: setup ## Check Python, types, imports, license lines, shaders, pinned packages, and what bandit finds unsafe
@@ -86,8 +86,7 @@ lint: setup ## Check Python, types, imports, license lines, shaders, pinned pack
 	.venv/bin/bandit --quiet --recursive --configfile pyproject.toml rppm_addon extension tools .ci setup.py
 
 docs-tools: setup
-	@.venv/bin/python -c 'import material, mike' 2>/dev/null || .venv/bin/python -m pip install --quiet \
-		--disable-pip-version-check --root-user-action=ignore -e '.[docs]'
+	@.venv/bin/python .ci/install_locked.py docs
 
 docs: docs-tools ## Build the documents as a site, build/site/index.html, and check their links
 	NO_MKDOCS_2_WARNING=1 .venv/bin/python -m mkdocs build --quiet --config-file tools/site/mkdocs.yml
@@ -119,8 +118,7 @@ parity: setup ## Compare references with Cycles, and each feature (ROWS=--contin
 	.venv/bin/python -m tests.parity.features.report $(ROWS)
 
 bench-tools: setup
-	@.venv/bin/python -c 'import matplotlib, flip_evaluator' 2>/dev/null || .venv/bin/python -m pip install --quiet \
-		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
+	@.venv/bin/python .ci/install_locked.py bench
 
 bench: bench-tools ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
 	.venv/bin/python -m benchmarks.device.run --scene-folder $(SCENES) $(BENCH)
