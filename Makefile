@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version docs-images pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version docs-images pairs survey references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -102,8 +102,12 @@ docs-images: setup ## Render the pictures of the pages, SECONDS_EACH of the proc
 	.venv/bin/python tools/gallery/render.py --films $(GALLERY)
 	.venv/bin/python tools/setting_pairs.py
 
-pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/ (PAIRS=--names: every file there)
-	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH) $(PAIRS)
+pairs: setup ## Compare the .blend files of SCENES with Cycles, to out/pairs/ (PAIRS=name: some; done ones are kept)
+	.venv/bin/python -m tools.pairs $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH) $(PAIRS)
+
+survey: setup ## Compare small files as beginners make them with Cycles, to out/survey/ (PAIRS=name: some; done ones are kept)
+	.venv/bin/python -m tools.beginner_files out/survey/files
+	.venv/bin/python -m tools.pairs out/survey/files --out out/survey --samples 32 --cycles-samples 64 $(PAIRS)
 
 TESTS ?= tests/parity
 references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/test_lights.py)
