@@ -303,6 +303,9 @@ class GraphExporter:
             if node.type in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "VOLUME_COEFFICIENTS"}:
                 self.warn(node, "is a volume and no surface; it is left out")
                 return None
+            if node.type == "EEVEE_SPECULAR":
+                self.warn(node, "is for EEVEE alone and black, as in Cycles; use a Principled BSDF")
+                return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(node), color=0.0)
             self.warn(node, "is not rendered yet; a diffuse surface of its color stands in")
             color = 0.8 if socket is None or socket.type == "SHADER" else self.value(socket, path)
             return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(node), color=color)
