@@ -31,7 +31,7 @@ RELEASE, CODENAME = "debian 12", "bookworm"
 BACKPORTS = f"{CODENAME}-backports"
 KEYRING = Path("/usr/share/keyrings/debian-archive-keyring.gpg")
 TESTED_VERSION = "25.0.7-2~bpo12+1"
-"""Version of Mesa that RPPM was tested with. A mirror has the newest of the backports alone: another version is taken as
+"""Version of Mesa that RPPM was tested with. A mirror has only the newest of the backports: another version is taken as
 well, if it starts, and named."""
 TRY_AGAIN_SECONDS = 24 * 3600.0
 LONGEST_SECONDS = 60
