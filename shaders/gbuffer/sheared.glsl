@@ -5,8 +5,8 @@
 const float SHEARED = 1e-4;  // as scene/camera.py has it
 
 bool camera_is_sheared() {
-    vec3 cosines = vec3(dot(camera.right, camera.up), dot(camera.up, camera.forward), dot(camera.forward, camera.right));
-    return any(greaterThan(abs(cosines), vec3(SHEARED)));
+    vec3 x = camera.right, y = camera.up, z = camera.forward;
+    return any(greaterThan(abs(vec3(dot(x, y), dot(y, z), dot(z, x))), vec3(SHEARED)));
 }
 
 // Across the plane of right and up, so long that along forward depths are distances.
