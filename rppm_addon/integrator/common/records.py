@@ -169,11 +169,13 @@ CLOSURE = Record(
     distance="float",
     material="uint",
     diffuse_roughness="uint",
+    ray_offset="float",
     lobes=(CLOSURE_LOBE, CLOSURE_LOBES),
 )
 """All that scattering, storing and estimating need to know about a hit. Normals face the arriving
 path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The diffuse roughness comes with
-the albedo that its interreflection takes (common/bsdf/diffuse.glsl)."""
+the albedo that its interreflection takes (common/bsdf/diffuse.glsl). ``ray_offset``: how far along the geometric normal
+rays begin, meters (common/geometry.glsl)."""
 StorageBlock("Closures", "Closure closures[];")
 StorageBlock("ExitClosures", "Closure exit_closures[];")
 """Where camera paths that went below a surface have come out of it, and else what they have met."""
