@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's camera to a window in front of a rigid camera."""
+"""Blender's camera to a window in front of a camera without scale."""
 
 import bpy
 import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..matrices import is_sheared, rigid
-from ..report import Report
+from ..matrices import unscaled
 from .eyes import Eye
 from .lens import export_aperture, export_panorama
+from .stand_in import StandInCamera, camera_data
 
 _SINGLE = Eye()
 
@@ -17,7 +17,6 @@ _SINGLE = Eye()
 def export_camera(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph,
-    report: Report,
     used: bpy.types.Object | None = None,
     eye: Eye = _SINGLE,
 ) -> Camera:
@@ -30,32 +29,19 @@ def export_camera(
     if used is None:
         raise SceneError("the scene has no camera; add one, or make one active with Scene properties > Camera")
     camera_object = used.evaluated_get(depsgraph)
-    if camera_object.type != "CAMERA":
-        raise SceneError(
-            f'the active camera "{camera_object.name}" is no camera but an object of type {camera_object.type}; '
-            "choose a camera in Scene properties > Camera"
-        )
-    camera = camera_object.data
+    camera = camera_data(camera_object)
     if camera.type not in {"PERSP", "ORTHO", "PANO"}:
         raise SceneError(
             f'camera "{camera_object.name}" is of type {camera.type}, which RPPM cannot render; '
             "set its lens type to Perspective, Orthographic or Panoramic"
         )
     try:
-        given = eye.matrix_of(camera_object)
-        matrix, mirrored = rigid(given)
+        matrix = unscaled(eye.matrix_of(camera_object))
     except ValueError:
         raise SceneError(
             f'the matrix of camera "{camera_object.name}" cannot be inverted; '
             "give it and its parents a scale that is not 0"
         ) from None
-    if mirrored:
-        report.warn(f'Camera "{camera_object.name}": its negative scale is ignored; the picture is not mirrored')
-    if is_sheared(given):
-        report.warn(
-            f'Camera "{camera_object.name}": the scale of its parents shears it, which is ignored; the picture is not '
-            "skewed. Apply their scale"
-        )
     width, height = frame_size(scene.render)
     across, upward = frame_shape(scene.render, width, height)
     panoramic = camera.type == "PANO"
@@ -78,10 +64,12 @@ def camera_pose(
 ) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
     """Matrix and window of an evaluated camera object that export_camera takes; None where its matrix is singular."""
     try:
-        matrix, _ = rigid(eye.matrix_of(camera_object))
+        matrix = unscaled(eye.matrix_of(camera_object))
     except ValueError:
         return None
-    return matrix, window(camera_object.data, *frame_shape(render, *frame_size(render)), eye.shift_of(camera_object))
+    return matrix, window(
+        camera_data(camera_object), *frame_shape(render, *frame_size(render)), eye.shift_of(camera_object)
+    )
 
 
 def frame_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
@@ -97,7 +85,11 @@ def frame_shape(render: bpy.types.RenderSettings, width: int, height: int) -> tu
 
 
 def window(
-    camera: bpy.types.Camera, across: float, upward: float, shift_x: float | None = None, flat: bool = False
+    camera: bpy.types.Camera | StandInCamera,
+    across: float,
+    upward: float,
+    shift_x: float | None = None,
+    flat: bool = False,
 ) -> tuple[float, float, float, float]:
     """left, right, bottom, top: tangents for a perspective camera, meters for an orthographic one, shares of a
     panorama's frame, which is ``across`` by ``upward`` pixel widths. shift_x: in place of the camera's own. flat: of a

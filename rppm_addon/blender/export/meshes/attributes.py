@@ -120,6 +120,8 @@ def _read(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | No
         return MeshAttribute(AttributeDomain.POINT, _generated(mesh))
     if name == SMOOTH_NORMALS:
         return _smooth_normals(exported, mesh)
+    if mesh.is_editmode:  # which has those of the mesh under edit
+        return None
     attribute = _rendered_color(mesh) if name == ACTIVE_COLOR else mesh.attributes.get(name)
     values = None if attribute is None else attribute_values(attribute)
     if values is None:

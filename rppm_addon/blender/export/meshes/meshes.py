@@ -51,6 +51,11 @@ def export_mesh(
     """
     if len(mesh.polygons) == 0:
         return None
+    if mesh.is_editmode:  # of the object itself Blender makes another mesh (edited_meshes.py)
+        report.warn(
+            f'Object "{name}": what its geometry nodes multiply is in Edit Mode, where Blender tells of no UV maps and '
+            "attributes; leave Edit Mode to have them"
+        )
     mesh.calc_loop_triangles()
     if len(mesh.loop_triangles) == 0:
         return None
@@ -128,16 +133,25 @@ def _triangle_corners(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> 
 
 
 def _positions(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
-    return _kept(before, _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32), copy)
+    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
+    if positions is None:  # in Edit Mode
+        positions = elements(mesh.vertices, "co", len(mesh.vertices), 3, np.float32)
+    return _kept(before, positions, copy)
 
 
 def _corner_vertices(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
-    return _kept(before, _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32), copy)
+    vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)
+    if vertices is None:  # in Edit Mode
+        vertices = elements(mesh.loops, "vertex_index", len(mesh.loops), 1, np.int32)
+    return _kept(before, vertices, copy)
 
 
 def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray, _: _Copy) -> np.ndarray:
     count = len(mesh.loop_triangles)
-    slots = _attribute(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
+    if mesh.is_editmode:
+        slots = elements(mesh.polygons, "material_index", len(mesh.polygons), 1, np.int32)
+    else:
+        slots = _attribute(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
     if slots is None:
         return keep_equal(before, np.zeros(count, np.int32))
     if slots.min() < 0:
@@ -187,7 +201,7 @@ def render_uv_name(mesh: bpy.types.Mesh) -> str | None:
 
 def _render_uv(mesh: bpy.types.Mesh, before: np.ndarray | None, copy: _Copy) -> np.ndarray | None:
     name = render_uv_name(mesh)
-    if name is None:
+    if name is None or mesh.is_editmode:  # which has those of the mesh under edit
         return None
     return read_uv(mesh, name, before, copy)
 

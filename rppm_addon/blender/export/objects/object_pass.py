@@ -11,9 +11,10 @@ from ....scene import Instance, Light, RayVisibility
 from ....scene.meshes import SMOOTH_NORMALS
 from ..matrices import usable_matrices
 from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
+from ..meshes.edited_meshes import has_no_faces
 from ..omissions import objects_of
 from ..strands.attributes import OF_ROUND_SHAPES
-from ..strands.particle_hair import hair_systems
+from ..strands.particle_hair import HAIRLESS_MODES, hair_modifiers, hair_systems
 from ..strands.round_meshes import ROUND_TYPES, Hair, RoundSource
 from ..visibility import visibility_of
 from .instance_reader import InstanceReader, shaded_instance
@@ -314,6 +315,11 @@ class ObjectPass:
         if instancer is not None:
             visibility &= visibility_of(instancer)
         systems = list(hair_systems(source, self._reader.is_render)) if visibility else []
+        if source.mode in HAIRLESS_MODES and visibility and any(hair_modifiers(source, self._reader.is_render)):
+            self._report.warn(
+                f'Object "{source.name}": as in Cycles its hair is not rendered in {HAIRLESS_MODES[source.mode]}; '
+                "leave that mode"
+            )
         if not systems:
             return
         self._multiple.add(source.original.session_uid)
@@ -329,7 +335,7 @@ class ObjectPass:
         self, kind: _Kind, source: bpy.types.Object, owner: _Owner, instance: bpy.types.DepsgraphObjectInstance
     ) -> None:
         visibility = visibility_of(source)
-        if not visibility or len(source.data.polygons) == 0:
+        if not visibility or has_no_faces(source.data):
             kind.learned = True
             return
         kind.shading = self._reader.shading(source, visibility, instance)
@@ -338,7 +344,7 @@ class ObjectPass:
         original = source.original
         kind.converted = original.as_pointer() if original.type in CONVERTED_TYPES else 0
         kind.name, kind.object_index = source.name, source.pass_index
-        kind.mesh = self._reader.mesh_index(source, source.data, kind.shading, owner.uid)
+        kind.mesh = self._reader.mesh_index(instance.instance_object, source.data, kind.shading, owner.uid)
         kind.learned = True
 
     def _add(self, instance: Instance, matrix: np.ndarray, uid: int) -> None:
@@ -378,7 +384,7 @@ class ObjectPass:
             visibility &= visibility_of(instancer)
         if not visibility:
             return
-        if kind == "MESH" and len(source.data.polygons) == 0:
+        if kind == "MESH" and has_no_faces(source.data):
             return  # and its materials are not needed
         shading = self._reader.shading(source, visibility, instance)
         if instance is not None:
