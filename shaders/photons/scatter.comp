@@ -196,7 +196,8 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
     if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
     photon_differentials[index].before = straight ? away : 0.0;
     if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
-    vec3 origin = closure.position + (side > 0.0 ? closure.ray_offset : -closure.ray_offset) * geometric;
+    float offset = closures[index].ray_offset;
+    vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
     rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
     if (parameters.has_adjoint_queries != 0u)
         store_adjoint_query(index, closure, scattering, arrival, path_flags);

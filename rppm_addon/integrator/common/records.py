@@ -468,12 +468,15 @@ LIGHT_SHADOWLESS = 64
 """Likewise: no shadows are cast in its light."""
 LIGHT_THROUGH_PORTALS = 128
 """Likewise: photons of the world that leave through portals. It is chosen for nothing else."""
+LIGHT_HOLDS_SURFACES = 256
+"""Likewise: there are surfaces within its radius, which a sphere lights from within and which hide parts of a disk."""
 Constants(
     "Lights",
     LIGHT=LightShape,
     LIGHT_SOFT=LIGHT_SOFT,
     LIGHT_SHADOWLESS=LIGHT_SHADOWLESS,
     LIGHT_THROUGH_PORTALS=LIGHT_THROUGH_PORTALS,
+    LIGHT_HOLDS_SURFACES=LIGHT_HOLDS_SURFACES,
 )
 
 LIGHT = Record(
