@@ -16,13 +16,29 @@ def naive_arrays(mesh):
     return {
         "positions": np.array([tuple(vertex.co) for vertex in mesh.vertices], np.float32),
         "corner_vertices": np.array([loop.vertex_index for loop in mesh.loops], np.int32),
-        "corner_normals": np.array([tuple(normal.vector) for normal in mesh.corner_normals], np.float32),
+        "corner_normals": naive_normals(mesh),
         "triangle_corners": np.array([tuple(triangle.loops) for triangle in mesh.loop_triangles], np.int32),
         "triangle_slots": np.array(
             [mesh.polygons[triangle.polygon_index].material_index for triangle in mesh.loop_triangles], np.int32
         ),
         "corner_uv": None if uv is None else np.array([tuple(item.vector) for item in uv.uv], np.float32),
     }
+
+
+def naive_normals(mesh):
+    """Flat faces have 0. Beside them smooth faces have the normals of vertices, but from Blender 5.2 on, or with sharp
+    edges and custom normals, those of corners."""
+    normals = np.array([tuple(normal.vector) for normal in mesh.corner_normals], np.float32)
+    if mesh.has_custom_normals:
+        return normals
+    mixed = mesh.normals_domain == "CORNER" and not any(edge.use_edge_sharp for edge in mesh.edges)
+    if mesh.normals_domain == "FACE":
+        return np.zeros_like(normals)
+    if mixed and bpy.app.version < (5, 2):
+        for polygon in mesh.polygons:
+            for corner, vertex in zip(polygon.loop_indices, polygon.vertices, strict=True):
+                normals[corner] = mesh.vertices[vertex].normal if polygon.use_smooth else 0.0
+    return normals
 
 
 def assert_same(exported, mesh):
