@@ -256,3 +256,53 @@ def test_only_a_last_modifier_that_is_shown_divides_adaptively(scene):
     modifier.show_viewport = True
     source.modifiers.new("Triangulate", "TRIANGULATE")
     assert dicing() is None
+
+
+def cut_away(scene, source):
+    """A modifier that leaves nothing of an object."""
+    source.vertex_groups.new(name="None")
+    source.modifiers.new("Mask", "MASK").vertex_group = "None"
+
+
+def test_an_object_of_whose_faces_nothing_is_left_is_named(scene):
+    first, second = add_mesh(scene, "First"), add_mesh(scene, "Second")
+    cut_away(scene, first)
+    exported = export(scene)
+    assert [instance.object_name for instance in exported.instances] == ["Second"]
+    (warning,) = exported.warnings
+    assert 'Object "First": its modifiers leave no faces' in warning
+    cut_away(scene, second)
+    (warning,) = export(scene).warnings
+    assert 'Objects "First", "Second": their modifiers leave no faces' in warning
+
+
+def test_a_multiplied_object_of_whose_faces_nothing_is_left_is_named(scene):
+    source = add_mesh(scene, "Source")
+    cut_away(scene, source)
+    collection = bpy.data.collections.new("Instanced")
+    collection.objects.link(source)
+    scene.collection.objects.unlink(source)
+    empty = add_object(scene, "Empty", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    (warning,) = export(scene).warnings
+    assert 'Object "Source": its modifiers leave no faces' in warning
+
+
+def test_meshes_without_faces_are_as_they_are_meant(scene):
+    """Edges alone, no vertex at all, and a mesh in place of which its nodes show others."""
+    add_mesh(scene, "Edges", [(0, 0, 0), (1, 0, 0)], [])
+    add_mesh(scene, "Empty", [], [])
+    points = add_mesh(scene, "Points")
+    tree = bpy.data.node_groups.new("Points", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    before, multiply, cube, after = (
+        tree.nodes.new(kind)
+        for kind in ("NodeGroupInput", "GeometryNodeInstanceOnPoints", "GeometryNodeMeshCube", "NodeGroupOutput")
+    )
+    tree.links.new(before.outputs[0], multiply.inputs["Points"])
+    tree.links.new(cube.outputs[0], multiply.inputs["Instance"])
+    tree.links.new(multiply.outputs[0], after.inputs[0])
+    points.modifiers.new("Points", "NODES").node_group = tree
+    exported = export(scene)
+    assert exported.warnings == [] and len(exported.instances) == 4

@@ -50,7 +50,7 @@ def export_mesh(
     """
     if len(mesh.polygons) == 0:
         return None
-    if mesh.is_editmode:  # of the object itself Blender makes another mesh (edited_meshes.py)
+    if mesh.is_editmode:  # of the object itself Blender makes another mesh (rendered_meshes.py)
         report.warn(
             f'Object "{name}": what its geometry nodes multiply is in Edit Mode, where Blender tells of no UV maps and '
             "attributes; leave Edit Mode to have them"
