@@ -24,8 +24,8 @@ def note_fluid_domains(bpy: ModuleType, frame: int) -> None:
     for name, settings in domains:
         if frame > settings.cache_frame_start:
             logger.warning(
-                'Object "%s": Blender as a module may abort as it evaluates this fluid domain after frame %d; if it does '
-                "so, render the file in Blender itself (blender -b), or delete the domain",
+                'Object "%s": Blender as a module may abort as it evaluates this fluid domain after frame %d; if it '
+                "does, render the file in Blender itself (blender -b), or delete the domain",
                 name,
                 settings.cache_frame_start,
             )

@@ -17,8 +17,8 @@ from .camera.eyes import Eye
 from .context import ExportContext
 from .culling import Culling
 from .matrices import usable_matrices
-from .meshes.rendered_meshes import rendered_mesh
 from .meshes.meshes import read_shape, read_velocities
+from .meshes.rendered_meshes import rendered_mesh
 from .objects.mesh_table import MeshTable
 from .objects.object_pass import Identity, Placed, identity_of, identity_of_hair
 from .objects.objects import ObjectExporter

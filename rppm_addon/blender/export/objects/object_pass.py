@@ -361,8 +361,8 @@ class ObjectPass:
         """Whether nothing of a mesh is to be rendered. is_own: it is the object's, none that nodes of geometry made."""
         if is_own and is_gas_domain(source):
             self._report.warn(
-                f'Object "{source.name}": smoke and fire of fluid domains are not rendered yet; as in Cycles the mesh of '
-                "the domain is not shown"
+                f'Object "{source.name}": smoke and fire of fluid domains are not rendered yet; as in Cycles the '
+                "domain's mesh is not shown"
             )
             return True
         if not has_no_faces(source.data):
