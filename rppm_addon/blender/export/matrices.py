@@ -5,6 +5,8 @@ import numpy as np
 
 FLATTEST = 1e-6
 """Least ratio of the smallest scale of a placement to its largest."""
+_LEAST_ANGLE = 1e-6
+"""Radians between axes that give a direction each."""
 _SKEW = 1e-3
 """Cosine between axes from which on pictures show that they are not at right angles: a pixel of a thousand."""
 
@@ -39,19 +41,22 @@ def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def rigid(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
     """The matrix (4, 4) without scale, shear and mirroring, keeping -Z and then Y.
 
-    Returns the rigid motion, and whether the matrix was mirrored. Raises ValueError when the
-    matrix is not finite or singular.
+    Returns the rigid motion, and whether the matrix was mirrored. Raises ValueError when the matrix is not finite or
+    leaves no direction of an axis, as with a scale of 0.
     """
-    linear = matrix[:3, :3]
-    if not np.isfinite(matrix).all() or abs(np.linalg.det(linear)) <= 1e-12 * np.abs(linear).max() ** 3:
-        raise ValueError("the matrix is singular")
-    backward = linear[:, 2] / np.linalg.norm(linear[:, 2])
-    up = linear[:, 1] - backward * (linear[:, 1] @ backward)
+    lengths = np.linalg.norm(matrix[:3, :3], axis=0)
+    if not np.isfinite(matrix).all() or lengths.min() == 0.0:
+        raise ValueError("the matrix has an axis without direction")
+    axes = matrix[:3, :3] / lengths
+    backward = axes[:, 2]
+    up = axes[:, 1] - backward * (axes[:, 1] @ backward)
+    if np.linalg.norm(up) < _LEAST_ANGLE:
+        raise ValueError("the matrix has two axes along one direction")
     up /= np.linalg.norm(up)
     result = np.eye(4)
     result[:3, 0], result[:3, 1], result[:3, 2] = np.cross(up, backward), up, backward
     result[:3, 3] = matrix[:3, 3]
-    return result, bool(np.linalg.det(linear) < 0.0)
+    return result, bool(np.linalg.det(axes) < 0.0)
 
 
 def is_sheared(matrix: np.ndarray) -> bool:

@@ -12,6 +12,8 @@ from .eyes import Eye
 from .lens import export_aperture, export_panorama
 
 _SINGLE = Eye()
+_NOTHING = 1e-6
+"""Where a camera clips what it sees on both sides that sees nothing but the world, meters."""
 
 
 def export_camera(
@@ -41,21 +43,7 @@ def export_camera(
             f'camera "{camera_object.name}" is of type {camera.type}, which RPPM cannot render; '
             "set its lens type to Perspective, Orthographic or Panoramic"
         )
-    try:
-        given = eye.matrix_of(camera_object)
-        matrix, mirrored = rigid(given)
-    except ValueError:
-        raise SceneError(
-            f'the matrix of camera "{camera_object.name}" cannot be inverted; '
-            "give it and its parents a scale that is not 0"
-        ) from None
-    if mirrored:
-        report.warn(f'Camera "{camera_object.name}": its negative scale is ignored; the picture is not mirrored')
-    if is_sheared(given):
-        report.warn(
-            f'Camera "{camera_object.name}": the scale of its parents shears it, which is ignored; the picture is not '
-            "skewed. Apply their scale"
-        )
+    matrix, is_blind = _pose(camera_object, eye, report)
     width, height = frame_size(scene.render)
     across, upward = frame_shape(scene.render, width, height)
     panoramic = camera.type == "PANO"
@@ -65,18 +53,45 @@ def export_camera(
         width=width,
         height=height,
         orthographic=camera.type == "ORTHO",
-        clip_start=camera.clip_start,
-        clip_end=max(camera.clip_end, camera.clip_start * 1.001),
+        clip_start=_NOTHING if is_blind else camera.clip_start,
+        clip_end=_NOTHING if is_blind else max(camera.clip_end, camera.clip_start * 1.001),
         crop=crop(scene.render, width, height),
         panorama=export_panorama(camera, camera_object.name, across, upward) if panoramic else None,
         aperture=export_aperture(camera, matrix, depsgraph),
     )
 
 
+def _pose(camera_object: bpy.types.Object, eye: Eye, report: Report) -> tuple[np.ndarray, bool]:
+    """The rigid matrix (4, 4) of a camera, and whether it sees nothing but the world, as in Cycles where its scale is 0.
+
+    Raises SceneError where its matrix is not finite.
+    """
+    given, name = eye.matrix_of(camera_object), camera_object.name
+    if not np.isfinite(given).all():
+        raise SceneError(f'the matrix of camera "{name}" is not finite; correct its transform and that of its parents')
+    try:
+        matrix, mirrored = rigid(given)
+    except ValueError:
+        report.warn(
+            f'Camera "{name}": as in Cycles it sees the world only, as its scale is 0; give it and its parents a scale'
+        )
+        matrix = np.eye(4)
+        matrix[:3, 3] = given[:3, 3]
+        return matrix, True
+    if mirrored:
+        report.warn(f'Camera "{name}": its negative scale is ignored; the picture is not mirrored')
+    if is_sheared(given):
+        report.warn(
+            f'Camera "{name}": the scale of its parents shears it, which is ignored; the picture is not skewed. Apply '
+            "their scale"
+        )
+    return matrix, False
+
+
 def camera_pose(
     camera_object: bpy.types.Object, render: bpy.types.RenderSettings, eye: Eye
 ) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
-    """Matrix and window of an evaluated camera object that export_camera takes; None where its matrix is singular."""
+    """Matrix and window of an evaluated camera object that export_camera takes; None where it sees nothing."""
     try:
         matrix, _ = rigid(eye.matrix_of(camera_object))
     except ValueError:
