@@ -20,6 +20,7 @@ from ..scene.errors import RppmError, SceneError, SettingsError
 from ..session.observers import RenderObserver, observing
 from .data_paths import set_data_path
 from .fluid_domains import note_fluid_domains
+from .freestyle import add_strokes
 from .picture_set import PictureSet
 
 ENGINE = "RPPM"
@@ -111,6 +112,7 @@ class BlendFile:
 
     def write(self, pictures: PictureSet) -> None:
         """Write what has been rendered: the recorders EXR, Blender PNG. Raises RppmError."""
+        add_strokes(self._bpy, pictures)
         pictures.write_files()
         for path, frame in pictures.pngs:
             if pictures.is_single:

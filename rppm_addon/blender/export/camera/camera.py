@@ -62,7 +62,7 @@ def export_camera(
 
 
 def _pose(camera_object: bpy.types.Object, eye: Eye, report: Report) -> tuple[np.ndarray, bool]:
-    """The rigid matrix (4, 4) of a camera, and whether it sees nothing but the world, as in Cycles where its scale is 0.
+    """The rigid matrix (4, 4) of a camera, and whether it sees the world only, as in Cycles where its scale is 0.
 
     Raises SceneError where its matrix is not finite.
     """
