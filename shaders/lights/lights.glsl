@@ -98,7 +98,7 @@ vec3 sampled_radiance(EmissiveTriangle emissive) {
     return (emissive.traits & EMITTER_UNEVEN) != 0u ? vec3(1.0) : emissive.radiance;
 }
 
-struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float pdf; };
+struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float pdf; float ray_offset; };
 
 // A point on the emissive meshes with its pdf by area.
 TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
@@ -108,8 +108,9 @@ TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
     triangle_corners(emissive.triangle, v0, v1, v2);
     float root = sqrt(u.x);
     vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
-    return TrianglePoint(position, normalize(cross(v1 - v0, v2 - v0)), emissive.triangle, sampled_radiance(emissive),
-                         emissive.share / max(emissive.area, 1e-30));
+    vec3 normal = normalize(cross(v1 - v0, v2 - v0));
+    return TrianglePoint(position, normal, emissive.triangle, sampled_radiance(emissive),
+                         emissive.share / max(emissive.area, 1e-30), ray_offset(normal, v0, v1, v2));
 }
 
 // Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
@@ -127,6 +128,12 @@ float soft_light_distance(Light light, vec3 origin, vec3 direction) {
 struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; float pdf; };
 
 const LightSample NO_LIGHT_SAMPLE = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
+
+// Where a shadow ray to a light ends, meters: short of it by what rounding may move a surface that it lies in.
+float shadow_ray_length(float distance) {
+    const float ROUNDING = 1.0 / 524288.0, MOST = 1e-4;
+    return distance - min(ROUNDING * (distance + parameters.scene_radius), MOST * distance);
+}
 
 // Surfaces are sampled by the solid angle that they have from the point: by area, what a surface gets from a
 // light that it meets has no bound.

@@ -67,6 +67,11 @@ vec3 point_of(uint triangle, vec3 b) {
 
 vec3 barycentrics(Hit hit) { return vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2); }
 
+float ray_offset_of(uint triangle, vec3 normal) {
+    return ray_offset(normal, triangle_vertex(3u * triangle).xyz, triangle_vertex(3u * triangle + 1u).xyz,
+                      triangle_vertex(3u * triangle + 2u).xyz);
+}
+
 vec3 geometric_normal(uint triangle) {
     vec3 v0 = triangle_vertex(3u * triangle).xyz;
     return normalize(cross(triangle_vertex(3u * triangle + 1u).xyz - v0, triangle_vertex(3u * triangle + 2u).xyz - v0));
@@ -76,7 +81,8 @@ vec3 geometric_normal(uint triangle) {
 Ray occlusion_ray(vec3 position, vec3 geometric, uint triangle, mat3 axes, float reach, vec2 u) {
     vec2 d = sample_disk(u);
     vec3 direction = normalize(axes * vec3(sqrt(max(1.0 - dot(d, d), 0.0)), d));
-    vec3 origin = offset_from_surface(position, dot(direction, geometric) < 0.0 ? -geometric : geometric);
+    float offset = ray_offset_of(triangle, geometric);
+    vec3 origin = position + (dot(direction, geometric) < 0.0 ? -offset : offset) * geometric;
     return Ray(origin, triangle, direction, reach);
 }
 

@@ -55,8 +55,9 @@ Emission emit_from_point(Light light, EmissionChoice choice) {
 }
 
 // From a point of a surface, with the pdf by area that the point was chosen by.
-Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle, vec3 radiance, float area_pdf,
-                           EmissionChoice choice) {
+Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choice) {
+    vec3 origin = point.position, normal = point.normal, radiance = point.radiance;
+    uint triangle = point.triangle;
     float cones = target_cones(origin);
     bool seen = cones > 0.0, both_sides = light.kind == LIGHT_MESH, narrow = light.spread_tangent > 0.0;
     vec3 direction;
@@ -85,8 +86,8 @@ Emission emit_from_surface(Light light, vec3 origin, vec3 normal, uint triangle,
                                   seen ? target_direction_pdf(origin, cones, direction) : 0.0, seen, choice);
     float tangent = sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-6);
     if (!both_sides) radiance *= spread_attenuation(light, tangent);
-    return Emission(both_sides ? offset_from_surface(origin, front ? normal : -normal) : origin, triangle, direction,
-                    radiance * (cosine / (area_pdf * pdf)), pdf);
+    return Emission(origin + (front ? point.ray_offset : -point.ray_offset) * normal, triangle, direction,
+                    radiance * (cosine / (point.pdf * pdf)), pdf);
 }
 
 #ifdef PORTALS
@@ -114,9 +115,9 @@ Emission emit_plain_photon(Light light, EmissionChoice choice) {
     else {
         vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;
         point = TrianglePoint(light.position + place.x * light.axis_u + place.y * light.axis_v, light.normal,
-                              NO_TRIANGLE, light.strength, 1.0 / light.area);
+                              NO_TRIANGLE, light.strength, 1.0 / light.area, 0.0);
     }
-    return emit_from_surface(light, point.position, point.normal, point.triangle, point.radiance, point.pdf, choice);
+    return emit_from_surface(light, point, choice);
 }
 
 Emission emit_photon(Light light, EmissionChoice choice) {

@@ -46,7 +46,7 @@ float straight_length(uint index) {
            ? uintBitsToFloat(path_words[parameters.camera_stride * index + parameters.camera_straight_length]) : 0.0;
 }
 
-// flags: of the path that came there; index: its number.
+// flags: of the path that came there; index: its number, whose closure gets the offset of its rays.
 Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     vec3 v0, v1, v2;
     triangle_points(hit.triangle, v0, v1, v2);
@@ -59,6 +59,7 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     shading = shading_length > 1e-6 ? shading / shading_length : surface.geometric;
     surface.backfacing = dot(surface.geometric, surface.viewer) < 0.0;
     if (surface.backfacing) surface.geometric = -surface.geometric;
+    closures[index].ray_offset = ray_offset(surface.geometric, v0, v1, v2);
     if (dot(shading, surface.geometric) < 0.0) shading = -shading;
     // A shading normal that faces away from the viewer has no meaning: bend it until it is seen.
     float seen = dot(shading, surface.viewer);

@@ -143,8 +143,8 @@ class MotionExporter:
         self._context.read_from(self._depsgraph)
         images.frame = of_frame
         objects.meshes.forget(read_edits(self._depsgraph).shapes)
-        source, report = self._depsgraph.scene_eval, self._context.report
-        scene.camera = export_camera(source, self._depsgraph, report, camera, self._eye)
+        source = self._depsgraph.scene_eval
+        scene.camera = export_camera(source, self._depsgraph, camera, self._eye, self._context.report)
         self._context.culling = Culling(source, scene.camera)
         return objects.export(self._depsgraph, identify=True)
 

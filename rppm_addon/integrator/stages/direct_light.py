@@ -96,7 +96,9 @@ class DirectLight(BufferSet):
                     iteration.number,
                 )
                 linking = context.lights.linking_blocks(self.contributions.buffer)
-                context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living, linking)
+                context.deep_cubemap.occluded(
+                    self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
+                )
                 living.run(
                     self._add,
                     {

@@ -118,20 +118,19 @@ def test_border_without_a_pixel(scene):
         export(scene)
 
 
-def test_mirrored_and_sheared_cameras_become_rigid(scene):
-    scene.camera.scale = (-1.0, 1.0, 1.0)
+def test_mirrored_and_sheared_cameras_stay_so(scene):
+    scene.camera.scale = (-2.0, 1.0, 1.0)
     exported = export(scene)
-    assert np.linalg.det(exported.camera.matrix) == pytest.approx(1.0)
-    assert any("mirrored" in warning for warning in exported.warnings)
-    assert not any("shears" in warning for warning in exported.warnings)
+    assert np.linalg.det(exported.camera.matrix) == pytest.approx(-1.0)
+    assert not exported.camera.is_sheared
     parent = add_object(scene, "Parent", None)
     parent.scale = (1.0, 1.0, 2.0)
     scene.camera.scale, scene.camera.rotation_euler = (1.0, 1.0, 1.0), (0.8, 0.0, 0.0)
     scene.camera.parent = parent
     exported = export(scene)
-    assert any("shears" in warning and "Apply" in warning for warning in exported.warnings)
-    matrix = exported.camera.matrix[:3, :3]
-    np.testing.assert_allclose(matrix.T @ matrix, np.eye(3), atol=1e-12)
+    assert exported.warnings == []
+    assert exported.camera.is_sheared
+    np.testing.assert_allclose(np.linalg.norm(exported.camera.matrix[:3, :3], axis=0), 1.0, atol=1e-12)
 
 
 def test_no_camera(scene):
@@ -140,10 +139,20 @@ def test_no_camera(scene):
         export(scene)
 
 
-def test_a_camera_that_is_no_camera(scene):
-    scene.camera = add_object(scene, "Empty", None)
-    with pytest.raises(SceneError, match='"Empty"'):
-        export(scene)
+@pytest.mark.parametrize(
+    ("kind", "lens"), [(None, 50.0), ("POINT", 16.0 / np.tan(np.pi / 8)), ("SPOT", 16.0 / np.tan(0.3))]
+)
+def test_a_camera_that_is_no_camera(scene, kind, lens):
+    """Any object can be looked through; a spot shows what lies in its cone."""
+    data = kind and bpy.data.lights.new("Light", kind)
+    if kind == "SPOT":
+        data.spot_size = 0.6
+    scene.camera = add_object(scene, "Other", data)
+    exported = export(scene)
+    assert exported.warnings == []
+    left, right, _, _ = exported.camera.window
+    assert right - left == pytest.approx(36.0 / lens)
+    assert exported.camera.clip_end == 1e5
 
 
 def test_a_camera_by_shader_names_the_remedy(scene):

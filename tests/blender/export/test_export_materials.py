@@ -339,12 +339,16 @@ def test_every_node_compiles_as_it_is_added(scene, output):
         node.name = node.bl_idname
 
 
-@pytest.mark.parametrize("node", ["ShaderNodeBsdfRayPortal", "ShaderNodeEeveeSpecular"])
-def test_unknown_shaders_become_diffuse(scene, node):
+@pytest.mark.parametrize(
+    ("node", "color", "told"),
+    [("ShaderNodeBsdfRayPortal", 1.0, "diffuse"), ("ShaderNodeEeveeSpecular", 0.0, "black, as in Cycles")],
+)
+def test_unknown_shaders_become_diffuse(scene, node, color, told):
     material, _ = surface(node, "Odd")
     shader, warnings = single_shader(scene, material)
     assert shader.kind == "bsdf_diffuse"
-    assert any('Material "Material": node "Odd"' in text and "diffuse" in text for text in warnings)
+    np.testing.assert_allclose(np.ravel(shader.inputs["color"])[:1], color, rtol=1e-6)
+    assert any('Material "Material": node "Odd"' in text and told in text for text in warnings)
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's camera to a window in front of a rigid camera."""
+"""Blender's camera to a window in front of a camera without scale."""
 
 import bpy
 import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..matrices import is_sheared, rigid
+from ..matrices import unscaled
 from ..report import Report
 from .eyes import Eye
 from .lens import export_aperture, export_panorama
+from .stand_in import StandInCamera, camera_data
 
 _SINGLE = Eye()
 _NOTHING = 1e-6
@@ -19,25 +20,20 @@ _NOTHING = 1e-6
 def export_camera(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph,
-    report: Report,
     used: bpy.types.Object | None = None,
     eye: Eye = _SINGLE,
+    report: Report | None = None,
 ) -> Camera:
     """The scene's active camera, or the one that is used in its place, as evaluated in the depsgraph.
 
-    eye: of the view that is rendered.
+    eye: of the view that is rendered. report: told where the camera sees the world only.
     Raises SceneError when there is no camera that can be used.
     """
     used = used or eye.camera_of(scene)
     if used is None:
         raise SceneError("the scene has no camera; add one, or make one active with Scene properties > Camera")
     camera_object = used.evaluated_get(depsgraph)
-    if camera_object.type != "CAMERA":
-        raise SceneError(
-            f'the active camera "{camera_object.name}" is no camera but an object of type {camera_object.type}; '
-            "choose a camera in Scene properties > Camera"
-        )
-    camera = camera_object.data
+    camera = camera_data(camera_object)
     if camera.type not in {"PERSP", "ORTHO", "PANO"}:
         raise SceneError(
             f'camera "{camera_object.name}" is of type {camera.type}, which RPPM cannot render; '
@@ -61,8 +57,8 @@ def export_camera(
     )
 
 
-def _pose(camera_object: bpy.types.Object, eye: Eye, report: Report) -> tuple[np.ndarray, bool]:
-    """The rigid matrix (4, 4) of a camera, and whether it sees the world only, as in Cycles where its scale is 0.
+def _pose(camera_object: bpy.types.Object, eye: Eye, report: Report | None) -> tuple[np.ndarray, bool]:
+    """The matrix (4, 4) of a camera without scale, and whether it sees the world only, as in Cycles if its scale is 0.
 
     Raises SceneError where its matrix is not finite.
     """
@@ -70,22 +66,15 @@ def _pose(camera_object: bpy.types.Object, eye: Eye, report: Report) -> tuple[np
     if not np.isfinite(given).all():
         raise SceneError(f'the matrix of camera "{name}" is not finite; correct its transform and that of its parents')
     try:
-        matrix, mirrored = rigid(given)
+        return unscaled(given), False
     except ValueError:
+        matrix = np.eye(4)
+        matrix[:3, 3] = given[:3, 3]
+    if report is not None:
         report.warn(
             f'Camera "{name}": as in Cycles it sees the world only, as its scale is 0; give it and its parents a scale'
         )
-        matrix = np.eye(4)
-        matrix[:3, 3] = given[:3, 3]
-        return matrix, True
-    if mirrored:
-        report.warn(f'Camera "{name}": its negative scale is ignored; the picture is not mirrored')
-    if is_sheared(given):
-        report.warn(
-            f'Camera "{name}": the scale of its parents shears it, which is ignored; the picture is not skewed. Apply '
-            "their scale"
-        )
-    return matrix, False
+    return matrix, True
 
 
 def camera_pose(
@@ -93,10 +82,12 @@ def camera_pose(
 ) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
     """Matrix and window of an evaluated camera object that export_camera takes; None where it sees nothing."""
     try:
-        matrix, _ = rigid(eye.matrix_of(camera_object))
+        matrix = unscaled(eye.matrix_of(camera_object))
     except ValueError:
         return None
-    return matrix, window(camera_object.data, *frame_shape(render, *frame_size(render)), eye.shift_of(camera_object))
+    return matrix, window(
+        camera_data(camera_object), *frame_shape(render, *frame_size(render)), eye.shift_of(camera_object)
+    )
 
 
 def frame_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
@@ -112,7 +103,11 @@ def frame_shape(render: bpy.types.RenderSettings, width: int, height: int) -> tu
 
 
 def window(
-    camera: bpy.types.Camera, across: float, upward: float, shift_x: float | None = None, flat: bool = False
+    camera: bpy.types.Camera | StandInCamera,
+    across: float,
+    upward: float,
+    shift_x: float | None = None,
+    flat: bool = False,
 ) -> tuple[float, float, float, float]:
     """left, right, bottom, top: tangents for a perspective camera, meters for an orthographic one, shares of a
     panorama's frame, which is ``across`` by ``upward`` pixel widths. shift_x: in place of the camera's own. flat: of a
