@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bumps whose height depends on tangents, which Cycles does not move where a bump looks beside: normals as seen."""
+"""Tangents, and bumps whose height depends on them, which Cycles does not move where a bump looks beside."""
 
 import bpy
 import numpy as np
@@ -44,3 +44,23 @@ def test_bumps_by_tangents(renderer, give):
     difference = np.abs(renderer.render(scene).frame.passes["Normal"] - theirs).max(axis=-1)
     assert np.median(difference[np.abs(theirs).max(axis=-1) > 0.0]) < 1e-3
     assert np.percentile(difference, 95) < 0.02
+
+
+@pytest.mark.parametrize("smooth", [True, False])
+def test_tangents_of_meshes_without_a_uv_map(renderer, smooth):
+    """Along longitudes, also where these begin anew, toward the camera."""
+    new_scene()
+    made, net = material("Feature")
+    tangent = net.out("Tangent", 0, direction_type="UV_MAP")
+    net.output(net.emission(net.scaled(tangent, 0.5, 0.5)))
+    seen = ball(1.0, made, place(turn=(0.0, 10.0, 5.0)), segments=16)
+    if not smooth:
+        seen.data.shade_flat()
+    camera((0.3, -4.0, 0.5), (0.0, 0.0, 0.0), 15.0)
+    unfilter()
+    channels = cycles_channels()
+    theirs = np.stack([channels[f"Combined.{letter}"] for letter in "RGB"], axis=-1)
+    scene = exported_scene()
+    scene.settings = scene.settings.with_values(iterations=1, filter_width=0.0)
+    difference = np.abs(renderer.render(scene).frame.combined[..., :3] - theirs).max(axis=-1)
+    assert np.percentile(difference, 97) < 1e-3
