@@ -234,7 +234,8 @@ PHOTON_DIFFERENTIAL = Record(
 """How far from a photon's ray its neighbors' run, along two directions: ``place`` in meters at the ray's origin,
 ``turn`` by how much their directions differ. ``blur`` is the radius, meters, over which the light's own size spreads
 what comes there, before the first hit the light's, and ``spread`` by how much it grows with the distance; ``before`` is
-how far the ray's origin is from the light. ``known`` is 0 where neighbors are not followed any more."""
+how far the ray's origin is from the light, INFINITY_DISTANCE from those without a place, or behind the first hit from
+the surface that turned the photon last. ``known`` is 0 where neighbors are not followed any more."""
 StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
 
 ADJOINT_QUERY = Record(
@@ -252,12 +253,13 @@ PHOTON = Record(
     flux="vec3",
     geometric_normal="uint",
     direction="vec3",
-    triangle="uint",
+    distance="float",
     scattered_flux="vec3",
     contributed="uint",
 )
 """One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
-``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it. The upper
+``direction`` points back to where the photon came from, which is ``distance`` meters away, straight through what is
+transparent; ``contributed`` becomes 1 once an importon takes it. The upper
 bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known."""
 StorageBlock("Photons", "Photon photons[];")
 StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint indirect_count; uint stored_photons[];")
