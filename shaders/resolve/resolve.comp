@@ -67,6 +67,7 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     surface.normal = shading;
     surface.position = b.x * v0 + b.y * v1 + b.z * v2;
     surface.barycentrics = b;
+    surface.beside = vec3(0.0);
     surface.triangle = hit.triangle;
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;

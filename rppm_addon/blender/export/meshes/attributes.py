@@ -112,7 +112,9 @@ def _computed(
     uv = slices.step(record, (name, "read"), lambda: _uv_of_tangents(exported, mesh, name.removeprefix(TANGENT)))
     if uv is None:
         return None
-    return MeshAttribute(AttributeDomain.CORNER, slices.computed(record, name, lambda: corner_tangents(exported, uv)))
+    goes_round = name == TANGENT and exported.corner_uv is None
+    tangents = slices.computed(record, name, lambda: corner_tangents(exported, uv, goes_round))
+    return MeshAttribute(AttributeDomain.CORNER, tangents)
 
 
 def _read(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:

@@ -6,15 +6,18 @@ import numpy as np
 from ....scene import Mesh
 
 
-def corner_tangents(mesh: Mesh, uv: np.ndarray) -> np.ndarray:
+def corner_tangents(mesh: Mesh, uv: np.ndarray, goes_round: bool = False) -> np.ndarray:
     """(corners, 4) float32 unit tangents along u in object space, and the sign of the bitangent.
 
-    uv: (corners, 2). Triangles around a vertex share a tangent where normal, UV and handedness are the same: the mean
-    of their own tangents, by the angles that they take up around it. 0 where the map is degenerate.
+    uv: (corners, 2). goes_round: whether u is a longitude, of which triangles go the shorter way, as in Cycles.
+    Triangles around a vertex share a tangent where normal, UV and handedness are the same: the mean of their own
+    tangents, by the angles that they take up around it. 0 where the map is degenerate.
     """
     triangles = mesh.triangle_corners
     points = mesh.positions[mesh.corner_vertices[triangles]].astype(np.float64)
     edges, steps = points[:, 1:] - points[:, :1], uv[triangles[:, 1:]].astype(np.float64) - uv[triangles[:, :1]]
+    if goes_round:
+        steps[..., 0] -= np.round(steps[..., 0])
     area = steps[:, 0, 0] * steps[:, 1, 1] - steps[:, 1, 0] * steps[:, 0, 1]
     sign = np.where(area > 0.0, 1.0, -1.0)
     along = sign[:, None] * (edges[:, 0] * steps[:, 1, 1:] - edges[:, 1] * steps[:, 0, 1:])
