@@ -11,7 +11,7 @@ void node_bsdf_diffuse(inout ClosureBuilder builder, float weight, vec3 color, f
 }
 
 void node_bsdf_translucent(inout ClosureBuilder builder, float weight, vec3 color, vec3 normal) {
-    add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), normal, 0u);
+    add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), reflecting_normal(builder, normal), 0u);
 }
 
 void node_bsdf_transparent(inout ClosureBuilder builder, float weight, vec3 color) {
