@@ -43,4 +43,5 @@ vec3 offset_from_surface(vec3 p, vec3 n) {
     return mix(stepped, plain, small);
 }
 
-float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
+// By magnitude: light may be negative, as in Cycles.
+float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
