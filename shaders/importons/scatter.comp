@@ -248,7 +248,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     else if (diffuse) {
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
-        found_weight = diffuse_factor(closure, facing, viewer, event.direction)
+        found_weight = diffuse_factor(closure, facing, viewer, event.direction, !event.transmitted)
                      * terminator_factor(closure.flags, facing, event.direction);
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;

@@ -199,13 +199,10 @@ StorageBlock("WalkRays", "Ray walk_rays[];")
 StorageBlock("ExitHits", "Hit exit_hits[];")
 """Where walks have come out; none of those that have not."""
 
-CLOSURE_CURVED = 32
-"""Of a closure's flags: shadow rays begin on the surface that the normals tell of."""
 TERMINATOR_SHIFT, TERMINATOR_STEPS = 10, 63
-"""Where in them, and in how many steps, the shading offset of the shadow terminator stands."""
+"""Where in a closure's flags, and in how many steps, the shading offset of the shadow terminator stands."""
 Constants(
     "Terminators",
-    CLOSURE_CURVED=CLOSURE_CURVED,
     TERMINATOR_SHIFT=TERMINATOR_SHIFT,
     TERMINATOR_STEPS=TERMINATOR_STEPS,
 )

@@ -221,10 +221,10 @@ class Lights(BufferSet):
         links = LightLinkTable()
 
         def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0, group: str = "") -> None:
-            if np.isfinite(power).all() and np.max(power) > 0:
+            if np.isfinite(power).all() and np.any(power):
                 names.append(name)
                 entries.append(entry)
-                powers.append(float(np.mean(power)))
+                powers.append(float(np.mean(np.abs(power))))
                 weights.append(max(weight, 0.0))
                 groups.append(group)
 
@@ -320,7 +320,7 @@ class Lights(BufferSet):
             "emissive_triangle_count": self.emitters.count,
             "mesh_selection": float(selection[table["kind"] == LightShape.MESH].sum()),
             "world_selection": float(selection[table["kind"] == LightShape.WORLD].sum()),
-            "environment_irradiance": 2 * math.pi * float(np.mean(self.environment.mean_radiance)),
+            "environment_irradiance": 2 * math.pi * float(np.mean(np.abs(self.environment.mean_radiance))),
             "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,
