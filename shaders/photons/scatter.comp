@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 #include "photons/parts.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
@@ -194,7 +195,7 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
                    & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
     if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
-    if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
+    if (scattering.transmitted) path_flags = cross_surface(path_flags, closure.material, closure_backfacing(closure));
     vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
     rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
     if (parameters.has_adjoint_queries != 0u)
@@ -228,7 +229,7 @@ void main() {
         photons[slot] = Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, NO_TRIANGLE, vec3(0.0), 0u);
         return;
     }
-    vec3 flux = carried * segment_transmittance(path_flags, closure);
+    vec3 flux = carried * segment_transmittance(path_flags, closure.distance);
     bool ends = parameters.segment + 1u >= parameters.segments || !(largest(flux) > 0.0);
     PhotonDifferential differential = photon_differentials[index];
     bool neighbors_known = differential.known != 0u;
