@@ -128,6 +128,26 @@ def test_light_of_a_lamp_outside_a_body(renderer):
     np.testing.assert_allclose(within, expected, rtol=3e-3)
 
 
+@pytest.mark.parametrize("surface", [TRANSPARENT, GLASS], ids=["volume alone", "glass"])
+def test_light_through_a_body_in_a_body(renderer, surface):
+    """Photons from a lamp within one pass through another of its own absorption; so does the camera's ray."""
+    other = np.array([0.3, 0.1, 0.2])
+    lamp = Light("lamp", LightKind.POINT, scenes.placed(0.0, 0.0, 1.0), np.full(3, 10.0))
+    settings = {"photons": 40000, "iterations": 4, "use_final_gather": False}
+    within, plain = (
+        scene_of((0, at(0.0, 4.0), CLEAR), (0, at(-0.5, 0.25), 3), (1, at(-1.0, 0.5), WHITE),
+                 body=body_of(surface, absorption), lights=[lamp], **settings)
+        for absorption in (ABSORPTION, None)
+    )  # fmt: skip
+    within.materials.append(material("other", surface, absorption=other))
+    plain.materials.append(material("other", surface))
+    x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
+    to_lamp = np.sqrt(4 + x**2 + x[:, None] ** 2)[..., None]
+    seen = (np.abs(x) < 0.2) & (np.abs(x[:, None]) < 0.2)  # rays that go through top and bottom
+    expected = picture(renderer, plain) * passed(rays() + to_lamp) * passed(0.5 * rays() + 0.25 * to_lamp, other)
+    np.testing.assert_allclose(picture(renderer, within)[seen], expected[seen], rtol=3e-3)
+
+
 def test_a_tinted_bulb(renderer):
     """A lamp in a ball of absorption lights a floor."""
     lamp = Light("lamp", LightKind.POINT, at(0.5), np.full(3, 10.0))
