@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/path_history.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -137,7 +138,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
         PassedLights passed = passed_lights(closure.position, sampled.direction, vec2(0.0, INFINITY_DISTANCE),
-                                            RAY_GLOSSY, 0.0, light_set, candidates.u);
+                                            RAY_GLOSSY, 0.0, light_set, candidates.u, path_absorption(flags));
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
@@ -147,7 +148,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         uint emissive;
         Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
-        reflected *= exp(-path_absorption(flags) * hit.distance);
+        reflected *= segment_transmittance(flags, hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
                       Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle));
@@ -205,8 +206,10 @@ Arriving arriving_from_light(uint index, uint flags, float radius, Closure closu
     vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
-    return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
-                    choice.light, sampled.triangle);
+    uint beyond = side > 0.0 ? flags : cross_surface(flags, closure.material, closure_backfacing(closure));
+    vec3 passed = segment_transmittance(beyond, sampled.distance);
+    return Arriving(throughput * passed * scattered * sampled.weight / choice.probability, sampled.direction,
+                    sampled.distance, choice.light, sampled.triangle);
 }
 
 // The LightLink by which a shadow ray meets what is in its way. Reflections of lights without shadows are hidden like
@@ -232,7 +235,7 @@ void main() {
     bool gathered = (flags & PATH_GATHERED) != 0u;
     bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
                 && path_gathers(flags, length_to_gather_by(closure), parameters.gathers_again_below);
-    vec3 throughput = path.throughput * segment_transmittance(flags, closure);
+    vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
 #ifdef HAIR_LOBES

@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 #include "photons/parts.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
@@ -207,7 +208,7 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
     if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
     photon_differentials[index].before = straight ? away : 0.0;
-    if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
+    if (scattering.transmitted) path_flags = cross_surface(path_flags, closure.material, closure_backfacing(closure));
     float offset = closures[index].ray_offset;
     vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
     rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
@@ -243,7 +244,7 @@ void main() {
                                0u);
         return;
     }
-    vec3 flux = carried * segment_transmittance(path_flags, closure);
+    vec3 flux = carried * segment_transmittance(path_flags, closure.distance);
     bool ends = parameters.segment + 1u >= parameters.segments || !(largest(flux) > 0.0);
     PhotonDifferential differential = photon_differentials[index];
     bool neighbors_known = differential.known != 0u;

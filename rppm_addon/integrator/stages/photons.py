@@ -10,7 +10,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...scene.settings import DirectLight
 from ..common.iteration import Iteration
-from ..common.living_paths import PathList
+from ..common.living_paths import LivingPaths, PathList
 from ..common.records import (
     ADJOINT_QUERY,
     CLOSURE,
@@ -82,6 +82,16 @@ class Photons(BufferSet):
         self._balance = library.compute("photons/balance.comp")
         self.photon_count, self.segments = sizes.photons, sizes.segments
         self._emission = PhotonEmission(library)
+
+    @property
+    def living(self) -> LivingPaths:
+        """The list of the paths that go on."""
+        return self._living
+
+    @property
+    def path_blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that change where or how paths begin."""
+        return {"Rays": self._rays.buffer, "PhotonPaths": self._paths.buffer}
 
     @property
     def _blocks(self) -> dict[str, moderngl.Buffer]:

@@ -39,6 +39,8 @@ float closure_holdout(Closure closure) { return unpackUnorm2x16(closure.flags).y
 
 float lobe_cosine(MicrofacetLobe lobe, vec3 wo) { return clamp(dot(lobe_normal(lobe), wo), 0.0, 1.0); }
 
+bool closure_backfacing(Closure closure) { return (closure.flags & CLOSURE_BACKFACING) != 0u; }
+
 bool closure_hit(Closure closure) { return closure.triangle != NO_TRIANGLE; }
 
 // Smoother lobes cannot be evaluated toward a light, only followed.
