@@ -13,15 +13,16 @@ MATERIAL = Record(
     program="uint",
     first_constant="uint",
     opaque_shadow="uint",
+    passes_shadow_rays="uint",
     depends_on_view="uint",
     pass_index="uint",
     medium="uint",
     material_of_medium="uint",
     unused0="uint",
-    unused1="uint",
 )
 """A material: absorption of its interior in 1/m, the program that evaluates its node graph, and where its constants
-start in MaterialData; whether lights shine through where it is transparent (0) or not (1); whether what it scatters
+start in MaterialData; whether lights shine through where it is transparent (0) or not (1), and whether shadow rays find
+that light (1) or photons alone do (0); whether what it scatters
 depends on where it is seen from (1); its index for compositors; and the number of its interior among those that absorb,
 from 1 on, 0 where it does not. ``material_of_medium`` is not of this material: item n - 1 has that of medium n."""
 MOST_MEDIA = 1023

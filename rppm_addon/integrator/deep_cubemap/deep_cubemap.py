@@ -305,6 +305,17 @@ class DeepCubemap(BufferSet):
         kernel = "deep_cubemap/occluded_linked.comp" if linking else "deep_cubemap/occluded.comp"
         self._trace(kernel, {"Rays": rays, "Visibility": visibility, **(linking or {})}, living)
 
+    def shadow_hits(
+        self,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        living: LivingPaths,
+        linking: Mapping[str, moderngl.Buffer] | None = None,
+    ) -> None:
+        """Find the nearest hits of shadow rays as trace does, but for what casts no shadow; linking: as of occluded."""
+        kernel = "deep_cubemap/shadow_hits_linked.comp" if linking else "deep_cubemap/shadow_hits.comp"
+        self._trace(kernel, {"Rays": rays, "Hits": hits, **(linking or {})}, living)
+
     @property
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
         """Buffers by block name that kernels which include deep_cubemap/traverse.glsl need."""
