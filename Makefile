@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version docs-images pairs references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version docs-images pairs survey references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -73,7 +73,7 @@ HOURS ?= 2
 soak: setup ## Use a real Blender window for long (HOURS=2), and tell what grew, or was another picture: out/soak/
 	.venv/bin/python tools/soak.py $$(awk 'BEGIN { print 60 * $(HOURS) }')
 
-lock: setup ## Pin anew what set-up installs, by version and hash
+lock: setup ## Pin anew what make installs, by version and hash
 	.venv/bin/python tools/lock.py
 
 lint: setup ## Check Python, types, imports, license lines, shaders, pinned packages, and what bandit finds unsafe
@@ -86,8 +86,7 @@ lint: setup ## Check Python, types, imports, license lines, shaders, pinned pack
 	.venv/bin/bandit --quiet --recursive --configfile pyproject.toml rppm_addon extension tools .ci setup.py
 
 docs-tools: setup
-	@.venv/bin/python -c 'import material, mike' 2>/dev/null || .venv/bin/python -m pip install --quiet \
-		--disable-pip-version-check --root-user-action=ignore -e '.[docs]'
+	@.venv/bin/python .ci/install_locked.py docs
 
 docs: docs-tools ## Build the documents as a site, build/site/index.html, and check their links
 	NO_MKDOCS_2_WARNING=1 .venv/bin/python -m mkdocs build --quiet --config-file tools/site/mkdocs.yml
@@ -103,8 +102,12 @@ docs-images: setup ## Render the pictures of the pages, SECONDS_EACH of the proc
 	.venv/bin/python tools/gallery/render.py --films $(GALLERY)
 	.venv/bin/python tools/setting_pairs.py
 
-pairs: setup ## Render the scenes of SCENES with RPPM and Cycles side by side to out/pairs/ (PAIRS=--names: every file there)
-	.venv/bin/python tools/pairs.py $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH) $(PAIRS)
+pairs: setup ## Compare the .blend files of SCENES with Cycles, to out/pairs/ (PAIRS=name: some; done ones are kept)
+	.venv/bin/python -m tools.pairs $(SCENES) --resolution $(RESOLUTION) --seconds $(SECONDS_EACH) $(PAIRS)
+
+survey: setup ## Compare small files as beginners make them with Cycles, to out/survey/ (PAIRS=name: some; done ones are kept)
+	.venv/bin/python -m tools.beginner_files out/survey/files
+	.venv/bin/python -m tools.pairs out/survey/files --out out/survey --samples 32 --cycles-samples 64 $(PAIRS)
 
 TESTS ?= tests/parity
 references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/test_lights.py)
@@ -115,8 +118,7 @@ parity: setup ## Compare references with Cycles, and each feature (ROWS=--contin
 	.venv/bin/python -m tests.parity.features.report $(ROWS)
 
 bench-tools: setup
-	@.venv/bin/python -c 'import matplotlib, flip_evaluator' 2>/dev/null || .venv/bin/python -m pip install --quiet \
-		--disable-pip-version-check --root-user-action=ignore -e '.[bench]'
+	@.venv/bin/python .ci/install_locked.py bench
 
 bench: bench-tools ## Measure deep cubemap and estimator for docs/benchmarks/ (BENCH=--quick: to out/benchmarks/)
 	.venv/bin/python -m benchmarks.device.run --scene-folder $(SCENES) $(BENCH)

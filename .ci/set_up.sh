@@ -57,17 +57,15 @@ install_system_packages
 
 install_python_packages() {
     local stamp=.venv/set-up-done wanted
-    wanted=$(sha256sum pyproject.toml .ci/requirements.txt .ci/set_up.sh | sha256sum)
+    wanted=$(sha256sum pyproject.toml .ci/locks/setup.txt .ci/install_locked.py .ci/set_up.sh | sha256sum)
     if [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ]; then
         return
     fi
     echo "set-up: Python packages into .venv (Blender as a module among them: a few minutes the first time)"
     [ -x .venv/bin/python ] || "$python" -m venv .venv
-    # A hundred megabytes of Python take half a minute to compile; what is imported is compiled then, and kept.
-    local install=(.venv/bin/python -m pip install --no-compile --quiet --disable-pip-version-check)
-    install+=(--root-user-action=ignore)
-    "${install[@]}" --require-hashes --no-deps -r .ci/requirements.txt
-    "${install[@]}" --no-deps --no-build-isolation -e .
+    .venv/bin/python .ci/install_locked.py setup
+    .venv/bin/python -m pip install --no-compile --quiet --disable-pip-version-check --root-user-action=ignore \
+        --no-index --no-deps --no-build-isolation -e .
     echo "$wanted" >"$stamp"
 }
 

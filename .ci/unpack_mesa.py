@@ -30,6 +30,9 @@ from rppm_addon.gl.project_mesa import (  # noqa: E402
 RELEASE, CODENAME = "debian 12", "bookworm"
 BACKPORTS = f"{CODENAME}-backports"
 KEYRING = Path("/usr/share/keyrings/debian-archive-keyring.gpg")
+TESTED_VERSION = "25.0.7-2~bpo12+1"
+"""Version of Mesa that RPPM was tested with. A mirror has only the newest of the backports: another version is taken as
+well, if it starts, and named."""
 TRY_AGAIN_SECONDS = 24 * 3600.0
 LONGEST_SECONDS = 60
 """That apt may take at a time: where the mirrors are out of reach, set-up does not wait for long."""
@@ -157,11 +160,13 @@ def unpack(folder: Path) -> str:
         with tempfile.TemporaryDirectory() as temporary:
             for package in download(Path(temporary)):
                 _run(["dpkg-deb", "--extract", str(package), str(new)])
+        (new / RELEASE_FILE).write_text(f"{RELEASE}\n", encoding="utf-8")
         paths = libraries(new)
         if not paths:
             raise UnavailableError("libraries are missing in its packages")
         _check_dependencies(paths)
-        (new / RELEASE_FILE).write_text(f"{RELEASE}\n", encoding="utf-8")
+        # Another release may want more of the system than its libraries.
+        _run(["env", f"{VARIABLE}={new}", sys.executable, "-m", "rppm_addon", "info"], ROOT)
         shutil.rmtree(folder, ignore_errors=True)
         new.rename(folder)
     finally:
@@ -194,6 +199,8 @@ def main(folder: Path = FOLDER) -> int:
         return 0
     tried.unlink(missing_ok=True)
     print(f"set-up: Mesa {version} from {BACKPORTS} into {folder.name}, for RPPM alone; the system's stays")
+    if version != TESTED_VERSION:
+        print(f"set-up: RPPM was tested with Mesa {TESTED_VERSION}; {VARIABLE}=system keeps to the system's driver")
     return 0
 
 

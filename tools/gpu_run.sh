@@ -32,18 +32,9 @@ prepare() {
     local version=${PYTHON_VERSION:-3.12} platforms=() number
     for number in 2014 1; do platforms+=(--platform "manylinux${number}_x86_64"); done
     for number in 17 24 27 28 31 34; do platforms+=(--platform "manylinux_2_${number}_x86_64"); done
-    # What renders, and what tests and figures need; none of Blender.
-    .venv/bin/python - <<'END' >"$folder/requirements.txt"
-import tomllib
-
-project = tomllib.load(open("pyproject.toml", "rb"))["project"]
-wanted = ("pytest", "hypothesis", "numba", "scipy")
-tests = project["optional-dependencies"]["test"]
-named = [line for line in tests if line.startswith(wanted) and not line.startswith(("pytest-cov", "pytest-xdist"))]
-print("\n".join([*project["dependencies"], *named]))
-END
-    .venv/bin/python -m pip download --quiet --disable-pip-version-check --only-binary=:all: \
-        --python-version "$version" --implementation cp "${platforms[@]}" -d "$folder/wheels" -r "$folder/requirements.txt"
+    # The lock is that of Python 3.12; another Python may lack wheels of these versions, and pip says which.
+    .venv/bin/python -m pip download --quiet --disable-pip-version-check --only-binary=:all: --require-hashes --no-deps \
+        --python-version "$version" --implementation cp "${platforms[@]}" -d "$folder/wheels" -r .ci/locks/gpu.txt
     [ -n "${QUICK:-}" ] || .venv/bin/python -m benchmarks.device.run --export-only \
         --saved-scenes "$folder/benchmark_scenes" || echo "scenes outside the repository are left out" >&2
     for scene in "${scenes[@]}"; do
@@ -85,7 +76,7 @@ run() {
     mkdir -p "$results"
     : >"$results/parts.txt"
     if [ -z "${PYTHON:-}" ]; then
-        "$python" -m pip install --quiet --no-index --no-compile --upgrade --target "$site" "$folder"/wheels/*.whl || exit 1
+        "$python" -m pip install --quiet --no-index --no-deps --no-compile --upgrade --target "$site" "$folder"/wheels/*.whl || exit 1
         export PYTHONPATH=$PWD:$site
     else
         export PYTHONPATH=$PWD

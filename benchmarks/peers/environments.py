@@ -16,11 +16,9 @@ FOLDER = ROOT / "build" / "peers"
 OUT = ROOT / "out" / "peers"
 """What is made and measured."""
 
-PACKAGES = {
-    "luxcore": ("pyluxcore==2.11.2", "numpy==1.26.4"),
-    "mitsuba": ("mitsuba==3.9.1", "numpy==1.26.4"),
-}
-"""What environments of their own hold; the other adapters run in that of the project, which has bpy."""
+LOCKED = ("luxcore", "mitsuba")
+"""Adapters with an environment of their own, of the locked packages of that name; the others run in the project's,
+which has bpy."""
 _LLVM = "libllvm19"
 _LONGEST_INSTALLATION = 900.0
 _START_SECONDS = 300.0
@@ -29,7 +27,7 @@ _START_SECONDS = 300.0
 
 def python_of(adapter: str) -> Path:
     """The Python that runs an adapter."""
-    return FOLDER / adapter / "bin" / "python" if adapter in PACKAGES else Path(sys.executable)
+    return FOLDER / adapter / "bin" / "python" if adapter in LOCKED else Path(sys.executable)
 
 
 def variables_of(adapter: str) -> dict[str, str]:
@@ -48,24 +46,19 @@ def variables_of(adapter: str) -> dict[str, str]:
 
 def install(adapter: str) -> str:
     """Make the environment of an adapter, unless it is there; returns what went wrong, empty when nothing."""
-    if adapter not in PACKAGES:
+    if adapter not in LOCKED:
         return ""
-    packages = PACKAGES[adapter]
-    stamp = FOLDER / adapter / "packages.txt"
-    if stamp.exists() and stamp.read_text(encoding="utf-8") == "\n".join(packages):
-        return ""
-    print(f"installing {', '.join(packages)} into {stamp.parent.relative_to(ROOT)}", flush=True)
-    commands = [
-        [sys.executable, "-m", "venv", str(stamp.parent)],
-        [str(python_of(adapter)), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *packages],
-    ]
+    folder, installer = FOLDER / adapter, str(ROOT / ".ci" / "install_locked.py")
+    commands = [[str(python_of(adapter)), installer, adapter]]
+    if not python_of(adapter).exists():
+        print(f"installing {adapter} into {folder.relative_to(ROOT)}", flush=True)
+        commands.insert(0, [sys.executable, "-m", "venv", str(folder)])
     for command in commands:
         problem = run(command, _LONGEST_INSTALLATION, OUT / f"install_{adapter}.log")
         if problem:
             return problem
-    if adapter == "mitsuba":
-        _fetch_llvm(stamp.parent / "llvm")
-    stamp.write_text("\n".join(packages), encoding="utf-8")
+    if adapter == "mitsuba" and not (folder / "llvm").exists():
+        _fetch_llvm(folder / "llvm")
     return ""
 
 

@@ -9,6 +9,9 @@ import numpy as np
 
 from .declared import declared
 
+SHEARED = 1e-4
+"""Cosine between axes from which on pictures show that they are not at right angles: .1 pixels of a thousand."""
+
 
 class PanoramaKind(enum.Enum):
     """How directions are laid out in a panorama; the names are Blender's."""
@@ -96,7 +99,7 @@ class Camera:
     """
 
     matrix: np.ndarray = field(metadata=declared(4, 4))
-    """(4, 4) float64, camera to world, a rigid motion (scale removed)."""
+    """(4, 4) float64, camera to world, its axes of length 1: a rigid motion, or mirrored or sheared by parents."""
     window: tuple[float, float, float, float]
     """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1), meters
     (orthographic), or shares of the frame, 0 to 1 without a shift (panorama)."""
@@ -115,6 +118,12 @@ class Camera:
     """None is a pinhole: everything is in focus."""
     texels: Texels | None = None
     """What is pictured in place of what lies before the camera; the window is then in texels, and orthographic."""
+
+    @property
+    def is_sheared(self) -> bool:
+        """Whether its axes are not at right angles."""
+        axes = self.matrix[:3, :3] / np.linalg.norm(self.matrix[:3, :3], axis=0)
+        return bool(np.abs(axes.T @ axes - np.eye(3)).max() > SHEARED)
 
     @property
     def pixel_size(self) -> float:

@@ -66,9 +66,19 @@ class TracedTriangles:
         """HIT records of RAY records."""
         return self._run(rays, HIT.dtype, self._of_all(self.cubemap.trace))
 
-    def occluded(self, rays: np.ndarray) -> np.ndarray:
-        """uint32, 1 where a ray is free, else 0."""
-        return self._run(rays, np.dtype(np.uint32), self._of_all(self.cubemap.occluded))
+    def occluded(self, rays: np.ndarray, targets: np.ndarray | None = None) -> np.ndarray:
+        """uint32, 1 where a ray is free, else 0. targets: triangles that rays go to and that do not count, uint32."""
+        if targets is None:
+            targets = np.full(len(rays), NO_TRIANGLE, np.uint32)
+        ends = self.context.moderngl.buffer(targets.tobytes())
+        try:
+            return self._run(
+                rays,
+                np.dtype(np.uint32),
+                self._of_all(lambda queried, free, living: self.cubemap.occluded(queried, ends, free, living)),
+            )
+        finally:
+            ends.release()
 
     def _of_all(self, operation: Callable[[moderngl.Buffer, moderngl.Buffer, LivingPaths], None]) -> _Operation:
         def run(ray_buffer: moderngl.Buffer, result_buffer: moderngl.Buffer, count: int) -> None:

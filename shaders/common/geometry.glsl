@@ -30,18 +30,15 @@ void tangent_frame(vec3 n, out vec3 t, out vec3 b) {
     b = vec3(c, s + n.y * n.y * a, -n.y);
 }
 
-// A point just off the surface on the side of n (Waechter and Binder, Ray Tracing Gems, ch. 6):
-// the step follows the coordinates' float spacing.
-vec3 offset_from_surface(vec3 p, vec3 n) {
-    ivec3 steps = whole_part(256.0 * n);
-    vec3 stepped = vec3(
-        intBitsToFloat(floatBitsToInt(p.x) + (p.x < 0.0 ? -steps.x : steps.x)),
-        intBitsToFloat(floatBitsToInt(p.y) + (p.y < 0.0 ? -steps.y : steps.y)),
-        intBitsToFloat(floatBitsToInt(p.z) + (p.z < 0.0 ? -steps.z : steps.z)));
-    vec3 plain = p + n * (1.0 / 65536.0);
-    bvec3 small = lessThan(abs(p), vec3(1.0 / 32.0));
-    return mix(stepped, plain, small);
-}
-
 // By magnitude: light may be negative, as in Cycles.
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
+// How far off its plane a ray begins that leaves a triangle, meters, so that it meets no neighbor in the same plane:
+// what rounding of the point (Pharr, Jakob and Humphreys, Physically Based Rendering, 6.8) and of the neighbor's test
+// (common/intersection.glsl) come to, eight times over. n: the plane's normal.
+float ray_offset(vec3 n, vec3 v0, vec3 v1, vec3 v2) {
+    const float ROUNDING = 1.0 / 2097152.0;  // eight half steps of floats near 1
+    vec3 most = max(max(abs(v0), abs(v1)), abs(v2));
+    vec3 extent = max(max(v0, v1), v2) - min(min(v0, v1), v2);
+    return ROUNDING * (dot(abs(n), most) + largest(extent));
+}

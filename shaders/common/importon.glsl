@@ -104,14 +104,19 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     float disks = ITS.radius * ITS.radius / radius2;
     stands_for = whole_word(floor(max(disks, 1.0) + 0.5));
     vec3 geometric = unpack_unit_vector(ITS.geometric_normal);
-    if (abs(dot(offset, geometric)) > PHOTON_PLANE_TOLERANCE * radius) return false;
+    float height = dot(offset, geometric);
+    if (abs(height) > PHOTON_PLANE_TOLERANCE * radius) return false;
     vec3 photon_normal = unpack_unit_vector(photons[photon_number].geometric_normal);
     float alignment = dot(geometric, photon_normal);
     if (abs(alignment) < PHOTON_NORMAL_TOLERANCE) return false;
     // Photons count on the side they arrived at; only transmission links the two sides.
-    if (alignment < 0.0 && !lobe_transmits(unpack_kind(ITS.lobe_kind)) && largest(ITS.translucent) <= 0.0) return false;
-    float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
+    uint kind = unpack_kind(ITS.lobe_kind);
+    if (alignment < 0.0 && !lobe_transmits(kind) && largest(ITS.translucent) <= 0.0) return false;
     vec3 direction = photons[photon_number].direction;
+    float side = alignment > 0.0 ? 1.0 : -1.0, away = photons[photon_number].distance;
+    if (is_shut_off(side * height, dot(offset, photon_normal), side * dot(direction, geometric) * away, away, radius)
+        && !lobe_is_hair(kind)) return false;
+    float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     estimate.front = alignment > 0.0;
     vec3 radiance = evaluate_importon(importon, direction, estimate.front, abs(dot(photon_normal, direction)),
                                       estimate.diffuse);

@@ -74,7 +74,8 @@ float covered(Disk disk, vec3 point) {
     float height = PHOTON_PLANE_TOLERANCE * disk.radius, left = 2.0 * height, sum = 0.0;
     vec3 at = point + height * disk.normal;
     uint source = NO_TRIANGLE;
-    for (uint layer = 0u; layer < MOST_LAYERS && sum < FLAT; ++layer) {
+    // What lies behind the first layer below the importon's plane is shut off (is_shut_off).
+    for (uint layer = 0u; layer < MOST_LAYERS && sum < FLAT && left >= height; ++layer) {
         Hit hit = deep_cubemap_hit(Ray(at, source, -disk.normal, left));
         if (hit.triangle == NO_TRIANGLE) break;
         source = hit.triangle;

@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: TEXEL_BUFFERS=1
-// Whether each ray is free (1) or meets something (0).
+// Whether each ray is free (1) or meets something (0) that is not the triangle that it goes to.
 layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
+#define SHADOW_RAYS
 #include "deep_cubemap/traverse.glsl"
 
 layout(std430, binding = 1) restrict readonly buffer Rays;
 layout(std430, binding = 2) restrict writeonly buffer Visibility;
+layout(std430, binding = 5) restrict readonly buffer LightTriangles;
 
 void main() {
     uint index = living_path();
-    if (index != NO_PATH) visibility[index] = deep_cubemap_occluded(rays[index]) ? 0u : 1u;
+    if (index == NO_PATH) return;
+    target_triangle = light_triangles[index];
+    visibility[index] = deep_cubemap_occluded(rays[index]) ? 0u : 1u;
 }

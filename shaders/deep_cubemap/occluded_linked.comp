@@ -9,16 +9,19 @@ layout(local_size_x = 64) in;
 #include <LightLink>
 uvec2 shadow_sets;  // bits of those that are in the ray's way
 #define SHADOW_LINKING
+#define SHADOW_RAYS
 #include "deep_cubemap/traverse.glsl"
 
 layout(std430, binding = 1) restrict readonly buffer Rays;
 layout(std430, binding = 2) restrict writeonly buffer Visibility;
 layout(std430, binding = 3) restrict readonly buffer Contributions;
 layout(std430, binding = 4) restrict readonly buffer LightLinks;
+layout(std430, binding = 5) restrict readonly buffer LightTriangles;
 
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
+    target_triangle = light_triangles[index];
     shadow_sets = light_links[code_number(contributions[index].w)].shadow_sets;
     if (shadow_sets == uvec2(0u)) visibility[index] = 1u;
     else visibility[index] = deep_cubemap_occluded(rays[index]) ? 0u : 1u;

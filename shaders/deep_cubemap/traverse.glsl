@@ -31,6 +31,10 @@ const uint ALL_INSTANCES = 0xffffffffu;
 uint traced_instance = ALL_INSTANCES;
 #endif
 
+#ifdef SHADOW_RAYS
+uint target_triangle = NO_TRIANGLE;  // that a shadow ray ends on, and is not hidden by
+#endif
+
 // What stays the same along a ray.
 struct CubemapWalk {
     DeepCubemapState cubemap;
@@ -60,6 +64,9 @@ uvec3 walk_counts = uvec3(0u); // steps, triangle tests, entries
 
 void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
     if (triangle == walk.source_triangle) return;
+#ifdef SHADOW_RAYS
+    if (triangle == target_triangle) return;
+#endif
     vec4 vertex0 = triangle_vertex(3u * triangle);
 #ifdef TRACES_INSTANCES
     bool of_all = traced_instance == ALL_INSTANCES;

@@ -21,8 +21,8 @@ void main() {
     if (!(largest(passed) > 0.0)) return;
     // Closures' normals look back along the ray.
     vec3 normal = -unpack_unit_vector(closures[index].geometric_normal);
-    Ray beyond = Ray(offset_from_surface(closures[index].position, normal), closures[index].triangle, ray.direction,
-                     INFINITY_DISTANCE);
+    Ray beyond = Ray(closures[index].position + closures[index].ray_offset * normal, closures[index].triangle,
+                     ray.direction, INFINITY_DISTANCE);
     if (ray.maximum_distance < INFINITY_DISTANCE) {
         vec3 to_end = ray.origin + ray.maximum_distance * ray.direction - beyond.origin;
         beyond.maximum_distance = dot(to_end, ray.direction);

@@ -265,15 +265,16 @@ void main() {
     if (parameters.splits_light != 0u)
         light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    vec3 origin = offset_from_surface(closure.position,
-                                      dot(lit_normal(closure), arriving.direction) > 0.0 ? geometric : -geometric);
+    float offset = closures[index].ray_offset;
+    if (dot(lit_normal(closure), arriving.direction) <= 0.0) offset = -offset;
+    vec3 origin = closure.position + offset * geometric;
     Ray shadow = Ray(origin, closure.triangle, arriving.direction, INFINITY_DISTANCE);
     if (arriving.distance < INFINITY_DISTANCE) {
-        // From the moved origin to the light, and just short of it: its own surface must not hide it.
+        // From the moved origin to the light.
         vec3 to_light = closure.position + arriving.distance * arriving.direction - origin;
         float distance = length(to_light);
         shadow.direction = to_light / distance;
-        shadow.maximum_distance = distance * (1.0 - 1e-4);
+        shadow.maximum_distance = shadow_ray_length(distance);
     }
     shadow_rays[index] = shadow;
 }

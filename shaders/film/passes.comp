@@ -19,6 +19,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
 layout(std430, binding = 0) readonly buffer Camera;
+#include "gbuffer/sheared.glsl"
 layout(std430, binding = 1) readonly buffer Closures;
 #include "common/bsdf/stored_lobes.glsl"
 #include "film/light_colors.glsl"
@@ -74,7 +75,8 @@ void begin_iteration() {
 
 float view_depth(vec3 position) {
     vec3 offset = position - camera.position;
-    return camera.projection <= PROJECTION_ORTHOGRAPHIC ? dot(offset, camera.forward) : length(offset);
+    if (camera.projection > PROJECTION_ORTHOGRAPHIC) return length(offset);
+    return camera_is_sheared() ? dot(offset, camera_normal()) : dot(offset, camera.forward);
 }
 
 // 1 where nothing is seen for mist.

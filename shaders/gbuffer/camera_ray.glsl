@@ -4,7 +4,7 @@
 #include <Ray>
 #include <CameraView>
 #include "common/constants.glsl"
-#include "gbuffer/projections.glsl"
+#include "gbuffer/sheared.glsl"
 
 // `passed` is the way from the camera to the origin, at the clip start; `area` is what a pixel sees at
 // distance 1 across the ray, m^2, or everywhere where rays are parallel. `reach` 0: the pixel sees nothing.
@@ -31,6 +31,14 @@ CameraRay plane_ray(vec2 at, vec2 lens) {
     float cosine = ray.direction.z;
     ray.area = camera.pixel_area * (orthographic ? cosine : cosine * cosine * cosine);
     return ray;
+}
+
+// Distances are those in the world, as in Cycles.
+Ray sheared_ray(CameraRay ray) {
+    mat3 axes = mat3(camera.right, camera.up, camera.forward);
+    vec3 direction = normalize(axes * ray.direction);
+    vec3 start = axes * (ray.origin - ray.passed * ray.direction);
+    return Ray(camera.position + start + ray.passed * direction, NO_TRIANGLE, direction, ray.reach);
 }
 
 Ray world_ray(CameraRay ray) {

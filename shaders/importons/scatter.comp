@@ -221,6 +221,8 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     return event;
 }
 
+const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
+
 // The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
 void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all, bool gathers, float radius,
            float disk, uvec4 choices, float u, uint history) {
@@ -274,8 +276,11 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     if (!(largest(path.throughput) > 0.0) || (event.transmitted ? side >= 0.0 : side <= 0.0)) return;
     if (event.transmitted) path.flags = cross_surface(path.flags, closure);
     camera_paths[index] = path;
-    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
-    rays[index] = Ray(origin, closure.triangle, event.direction, INFINITY_DISTANCE);
+    float offset = closures[index].ray_offset;
+    vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
+    // Behind a catcher only the world is seen.
+    float reach = (closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u ? NO_REACH : INFINITY_DISTANCE;
+    rays[index] = Ray(origin, closure.triangle, event.direction, reach);
 }
 
 void main() {

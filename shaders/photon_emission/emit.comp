@@ -28,9 +28,10 @@ float light_extent(Light light) {
 }
 
 // How the neighbors of a photon leave. The environment and emissive meshes are as large as what they light, and tell
-// nothing. before: from the light to where the ray begins.
+// nothing but how far off they are. before: from the light to where the ray begins.
 PhotonDifferential leaving_differential(Light light, Emission emission, float before) {
     bool parallel = light.kind == LIGHT_SUN;
+    if (parallel || light.kind == LIGHT_WORLD) before = INFINITY_DISTANCE;
     bool known = emission.pdf > 0.0 && light.kind != LIGHT_WORLD && light.kind != LIGHT_MESH;
     vec3 t, b;
     tangent_frame(emission.direction, t, b);
@@ -38,7 +39,7 @@ PhotonDifferential leaving_differential(Light light, Emission emission, float be
     vec3 none = vec3(0.0);
     return PhotonDifferential(parallel ? apart * t : none, known ? 1u : 0u, parallel ? none : apart * t,
                               parallel ? 0.0 : extent, parallel ? apart * b : none, parallel ? extent : 0.0,
-                              parallel ? none : apart * b, parallel ? 0.0 : before);
+                              parallel ? none : apart * b, before);
 }
 
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
@@ -95,6 +96,8 @@ void main() {
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
-    photon_differentials[index] = leaving_differential(light, emission, distance(left_from, emission.origin));
-    rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);
+    float before = distance(left_from, emission.origin);
+    photon_differentials[index] = leaving_differential(light, emission, before);
+    if (emission.reach < INFINITY_DISTANCE) emission.reach = max(emission.reach - before, 0.0);
+    rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? emission.reach : 0.0);
 }

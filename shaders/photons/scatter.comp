@@ -189,8 +189,8 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
     }
 }
 
-// The ray and the flux that a path goes on with, if it does; path_flags are those that it came with.
-vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, vec3 arrival, vec3 flux) {
+// The ray and the flux that a path goes on with, if it does; path_flags are those that it came with, away how far.
+vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, vec3 arrival, float away, vec3 flux) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
@@ -212,8 +212,10 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
                    & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
     if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
+    photon_differentials[index].before = straight ? away : 0.0;
     if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
-    vec3 origin = offset_from_surface(closure.position, side > 0.0 ? geometric : -geometric);
+    float offset = closures[index].ray_offset;
+    vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
     rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
     if (parameters.has_adjoint_queries != 0u)
         store_adjoint_query(index, closure, scattering, arrival, path_flags);
@@ -243,7 +245,8 @@ void main() {
     vec3 arrival = -ray.direction;
     Closure closure = closures[index];
     if (!closure_hit(closure)) {
-        photons[slot] = Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, NO_TRIANGLE, vec3(0.0), 0u);
+        photons[slot] = Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, INFINITY_DISTANCE, vec3(0.0),
+                               0u);
         return;
     }
     vec3 flux = carried * segment_transmittance(path_flags, closure);
@@ -261,7 +264,7 @@ void main() {
         stores = stores || lobe_stores(stored_lobe(index, k), parameters.specular_alpha);
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) flags |= PHOTON_STORED;
     // Written before the path goes on: what it needs of registers then is more.
-    photons[slot] = Photon(closure.position, flags, flux, closure.geometric_normal, arrival, closure.triangle,
-                           vec3(0.0), 0u);
-    if (!ends) photons[slot].scattered_flux = go_on(index, closure, path_flags, neighbors_known, arrival, flux);
+    float away = differential.before + closure.distance;
+    photons[slot] = Photon(closure.position, flags, flux, closure.geometric_normal, arrival, away, vec3(0.0), 0u);
+    if (!ends) photons[slot].scattered_flux = go_on(index, closure, path_flags, neighbors_known, arrival, away, flux);
 }

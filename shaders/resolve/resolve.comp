@@ -46,7 +46,7 @@ float straight_length(uint index) {
            ? uintBitsToFloat(path_words[parameters.camera_stride * index + parameters.camera_straight_length]) : 0.0;
 }
 
-// flags: of the path that came there; index: its number.
+// flags: of the path that came there; index: its number, whose closure gets the offset of its rays.
 Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     vec3 v0, v1, v2;
     triangle_points(hit.triangle, v0, v1, v2);
@@ -60,9 +60,11 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     surface.backfacing = dot(surface.geometric, surface.viewer) < 0.0;
     // As in Cycles, wherever the normals of the corners point: both turn where the face is seen from behind.
     if (surface.backfacing) surface.geometric = -surface.geometric;
+    closures[index].ray_offset = ray_offset(surface.geometric, v0, v1, v2);
     surface.normal = surface.backfacing ? -shading : shading;
     surface.position = b.x * v0 + b.y * v1 + b.z * v2;
     surface.barycentrics = b;
+    surface.beside = vec3(0.0);
     surface.triangle = hit.triangle;
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;

@@ -18,6 +18,7 @@ layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 3) writeonly buffer ShadowRays;
 layout(std430, binding = 2) writeonly buffer Contributions;
 layout(std430, binding = 8) readonly buffer LightLinks;
+layout(std430, binding = 15) writeonly buffer LightTriangles;
 
 const int CANDIDATES = 64;
 
@@ -27,6 +28,7 @@ void main() {
     Ray none = Ray(vec3(0.0), NO_TRIANGLE, vec3(0.0, 0.0, 1.0), 0.0);
     shadow_rays[index] = none;
     contributions[index] = vec4(0.0);
+    light_triangles[index] = NO_TRIANGLE;
     Closure closure = closures[index];
     if (!(rays[index].maximum_distance > 0.0) || !closure_hit(closure)
         || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u) return;
@@ -49,10 +51,12 @@ void main() {
         if (!lights_diffuse || !(given > 0.0) || dot(geometric, sampled.direction) <= 0.0) continue;
         total += given;
         if (u_choice * total < given) {
-            vec3 origin = offset_from_surface(closure.position, geometric);
-            float reach = sampled.distance < INFINITY_DISTANCE ? sampled.distance * (1.0 - 1e-4) : INFINITY_DISTANCE;
+            vec3 origin = closure.position + closure.ray_offset * geometric;
+            float reach = sampled.distance < INFINITY_DISTANCE ? shadow_ray_length(sampled.distance)
+                                                              : INFINITY_DISTANCE;
             chosen = Ray(origin, closure.triangle, sampled.direction, reach);
             chosen_link = link;
+            light_triangles[index] = sampled.triangle;
         }
     }
     shadow_rays[index] = chosen;

@@ -59,5 +59,6 @@ void begin_walk(uint index, Closure closure, Subsurface part, vec3 direction, ve
     bool walks = direction != vec3(0.0) && largest(throughput) > 0.0;
     subsurface_walks[index] = SubsurfaceWalk(throughput, 0u, closure.position, -1.0, extinction, part.anisotropy,
                                              max(albedo, least), closure.shading_normal);
-    walk_rays[index] = Ray(closure.position, closure.triangle, direction, walks ? 1.0 : 0.0);
+    vec3 origin = closure.position - closure.ray_offset * unpack_unit_vector(closure.geometric_normal);
+    walk_rays[index] = Ray(origin, closure.triangle, direction, walks ? 1.0 : 0.0);
 }

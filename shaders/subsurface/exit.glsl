@@ -10,7 +10,7 @@ layout(std430, binding = 3) readonly buffer ExitHits;
 layout(std430, binding = 4) readonly buffer SubsurfaceWalks;
 layout(std430, binding = 5) readonly buffer WalkRays;
 
-struct Exit { vec3 position; vec3 geometric; vec3 shading; };
+struct Exit { vec3 position; vec3 geometric; vec3 shading; float ray_offset; };
 
 // Normals are on the outside, which is where the walk leads.
 Exit exit_of(uint index) {
@@ -21,6 +21,7 @@ Exit exit_of(uint index) {
     Exit found;
     found.position = b.x * v0 + b.y * v1 + b.z * v2;
     found.geometric = normalize(cross(v1 - v0, v2 - v0));
+    found.ray_offset = ray_offset(found.geometric, v0, v1, v2);
     bool turned = dot(found.geometric, walk_rays[index].direction) < 0.0;
     if (turned) found.geometric = -found.geometric;
     vec3 shading = triangle_normal(hit.triangle, b);

@@ -21,4 +21,5 @@ void main() {
     exit_closures[index].shading_normal = shading;
     exit_closures[index].diffuse_normal = shading;
     exit_closures[index].diffuse_roughness = 0u;
+    exit_closures[index].ray_offset = found.ray_offset;
 }

@@ -48,6 +48,6 @@ void main() {
     photon_paths[index].flux = flux;
     hits[index] = hit;
     // Turned, to look at the surface from where the photon goes (photons/adjoint.comp).
-    vec3 origin = offset_from_surface(found.position, found.geometric);
+    vec3 origin = found.position + found.ray_offset * found.geometric;
     rays[index] = Ray(origin, hit.triangle, -direction, INFINITY_DISTANCE);
 }

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds FOLDER: Debian's development release with its Blender, an X server without a screen, and
 # tools that press keys and take pictures; 1.4 GB, a few minutes. Quick when FOLDER is complete.
-# Ends with 77 and one line on why where it cannot be built.
+# The development release changes every day, and on some days its Blender cannot be installed or does not start: then
+# what FOLDER had stays in use, or else an older release is taken. Ends with 77 and one line on why where none can be had.
 set -euo pipefail
 folder=${1:?usage: build_chroot.sh FOLDER}
 
-release=sid
+releases=(sid testing trixie)
 packages=(
     blender xvfb xauth xdotool imagemagick libgl1-mesa-dri libegl1 libegl-mesa0 libglx-mesa0
     python3-numpy python3-cattr python3-requests python3-zstandard
@@ -47,15 +48,40 @@ if ! command -v debootstrap >/dev/null; then
         >/dev/null || give_up "debootstrap is missing and could not be installed"
 fi
 
-echo "building Debian $release with Blender in $folder (a few minutes, 1.4 GB)"
 log=$folder.log
-rm -rf --one-file-system "$folder.new" "$folder"
-debootstrap --variant=minbase "$release" "$folder.new" >"$log" 2>&1 || give_up "debootstrap failed, see $log"
 apt=(apt-get -qq -y --no-install-recommends -o Acquire::Check-Valid-Until=false -o Acquire::Retries=3
     -o Dpkg::Options::=--force-unsafe-io "-o" "Dpkg::Options::=--path-exclude=/usr/share/doc/*")
-in_chroot "${apt[@]}" update >>"$log" 2>&1 || give_up "the list of packages could not be fetched, see $log"
-in_chroot "${apt[@]}" install "${packages[@]}" >>"$log" 2>&1 || give_up "packages could not be installed, see $log"
-in_chroot apt-get clean
-in_chroot blender --version >>"$log" 2>&1 || give_up "Debian's Blender does not start, see $log"
-echo "$wanted" >"$folder.new/rppm-complete"
-mv "$folder.new" "$folder"
+
+build() { # release: FOLDER.new with it; sets reason where it fails
+    local release=$1
+    echo "building Debian $release with Blender in $folder (a few minutes, 1.4 GB)"
+    rm -rf --one-file-system "$folder.new"
+    echo "== Debian $release" >>"$log"
+    reason="debootstrap failed"
+    debootstrap --variant=minbase "$release" "$folder.new" >>"$log" 2>&1 || return 1
+    reason="the list of packages could not be fetched"
+    in_chroot "${apt[@]}" update >>"$log" 2>&1 || return 1
+    reason="packages could not be installed"
+    in_chroot "${apt[@]}" install "${packages[@]}" >>"$log" 2>&1 || return 1
+    in_chroot apt-get clean
+    reason="Debian's Blender does not start"
+    in_chroot blender --version >>"$log" 2>&1 || return 1
+}
+
+: >"$log"
+for release in "${releases[@]}"; do
+    if build "$release"; then
+        echo "$wanted" >"$folder.new/rppm-complete"
+        rm -rf --one-file-system "$folder"
+        mv "$folder.new" "$folder"
+        exit 0
+    fi
+    echo "Debian $release: $reason, see $log"
+    if [ -s "$stamp" ]; then
+        rm -rf --one-file-system "$folder.new"
+        echo "the Blender window that was built before stays in use: $folder"
+        exit 0
+    fi
+done
+rm -rf --one-file-system "$folder.new"
+give_up "$reason, see $log"

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 import OpenEXR
+import pytest
 from mathutils import Matrix, Vector
 
 from rppm_addon.blender.export import export_scene
@@ -233,8 +234,28 @@ def cycles_channels(samples: int = 1) -> dict[str, np.ndarray]:
     """What Cycles gives for the view layer, by pass and channel ("Depth.Z"): (H, W) float32, row 0 at the bottom."""
     scene = bpy.context.scene
     scene.render.engine, scene.cycles.samples = "CYCLES", samples
+    return _render_channels()
+
+
+def render_final(samples: int, seeds: int = 3) -> np.ndarray:
+    """(seeds, height, width, 3) float64, row 0 at the bottom: what RPPM gives as Blender's render engine, of what
+    Blender evaluates for renders and not for viewports."""
+    if references.only_cycles():
+        pytest.skip("only Cycles' side")
+    scene = bpy.context.scene
+    scene.render.engine, scene.rppm.samples, scene.rppm.photons = "RPPM", samples, 256
+    pictures = []
+    for seed in range(seeds):
+        scene.rppm.seed = seed
+        channels = _render_channels()
+        pictures.append(np.stack([channels[f"Combined.{letter}"] for letter in "RGB"], axis=-1))
+    return np.array(pictures, np.float64)
+
+
+def _render_channels() -> dict[str, np.ndarray]:
+    scene = bpy.context.scene
     with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = os.path.join(folder, "cycles.exr")
+        scene.render.filepath = os.path.join(folder, "picture.exr")
         bpy.ops.render.render(write_still=True)
         with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:  # each pass is a part of its own
             channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}

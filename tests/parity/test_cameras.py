@@ -248,3 +248,73 @@ def test_light_by_photons_alone(renderer):
     result = render_rppm(renderer, **PHOTONS | {"direct_light": "PHOTONS", "photons": 65536})
     compare("panorama_photons", result.pictures, reference, CONVERGED)
     assert np.isfinite(result.pictures).all()
+
+
+def _mirrored(made: bpy.types.Object) -> None:
+    made.scale = (-1.0, 1.0, 1.0)
+
+
+def _upside_down(made: bpy.types.Object) -> None:
+    """All three axes mirrored, with a lens off its middle."""
+    made.scale, made.data.shift_x = (-2.0, -2.0, -2.0), 0.2
+
+
+def _mirrored_panorama(made: bpy.types.Object) -> None:
+    made.scale = (1.0, -1.0, 1.0)
+    made.data.type, made.data.panorama_type = "PANO", "EQUIRECTANGULAR"
+
+
+def _sheared(made: bpy.types.Object) -> None:
+    """As a child of what is scaled unevenly."""
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.scale = (1.4, 1.0, 0.7)
+    made.parent, made.rotation_euler = parent, (1.3, 0.4, 0.6)
+
+
+def _sheared_orthographic(made: bpy.types.Object) -> None:
+    _sheared(made)
+    made.data.type, made.data.ortho_scale = "ORTHO", 2.0
+
+
+def _sheared_panorama(made: bpy.types.Object) -> None:
+    _sheared(made)
+    made.data.type, made.data.panorama_type = "PANO", "EQUIRECTANGULAR"
+
+
+def _through_an_empty(made: bpy.types.Object) -> None:
+    _look_through(bpy.data.objects.new("Empty", None), made)
+
+
+def _through_a_spot(made: bpy.types.Object) -> None:
+    data = bpy.data.lights.new("Spot", "SPOT")
+    data.spot_size, data.energy = 1.2, 0.0
+    _look_through(bpy.data.objects.new("Spot", data), made)
+
+
+def _look_through(other: bpy.types.Object, made: bpy.types.Object) -> None:
+    other.matrix_world = made.matrix_world
+    bpy.context.scene.collection.objects.link(other)
+    bpy.context.scene.camera = other
+
+
+AS_THEY_COME = (
+    *(_mirrored, _upside_down, _mirrored_panorama, _sheared, _sheared_orthographic, _sheared_panorama),
+    *(_through_an_empty, _through_a_spot),
+)
+
+
+@pytest.mark.parametrize("change", AS_THEY_COME, ids=lambda change: change.__name__)
+def test_depth_of_cameras_as_they_come(renderer, change):
+    """Mirrored and sheared ones, and objects that are no cameras: the distance of what is seen in each pixel."""
+    made = room()
+    ball(0.3, material(DIFFUSE), place(at=(-0.6, 1.2, 0.4)))
+    change(made)
+    unfilter()
+    bpy.context.view_layer.use_pass_z = True
+    reference = cycles_channels()["Depth.Z"]
+    scene = exported_scene()
+    scene.settings = scene.settings.with_values(iterations=1, filter_width=0.0, passes=("Depth",))
+    depth = renderer.render(scene).frame.passes["Depth"]
+    ratio = np.abs(depth / reference - 1.0)
+    assert np.percentile(ratio, 95) < 2e-3  # edges fall to either side

@@ -10,6 +10,7 @@ from .scenes import (
     DIFFUSE,
     GLOSSY,
     ball,
+    box,
     camera,
     light,
     material,
@@ -124,6 +125,20 @@ def test_shadow_catchers_show_the_shadow_of_lights(renderer):
     reference = render_cycles_over(world, samples=512)
     result = render_rppm(renderer, seeds=8, direct_light="RAYS", **MODES["RAYS"])
     compare("shadow_catcher", result.pictures, reference, CONVERGED)
+
+
+def test_shadow_catchers_with_a_back_hide_what_is_behind(renderer):
+    """A box that catches shadows, with a ball behind it; a weak lamp, since light that goes from ball to box does not
+    count."""
+    new_scene(world=0.5)
+    box((0.6, 0.6, 0.3), material(DIFFUSE), place(at=(0.0, 0.0, 0.3))).is_shadow_catcher = True
+    ball(0.4, material(DIFFUSE, Color=(0.02, 0.02, 0.02)), place(at=(0.0, 1.1, 0.4)), segments=32)
+    ball(0.15, material(DIFFUSE, Color=(0.02, 0.02, 0.02)), place(at=(0.1, 0.0, 0.9)), segments=32)
+    light("AREA", 20.0, place(at=(0.8, -1.0, 2.5), turn=(20.0, 15.0, 0.0)), shape="SQUARE", size=0.8)
+    camera((0.0, -4.0, 2.2), (0.0, 0.0, 0.5), math.degrees(0.6))
+    reference = render_cycles_over(0.5, samples=512)
+    result = render_rppm(renderer, seeds=8, direct_light="RAYS", **MODES["RAYS"])
+    compare("shadow_catcher_box", result.pictures, reference, CONVERGED)
 
 
 @pytest.mark.parametrize("lets_pass", [True, False])

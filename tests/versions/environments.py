@@ -9,8 +9,13 @@ from pathlib import Path
 
 import pytest
 
-WHEELS = {"4.2.23": "3.11", "4.5.15": "3.11", "5.0.1": "3.11", "5.1.2": "3.13", "5.2.3": "3.13"}
-"""Of each series the newest version of bpy that PyPI has, and the Python that it runs on."""
+from tools.lock import GROUPS, lock_of, pins
+
+ROOT = Path(__file__).resolve().parents[2]
+LOCKS = {
+    pins(lock_of(name).read_text(encoding="utf-8"))["bpy"][0]: name for name in GROUPS if name.startswith("blender-")
+}
+"""Names of the locked groups by the version of bpy that each pins."""
 CURRENT = "5.0.1"
 """The one that all other tests run in."""
 
@@ -22,15 +27,14 @@ def python_with_blender(version: str) -> Path:
     python, done = folder / "bin" / "python", folder / "complete"
     if done.exists():
         return python
-    base = _interpreter(WHEELS[version])
+    wanted = GROUPS[LOCKS[version]].python
+    base = _interpreter(wanted)
     if base is None:
-        pytest.skip(f"bpy {version} needs Python {WHEELS[version]}, which is not there")
+        pytest.skip(f"bpy {version} needs Python {wanted}, which is not there")
     shutil.rmtree(folder, ignore_errors=True)
     subprocess.run([base, "-m", "venv", folder], check=True)
-    # bpy 4 was built with NumPy 1, and does not say so.
-    packages = [f"bpy=={version}", *(["numpy<2"] if version.startswith("4.") else [])]
-    pip = [python, "-m", "pip", "install", "--quiet", "--no-compile", "--disable-pip-version-check"]
-    installed = subprocess.run([*pip, "--root-user-action=ignore", *packages], capture_output=True, text=True)
+    command = [python, ROOT / ".ci" / "install_locked.py", LOCKS[version]]
+    installed = subprocess.run(command, capture_output=True, text=True)
     if installed.returncode:
         pytest.skip(f"bpy {version} cannot be had: {installed.stderr.strip().splitlines()[-1]}")
     done.touch()

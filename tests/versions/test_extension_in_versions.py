@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
-from environments import CURRENT, WHEELS, python_with_blender
+from environments import CURRENT, LOCKS, python_with_blender
 from support.extension_zip import built_zip
 
 AS_USER = Path(__file__).with_name("as_user.py")
@@ -50,7 +50,7 @@ def used(tmp_path_factory):
     return used
 
 
-@pytest.mark.parametrize("version", WHEELS)
+@pytest.mark.parametrize("version", LOCKS)
 def test_the_zip_is_installed_and_renders_the_same(version, used):
     report, folder = used(version)
     assert report["blender"].startswith(version.rpartition(".")[0])
@@ -73,7 +73,7 @@ def test_a_raycast_is_exported_before_it_samples_attributes(used):
     assert sorted(used("5.1.2")[0]["raycast"]) == ["bsdf_principled", "emission", "raycast"]
 
 
-@pytest.mark.parametrize("version", WHEELS)
+@pytest.mark.parametrize("version", LOCKS)
 def test_what_the_window_needs_is_there(version, used):
     report, _ = used(version)
     assert report["engine"] == {"bl_use_preview": True, "bl_use_eevee_viewport": True, "viewport": True}

@@ -61,8 +61,8 @@ def export_scene(
     Raises SceneError when there is nothing to render from, ExportStopped when told to stop.
     """
     context = _context_of(depsgraph, engine, should_stop)
-    report, source = context.report, depsgraph.scene_eval
-    scene = Scene(camera=export_camera(source, depsgraph, report, eye=Eye(engine)))
+    source = depsgraph.scene_eval
+    scene = Scene(camera=export_camera(source, depsgraph, eye=Eye(engine), report=context.report))
     scene.settings = export_settings(source, depsgraph.view_layer)
     is_preview = engine is not None and engine.is_preview
     if is_preview:
@@ -96,7 +96,7 @@ def export_baked_scene(
     """
     context = _context_of(depsgraph, engine)
     source = depsgraph.scene_eval
-    scene = Scene(camera=camera_beside(baked, depsgraph, context.report))
+    scene = Scene(camera=camera_beside(baked, depsgraph))
     scene.settings = bake_settings(export_settings(source, depsgraph.view_layer), bake_pass, pixels)
     scene.settings.validate()
     objects = ObjectExporter(context)

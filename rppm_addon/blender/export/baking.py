@@ -12,7 +12,6 @@ from ...scene.errors import SceneError
 from ...session.bake_passes import ENVIRONMENT, BakePass
 from .camera.camera import export_camera
 from .objects.object_pass import Placed
-from .report import Report
 
 _PRIMITIVE, _DIFFERENTIAL = "BakePrimitive", "BakeDifferential"
 """Passes by which Blender hands over what to bake, as it does to Cycles."""
@@ -75,10 +74,10 @@ def bake_settings(settings: RenderSettings, bake_pass: BakePass, pixels: BakePix
     )
 
 
-def camera_beside(baked: bpy.types.Object, depsgraph: bpy.types.Depsgraph, report: Report) -> Camera:
+def camera_beside(baked: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Camera:
     """The scene's camera, for nodes that ask for it; without one it is in the middle of the object."""
     try:
-        return export_camera(depsgraph.scene_eval, depsgraph, report)
+        return export_camera(depsgraph.scene_eval, depsgraph)
     except SceneError:
         matrix = np.eye(4)
         corners = np.array(baked.bound_box) @ np.array(baked.matrix_world)[:3, :3].T

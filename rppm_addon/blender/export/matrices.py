@@ -3,10 +3,10 @@
 
 import numpy as np
 
+from ...scene.camera import SHEARED
+
 FLATTEST = 1e-6
 """Least ratio of the smallest scale of a placement to its largest."""
-_SKEW = 1e-3
-"""Cosine between axes from which on pictures show that they are not at right angles: a pixel of a thousand."""
 
 
 def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -36,25 +36,23 @@ def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return result, usable
 
 
-def rigid(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
-    """The matrix (4, 4) without scale, shear and mirroring, keeping -Z and then Y.
+def unscaled(matrix: np.ndarray) -> np.ndarray:
+    """The matrix (4, 4) of a camera with axes of length 1, as Cycles has it; mirrored and sheared as it was.
 
-    Returns the rigid motion, and whether the matrix was mirrored. Raises ValueError when the
-    matrix is not finite or singular.
+    What is hardly sheared gets right angles, keeping -Z and then Y. Raises ValueError when the matrix is not finite,
+    has an axis of length 0, or axes in one plane, however long they are.
     """
     linear = matrix[:3, :3]
-    if not np.isfinite(matrix).all() or abs(np.linalg.det(linear)) <= 1e-12 * np.abs(linear).max() ** 3:
+    lengths = np.linalg.norm(linear, axis=0)
+    if not np.isfinite(matrix).all() or lengths.min() == 0.0 or abs(np.linalg.det(linear / lengths)) <= 1e-12:
         raise ValueError("the matrix is singular")
-    backward = linear[:, 2] / np.linalg.norm(linear[:, 2])
-    up = linear[:, 1] - backward * (linear[:, 1] @ backward)
-    up /= np.linalg.norm(up)
+    axes = linear / lengths
     result = np.eye(4)
-    result[:3, 0], result[:3, 1], result[:3, 2] = np.cross(up, backward), up, backward
-    result[:3, 3] = matrix[:3, 3]
-    return result, bool(np.linalg.det(linear) < 0.0)
-
-
-def is_sheared(matrix: np.ndarray) -> bool:
-    """Whether the axes of a regular matrix (4, 4) are so far from right angles that pictures show it."""
-    axes = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
-    return bool(np.abs(axes.T @ axes - np.eye(3)).max() > _SKEW)
+    result[:3, :3], result[:3, 3] = axes, matrix[:3, 3]
+    if np.abs(axes.T @ axes - np.eye(3)).max() > SHEARED:
+        return result
+    backward = axes[:, 2]
+    up = axes[:, 1] - backward * (axes[:, 1] @ backward)
+    up /= np.linalg.norm(up)
+    result[:3, 0], result[:3, 1] = np.cross(up, backward) * np.sign(np.linalg.det(axes)), up
+    return result

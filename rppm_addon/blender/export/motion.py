@@ -18,6 +18,7 @@ from .context import ExportContext
 from .culling import Culling
 from .matrices import usable_matrices
 from .meshes.meshes import read_shape, read_velocities
+from .meshes.rendered_meshes import rendered_mesh
 from .objects.mesh_table import MeshTable
 from .objects.object_pass import Identity, Placed, identity_of, identity_of_hair
 from .objects.objects import ObjectExporter
@@ -142,8 +143,8 @@ class MotionExporter:
         self._context.read_from(self._depsgraph)
         images.frame = of_frame
         objects.meshes.forget(read_edits(self._depsgraph).shapes)
-        source, report = self._depsgraph.scene_eval, self._context.report
-        scene.camera = export_camera(source, self._depsgraph, report, camera, self._eye)
+        source = self._depsgraph.scene_eval
+        scene.camera = export_camera(source, self._depsgraph, camera, self._eye, self._context.report)
         self._context.culling = Culling(source, scene.camera)
         return objects.export(self._depsgraph, identify=True)
 
@@ -164,18 +165,18 @@ class MotionExporter:
             if place is None or not deforms or data is None or place in self._with_velocities:
                 continue
             if time not in self._shapes.get(place, {}) and changed & set(identity[:2]):
-                self._shapes.setdefault(place, {})[time] = self._shape(data, place, meshes[place])
+                self._shapes.setdefault(place, {})[time] = self._shape(instance, data, place, meshes[place])
                 self._steps_of_shapes[place] = steps
 
     def _follow_velocities(self, bases: dict[Identity, int], meshes: list[Mesh], seconds: float) -> None:
         """Meshes that say how fast their vertices are go straight on: their faces may be others at other times."""
         known: set[int] = set()
-        for identity, _, data, steps, deforms in self._instances():
+        for identity, instance, data, steps, deforms in self._instances():
             place = bases.get(identity)
             if place is None or place in known or data is None:
                 continue
             known.add(place)
-            velocities = self._velocities(data, place) if steps and deforms else None
+            velocities = self._velocities(instance, data, place) if steps and deforms else None
             if velocities is not None:
                 mesh, way = meshes[place], velocities * np.float32(0.5 * seconds)
                 self._shapes[place] = {
@@ -186,16 +187,24 @@ class MotionExporter:
                 self._with_velocities.add(place)
 
     def _shape(
-        self, data: bpy.types.Mesh | RoundSource, place: int, middle: Mesh
+        self,
+        instance: bpy.types.DepsgraphObjectInstance,
+        data: bpy.types.Mesh | RoundSource,
+        place: int,
+        middle: Mesh,
     ) -> tuple[np.ndarray, np.ndarray] | None:
         if isinstance(data, bpy.types.Mesh):
-            return _shape(data, middle)
+            with rendered_mesh(_holder(instance), data) as mesh:
+                return None if mesh is None else _shape(mesh, middle)
         return round_shape_at(data, self._context.curves, middle, self._table.rings.get(place))
 
-    def _velocities(self, data: bpy.types.Mesh | RoundSource, place: int) -> np.ndarray | None:
+    def _velocities(
+        self, instance: bpy.types.DepsgraphObjectInstance, data: bpy.types.Mesh | RoundSource, place: int
+    ) -> np.ndarray | None:
         """(vertices, 3) float32 meters a second, if there are any."""
         if isinstance(data, bpy.types.Mesh):
-            return read_velocities(data)
+            with rendered_mesh(_holder(instance), data) as mesh:
+                return None if mesh is None else read_velocities(mesh)
         return round_velocities(data, self._table.rings.get(place))
 
     def _instances(
@@ -316,6 +325,11 @@ def _flags_of(source: bpy.types.Object) -> tuple[int, bool]:
     if cycles is None:
         return 1, True
     return (cycles.motion_steps if cycles.use_motion_blur else 0), cycles.use_deform_motion
+
+
+def _holder(instance: bpy.types.DepsgraphObjectInstance) -> bpy.types.Object:
+    """The evaluated object that an instance shows: it lives as long as the depsgraph is as it is."""
+    return instance.instance_object if instance.is_instance else instance.object
 
 
 def _shape(mesh: bpy.types.Mesh, middle: Mesh) -> tuple[np.ndarray, np.ndarray] | None:

@@ -15,7 +15,7 @@ def is_rasterized(camera: Camera) -> bool:
     """Whether a projection onto a plane from one point, or of parallel rays, shows what the camera sees, in rows that
     every device draws."""
     is_plane = camera.panorama is None and camera.aperture is None and camera.texels is None
-    return is_plane and camera.resolution[0] <= MOST_RASTER_PIXELS
+    return is_plane and not camera.is_sheared and camera.resolution[0] <= MOST_RASTER_PIXELS
 
 
 def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, float]) -> np.ndarray:

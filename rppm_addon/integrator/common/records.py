@@ -169,11 +169,13 @@ CLOSURE = Record(
     distance="float",
     material="uint",
     diffuse_roughness="uint",
+    ray_offset="float",
     lobes=(CLOSURE_LOBE, CLOSURE_LOBES),
 )
 """All that scattering, storing and estimating need to know about a hit. Normals face the arriving
 path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The diffuse roughness comes with
-the albedo that its interreflection takes (common/bsdf/diffuse.glsl)."""
+the albedo that its interreflection takes (common/bsdf/diffuse.glsl). ``ray_offset``: how far along the geometric normal
+rays begin, meters (common/geometry.glsl)."""
 StorageBlock("Closures", "Closure closures[];")
 StorageBlock("ExitClosures", "Closure exit_closures[];")
 """Where camera paths that went below a surface have come out of it, and else what they have met."""
@@ -229,7 +231,8 @@ PHOTON_DIFFERENTIAL = Record(
 """How far from a photon's ray its neighbors' run, along two directions: ``place`` in meters at the ray's origin,
 ``turn`` by how much their directions differ. ``blur`` is the radius, meters, over which the light's own size spreads
 what comes there, before the first hit the light's, and ``spread`` by how much it grows with the distance; ``before`` is
-how far the ray's origin is from the light. ``known`` is 0 where neighbors are not followed any more."""
+how far the ray's origin is from the light, INFINITY_DISTANCE from those without a place, or behind the first hit from
+the surface that turned the photon last. ``known`` is 0 where neighbors are not followed any more."""
 StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
 
 ADJOINT_QUERY = Record(
@@ -247,12 +250,13 @@ PHOTON = Record(
     flux="vec3",
     geometric_normal="uint",
     direction="vec3",
-    triangle="uint",
+    distance="float",
     scattered_flux="vec3",
     contributed="uint",
 )
 """One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
-``direction`` points back to where the photon came from; ``contributed`` becomes 1 once an importon takes it. The upper
+``direction`` points back to where the photon came from, which is ``distance`` meters away, straight through what is
+transparent; ``contributed`` becomes 1 once an importon takes it. The upper
 bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known."""
 StorageBlock("Photons", "Photon photons[];")
 StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint indirect_count; uint stored_photons[];")
@@ -461,12 +465,15 @@ LIGHT_SHADOWLESS = 64
 """Likewise: no shadows are cast in its light."""
 LIGHT_THROUGH_PORTALS = 128
 """Likewise: photons of the world that leave through portals. It is chosen for nothing else."""
+LIGHT_HOLDS_SURFACES = 256
+"""Likewise: there are surfaces within its radius, which a sphere lights from within and which hide parts of a disk."""
 Constants(
     "Lights",
     LIGHT=LightShape,
     LIGHT_SOFT=LIGHT_SOFT,
     LIGHT_SHADOWLESS=LIGHT_SHADOWLESS,
     LIGHT_THROUGH_PORTALS=LIGHT_THROUGH_PORTALS,
+    LIGHT_HOLDS_SURFACES=LIGHT_HOLDS_SURFACES,
 )
 
 LIGHT = Record(

@@ -294,27 +294,31 @@ class DeepCubemap(BufferSet):
     def occluded(
         self,
         rays: moderngl.Buffer,
+        targets: moderngl.Buffer,
         visibility: moderngl.Buffer,
         living: LivingPaths,
         linking: Mapping[str, moderngl.Buffer] | None = None,
     ) -> None:
         """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0.
 
+        targets: of each, the triangle that the ray goes to, which does not count, or NO_TRIANGLE; uint.
         linking: the buffers Contributions and LightLinks, where these say what may be in a ray's way.
         """
         kernel = "deep_cubemap/occluded_linked.comp" if linking else "deep_cubemap/occluded.comp"
-        self._trace(kernel, {"Rays": rays, "Visibility": visibility, **(linking or {})}, living)
+        buffers = {"Rays": rays, "LightTriangles": targets, "Visibility": visibility, **(linking or {})}
+        self._trace(kernel, buffers, living)
 
     def shadow_hits(
         self,
         rays: moderngl.Buffer,
+        targets: moderngl.Buffer,
         hits: moderngl.Buffer,
         living: LivingPaths,
         linking: Mapping[str, moderngl.Buffer] | None = None,
     ) -> None:
-        """Find the nearest hits of shadow rays as trace does, but for what casts no shadow; linking: as of occluded."""
+        """Find the nearest hits of shadow rays as trace does, of what counts for occluded."""
         kernel = "deep_cubemap/shadow_hits_linked.comp" if linking else "deep_cubemap/shadow_hits.comp"
-        self._trace(kernel, {"Rays": rays, "Hits": hits, **(linking or {})}, living)
+        self._trace(kernel, {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}, living)
 
     @property
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:

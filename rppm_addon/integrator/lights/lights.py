@@ -19,6 +19,7 @@ from ..common.iteration import Iteration
 from ..common.known import known
 from ..common.records import (
     LIGHT,
+    LIGHT_HOLDS_SURFACES,
     LIGHT_LINK,
     LIGHT_NODE,
     LIGHT_SOFT,
@@ -38,6 +39,7 @@ from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
 from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name
+from .spheres import holds_surfaces
 
 log = logging.getLogger(__name__)
 
@@ -121,6 +123,8 @@ class Lights(BufferSet):
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
+        self.are_cut = False
+        """Whether surfaces lie within the radius of any soft light."""
         self.links_lights = False
         """Whether any light does not shine on everything, or is not stopped by everything."""
         self.limits_bounces = False
@@ -230,6 +234,7 @@ class Lights(BufferSet):
             if is_portal(light):
                 continue
             entry, power = light_entry(light, radius)
+            entry["flags"] |= LIGHT_HOLDS_SURFACES * holds_surfaces(light, scene, geometry)
             entry["link"] = links.of_light(light)
             nodes = self.light_maps.nodes.get(index)
             if nodes is not None:
@@ -283,6 +288,8 @@ class Lights(BufferSet):
         self.has_falloff = bool(
             (table["flags"] & LIGHT_SOFT).any() or table["falloff"].any() or table["smoothing"].any()
         )
+        cut = LIGHT_SOFT | LIGHT_HOLDS_SURFACES
+        self.are_cut = bool(((table["flags"] & cut) == cut).any())
         self.table, self._photons, self._most_photons = table, photons, scene.photon_count
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:

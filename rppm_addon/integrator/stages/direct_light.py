@@ -105,7 +105,9 @@ class DirectLight(BufferSet):
                 if context.materials.any_passes_shadow_rays:
                     self._pass_surfaces(context, linking, iteration, segment)
                 else:
-                    context.deep_cubemap.occluded(self._rays.buffer, self.visibility.buffer, living, linking)
+                    context.deep_cubemap.occluded(
+                        self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
+                    )
                 living.run(
                     self._add,
                     {
@@ -130,7 +132,7 @@ class DirectLight(BufferSet):
         passing.require(self.living_rays.most, to_keep=True)
         passing.take(self.living_rays, rays.buffer)
         for _ in range(context.settings.camera_path_length):
-            context.deep_cubemap.shadow_hits(rays.buffer, hits.buffer, passing, linking)
+            context.deep_cubemap.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
             met = {
                 "Hits": hits.buffer,
                 "Attributes": context.geometry.attributes.buffer,

@@ -29,6 +29,7 @@ class ShadowCatcher(BufferSet):
     _rays = StorageBuffer("rays from shadow catchers", RAY, _catching_pixels)
     _links = StorageBuffer("links of shadow catchers", "vec4", _catching_pixels)
     """Contributions without light."""
+    _triangles = StorageBuffer("triangles of lights of shadow catchers", "uint", _catching_pixels)
     lit = StorageBuffer("lit shadow catchers", "uint", _catching_pixels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
@@ -49,9 +50,12 @@ class ShadowCatcher(BufferSet):
                     "Rays": importons.rays.buffer,
                     "ShadowRays": self._rays.buffer,
                     "Contributions": self._links.buffer,
+                    "LightTriangles": self._triangles.buffer,
                     "LightLinks": context.lights.links.buffer,
                 },
                 {**context.lights.parameters(iteration), "segment": segment, "first_pixel": band.first_pixel},
             )
             linking = context.lights.linking_blocks(self._links.buffer)
-            context.deep_cubemap.occluded(self._rays.buffer, self.lit.buffer, importons.living, linking)
+            context.deep_cubemap.occluded(
+                self._rays.buffer, self._triangles.buffer, self.lit.buffer, importons.living, linking
+            )

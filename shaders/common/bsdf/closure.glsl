@@ -16,7 +16,7 @@ const ClosureLobe EMPTY_LOBE = ClosureLobe(vec3(0.0), LOBE_NONE, vec3(0.0), 0.0,
 
 Closure empty_closure() {
     vec3 none = vec3(0.0);
-    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, none, 0u, 0.0, 0u, 0u,
+    return Closure(none, NO_TRIANGLE, none, 0u, none, 0u, none, 0u, none, 0u, 0.0, 0u, 0u, 0.0,
                    ClosureLobe[CLOSURE_LOBES](EMPTY_LOBE, EMPTY_LOBE, EMPTY_LOBE));
 }
 

@@ -6,7 +6,7 @@ import math
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_object, export
+from blender_scenes import add_object, export, set_world
 from bpy_extras.object_utils import world_to_camera_view
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -118,20 +118,19 @@ def test_border_without_a_pixel(scene):
         export(scene)
 
 
-def test_mirrored_and_sheared_cameras_become_rigid(scene):
-    scene.camera.scale = (-1.0, 1.0, 1.0)
+def test_mirrored_and_sheared_cameras_stay_so(scene):
+    scene.camera.scale = (-2.0, 1.0, 1.0)
     exported = export(scene)
-    assert np.linalg.det(exported.camera.matrix) == pytest.approx(1.0)
-    assert any("mirrored" in warning for warning in exported.warnings)
-    assert not any("shears" in warning for warning in exported.warnings)
+    assert np.linalg.det(exported.camera.matrix) == pytest.approx(-1.0)
+    assert not exported.camera.is_sheared
     parent = add_object(scene, "Parent", None)
     parent.scale = (1.0, 1.0, 2.0)
     scene.camera.scale, scene.camera.rotation_euler = (1.0, 1.0, 1.0), (0.8, 0.0, 0.0)
     scene.camera.parent = parent
     exported = export(scene)
-    assert any("shears" in warning and "Apply" in warning for warning in exported.warnings)
-    matrix = exported.camera.matrix[:3, :3]
-    np.testing.assert_allclose(matrix.T @ matrix, np.eye(3), atol=1e-12)
+    assert exported.warnings == []
+    assert exported.camera.is_sheared
+    np.testing.assert_allclose(np.linalg.norm(exported.camera.matrix[:3, :3], axis=0), 1.0, atol=1e-12)
 
 
 def test_no_camera(scene):
@@ -140,10 +139,20 @@ def test_no_camera(scene):
         export(scene)
 
 
-def test_a_camera_that_is_no_camera(scene):
-    scene.camera = add_object(scene, "Empty", None)
-    with pytest.raises(SceneError, match='"Empty"'):
-        export(scene)
+@pytest.mark.parametrize(
+    ("kind", "lens"), [(None, 50.0), ("POINT", 16.0 / np.tan(np.pi / 8)), ("SPOT", 16.0 / np.tan(0.3))]
+)
+def test_a_camera_that_is_no_camera(scene, kind, lens):
+    """Any object can be looked through; a spot shows what lies in its cone."""
+    data = kind and bpy.data.lights.new("Light", kind)
+    if kind == "SPOT":
+        data.spot_size = 0.6
+    scene.camera = add_object(scene, "Other", data)
+    exported = export(scene)
+    assert exported.warnings == []
+    left, right, _, _ = exported.camera.window
+    assert right - left == pytest.approx(36.0 / lens)
+    assert exported.camera.clip_end == 1e5
 
 
 def test_a_camera_by_shader_names_the_remedy(scene):
@@ -154,10 +163,30 @@ def test_a_camera_by_shader_names_the_remedy(scene):
         export(scene)
 
 
-def test_singular_camera(scene):
-    scene.camera.scale = (0.0, 0.0, 0.0)
-    with pytest.raises(SceneError, match='"Camera".*scale'):
-        export(scene)
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO", "PANO"])
+@pytest.mark.parametrize("scale", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 1.0)])
+def test_a_camera_without_scale_sees_the_world_only(renderer, lit, scale, kind):
+    """As in Cycles, where an axis has no direction."""
+    set_world(lit, (0.25, 0.5, 0.125))
+    lit.camera.scale, lit.camera.data.type = scale, kind
+    if kind == "PANO":
+        owner = lit.camera.data if hasattr(lit.camera.data, "panorama_type") else lit.camera.data.cycles
+        owner.panorama_type = "EQUIRECTANGULAR"
+    exported = export(lit)
+    (warning,) = exported.warnings
+    assert "the world only" in warning and "scale" in warning
+    seen = renderer.render(exported).frame.combined
+    np.testing.assert_allclose(seen[..., :3], np.broadcast_to((0.25, 0.5, 0.125), (32, 32, 3)), rtol=1e-5)
+
+
+@pytest.mark.parametrize("scale", [(2.0, 1.0, 1.0), (1.0, 3.0, 0.5), (1e-7, 1e-7, 1e-7), (1e-9, 1.0, 1e6)])
+def test_uneven_scales_of_cameras_are_nothing(scene, scale):
+    scene.camera.rotation_euler = (0.8, 0.1, 0.3)
+    before = export(scene)
+    scene.camera.scale = scale
+    after = export(scene)
+    np.testing.assert_allclose(after.camera.matrix, before.camera.matrix, atol=1e-5)
+    assert after.warnings == [] and after.camera.clip_end == before.camera.clip_end
 
 
 def test_field_of_view(scene):

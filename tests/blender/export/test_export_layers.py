@@ -9,7 +9,6 @@ from emission import world_map
 
 from rppm_addon.blender.export import SceneSync
 from rppm_addon.blender.export.camera.camera import export_camera
-from rppm_addon.blender.export.report import Report
 from rppm_addon.scene import RayVisibility
 
 
@@ -91,7 +90,7 @@ def test_a_scene_that_lives_on_follows_its_layer(masked):
 
     def followed():
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        return sync.update(depsgraph, export_camera(masked, depsgraph, Report()))
+        return sync.update(depsgraph, export_camera(masked, depsgraph))
 
     assert masks(followed()) == FREE
     mask_of(masked).holdout = True
@@ -114,7 +113,7 @@ def test_filters_leave_out_the_environment_and_surfaces(scene):
 
     def follow():
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        return sync.update(depsgraph, export_camera(scene, depsgraph, Report()))
+        return sync.update(depsgraph, export_camera(scene, depsgraph))
 
     assert follow().world.graph is not None and len(follow().instances) == 1
     layer.use_sky = layer.use_solid = False

@@ -10,7 +10,6 @@ from mathutils import Matrix
 
 from rppm_addon.blender.export.camera.camera import export_camera
 from rppm_addon.blender.export.camera.view import export_view
-from rppm_addon.blender.export.report import Report
 from rppm_addon.scene.errors import SceneError
 
 WIDTH, HEIGHT = 480, 270
@@ -73,7 +72,7 @@ def test_the_camera_s_view_is_the_final_picture(camera, scene, members):
         owner, _, last = name.rpartition(".")
         setattr(camera.data.dof if owner else camera.data, last, value)
     context, depsgraph = context_of(camera)
-    assert_same(export_view(context, depsgraph), export_camera(scene, depsgraph, Report()))
+    assert_same(export_view(context, depsgraph), export_camera(scene, depsgraph))
 
 
 @pytest.mark.parametrize("kind", ["PERSP", "PANO"])
@@ -86,7 +85,7 @@ def test_the_scene_s_border_is_that_of_the_camera_s_frame(camera, scene, kind):
     context, depsgraph = context_of(camera)
     view = export_view(context, depsgraph)
     # To a pixel: final renders cut borders down, the view shows the pixels that are touched.
-    np.testing.assert_allclose(view.crop, export_camera(scene, depsgraph, Report()).crop, atol=1)
+    np.testing.assert_allclose(view.crop, export_camera(scene, depsgraph).crop, atol=1)
 
 
 def test_a_border_outside_of_the_view_is_an_error(camera, scene):
@@ -128,7 +127,7 @@ def test_a_panorama_fills_the_camera_s_frame(camera, scene):
         pytest.skip("Cycles has the property in this version of Blender")
     camera.data.type, camera.data.panorama_type = "PANO", "EQUIRECTANGULAR"
     context, depsgraph = context_of(camera)
-    assert_same(export_view(context, depsgraph), export_camera(scene, depsgraph, Report()))
+    assert_same(export_view(context, depsgraph), export_camera(scene, depsgraph))
 
 
 def test_the_preview_s_pixel_size_makes_pixels_larger(camera, scene):

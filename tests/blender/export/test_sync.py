@@ -49,6 +49,8 @@ def synced(scene):
     yield sync
     bpy.app.handlers.depsgraph_update_post.remove(follow)
     bpy.app.handlers.frame_change_post.remove(follow)
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def _box(name: str, size: float = 1.0) -> bpy.types.Mesh:
@@ -286,6 +288,8 @@ def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
 
 
 def test_a_mesh_that_bends_keeps_its_other_arrays(synced):
+    bpy.data.meshes["Other"].shade_smooth()
+    bpy.context.view_layer.update()
     (before,) = (mesh for mesh in synced.scene.meshes if mesh.name == "Other")
     edit_other_mesh()
     bpy.context.view_layer.update()
@@ -574,3 +578,99 @@ def test_what_takes_too_much_memory_or_changes_all_at_once_is_not_kept(kept, mon
     monkeypatch.setattr(kept_exports, "MOST_BYTES", 100)
     kept_exports.keep(kept_exports.key_of(bpy.context.evaluated_depsgraph_get()), kept)
     assert switch_back() is None
+
+
+def in_edit_mode(*names: str) -> None:
+    for source in bpy.context.view_layer.objects:
+        source.select_set(source.name in names)
+    bpy.context.view_layer.objects.active = bpy.data.objects[names[0]]
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def in_object_mode() -> None:
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def pull() -> None:
+    """A vertex of the mesh under edit moves."""
+    mesh = bmesh.from_edit_mesh(bpy.data.meshes["Cube"])
+    mesh.verts.ensure_lookup_table()
+    mesh.verts[0].co.x -= 0.3
+    bmesh.update_edit_mesh(bpy.data.meshes["Cube"])
+
+
+def cut() -> None:
+    """Edges of the mesh under edit are divided, and a face goes."""
+    mesh = bmesh.from_edit_mesh(bpy.data.meshes["Cube"])
+    bmesh.ops.subdivide_edges(mesh, edges=mesh.edges[:], cuts=1)
+    mesh.faces.ensure_lookup_table()
+    bmesh.ops.delete(mesh, geom=[mesh.faces[0]], context="FACES")
+    bmesh.update_edit_mesh(bpy.data.meshes["Cube"])
+
+
+def assign() -> None:
+    """A face of the mesh under edit takes the second material."""
+    bpy.data.meshes["Cube"].materials.append(bpy.data.materials["Blue"])
+    mesh = bmesh.from_edit_mesh(bpy.data.meshes["Cube"])
+    mesh.faces.ensure_lookup_table()
+    mesh.faces[1].material_index = 1
+    bmesh.update_edit_mesh(bpy.data.meshes["Cube"])
+
+
+@pytest.mark.parametrize("names", [("Cube",), ("Cube", "Other"), ("Other", "Cube")])
+def test_edit_mode_is_followed(synced, names):
+    """Of one object or several, whose mesh another object has as well."""
+    steps = (
+        lambda: in_edit_mode(*names), pull, move, move_twin, paint, cut, ask_for_generated, pull, subdivide, assign,
+        in_object_mode, edit_mesh, lambda: in_edit_mode(*names), pull, in_object_mode,
+    )  # fmt: skip
+    for step in steps:
+        step()
+        bpy.context.view_layer.update()
+        assert same(synced.scene, fresh()), step
+        assert len(synced.scene.instances) == 3 and synced.scene.warnings == []
+    assert sum(mesh.triangle_count for mesh in synced.scene.meshes) > 3 * 12
+
+
+def test_a_mesh_in_edit_mode_is_what_it_is_outside(scene):
+    """With materials, UV, colors and the attributes that nodes ask for."""
+    cube = _add("Cube", _box("Cube"))
+    for name in ("Red", "Blue"):
+        cube.data.materials.append(bpy.data.materials.new(name))
+    cube.data.polygons[2].material_index, cube.data.polygons[3].use_smooth = 1, True
+    layer = cube.data.uv_layers.new(name="Map")
+    for number, place in enumerate(layer.uv):
+        place.vector = (0.1 * number, 0.5)
+    cube.data.attributes.new("Rust", "FLOAT", "POINT").data[3].value = 2.0
+    tree = bpy.data.materials["Red"].node_tree
+    if tree is None:
+        bpy.data.materials["Red"].use_nodes = True
+        tree = bpy.data.materials["Red"].node_tree
+    rust = tree.nodes.new("ShaderNodeAttribute")
+    rust.attribute_name = "Rust"
+    tree.links.new(rust.outputs["Fac"], tree.nodes["Principled BSDF"].inputs["Roughness"])
+    bpy.context.view_layer.update()
+    outside = fresh()
+    in_edit_mode("Cube")
+    bpy.context.view_layer.update()
+    inside = fresh()
+    in_object_mode()
+    assert same(inside, outside) and inside.meshes[0].triangle_count == 12
+
+
+@pytest.mark.parametrize("edit", [pull, cut, assign])
+def test_an_edit_amid_an_export_in_slices(synced, edit):
+    in_edit_mode("Cube")
+    bpy.context.view_layer.update()
+    sync = SceneSync()
+
+    def follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        advance(sync, depsgraph)
+
+    advance(sync, bpy.context.evaluated_depsgraph_get())
+    bpy.app.handlers.depsgraph_update_post.append(follow)
+    edit()
+    bpy.context.view_layer.update()
+    bpy.app.handlers.depsgraph_update_post.remove(follow)
+    finish(sync, bpy.context.evaluated_depsgraph_get())
+    assert same(sync.scene, fresh())

@@ -2,7 +2,7 @@
 """Density estimation where surfaces end, bend or lie close together: what may not leak, and biases in closed form.
 
 A photon counts where it arrived on the importon's side, with normals at most 45.6 degrees apart and at most 0.35 radii
-off the importon's tangent plane (shaders/common/importon.glsl).
+off the importon's tangent plane (shaders/common/importon.glsl); test_closed_shells.py has the rest.
 """
 
 import itertools

@@ -77,7 +77,7 @@ def device(context, library):
 def photons_at(positions: np.ndarray, flags: int) -> np.ndarray:
     photons = PHOTON.zeros(len(positions))
     photons["position"], photons["flags"], photons["flux"] = positions, PhotonFlag.STORED | flags, 1.0
-    photons["direction"], photons["geometric_normal"] = (0, 0, 1), UP
+    photons["direction"], photons["geometric_normal"], photons["distance"] = (0, 0, 1), UP, 1.0
     return photons
 
 

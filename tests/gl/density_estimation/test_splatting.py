@@ -40,7 +40,7 @@ def brute_force(importons, photons, wide):
         distance2 = (offset**2).sum(1)
         geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["diffuse_normal"][None])[0]
         near = (distance2 < radius**2) & (normals @ geometric > 0.7) & (abs(offset @ geometric) <= 0.35 * radius)
-        near &= stored["direction"] @ shading > 0
+        near &= (stored["direction"] @ shading > 0) & ~shut_off(stored, normals, offset, geometric, radius)
         if importon["gathers"] & GatherFlag.GATHERS_BY_RAY:
             near &= ~indirect
         cosine = (stored["direction"][near] * normals[near]).sum(1)
@@ -49,6 +49,16 @@ def brute_force(importons, photons, wide):
         kernel *= np.where(diffused[near], max(importon["gathers"] >> PHOTON_FACTOR_SHIFT, 1), 1)
         result[index] = importon["diffuse"] * (flux[near] * (kernel * correction)[:, None]).sum(0)
     return result
+
+
+def shut_off(
+    photons: np.ndarray, normals: np.ndarray, offset: np.ndarray, geometric: np.ndarray, radius: np.ndarray
+) -> np.ndarray:
+    """is_shut_off of surface_tolerance.glsl, for photons that arrive on an importon's side."""
+    away = np.minimum(photons["distance"], 1e20).astype(np.float64)  # of suns infinite
+    height, origin = offset @ geometric, offset @ geometric + away * (photons["direction"] @ geometric)
+    sheets = np.maximum(height, (offset * normals).sum(1)) < 1e-4 * radius
+    return sheets & (origin < 0.01 * abs(height) + 1e-4 * (away + radius))
 
 
 def diffuse_room(**settings):

@@ -183,9 +183,33 @@ def test_set_up_unpacks_once(unpacking, tmp_path, devices, capsys):
     (download,) = (command for command in unpacking.calls if "download" in command)
     fetched = {f"{name}/bookworm-backports" for name in ("libdrm2", "libdrm-amdgpu1", "libgbm1", "libegl-mesa0")}
     assert fetched | {"mesa-libgallium/bookworm-backports"} == set(download[3:])
+    (tried,) = (command for command in unpacking.calls if "info" in command)
+    assert tried[:2] == ["env", f"RPPM_MESA={tmp_path / '.mesa.new'}"]
     count = len(unpacking.calls)
     assert unpacking.main(folder) == 0 and len(unpacking.calls) == count and capsys.readouterr().out == ""
     assert {path.name for path in tmp_path.iterdir()} == {".mesa", "dev"}
+
+
+def test_set_up_names_a_version_that_was_not_tested(unpacking, tmp_path, capsys):
+    assert unpacking.main(tmp_path / ".mesa") == 0
+    assert f"tested with Mesa {unpacking.TESTED_VERSION}; RPPM_MESA=system" in capsys.readouterr().out
+    unpacking.TESTED_VERSION = "25.0.7"
+    assert unpacking.main(tmp_path / ".other") == 0
+    assert "tested with" not in capsys.readouterr().out
+
+
+def test_set_up_leaves_out_a_driver_that_does_not_start(unpacking, tmp_path, monkeypatch, capsys):
+    known = unpacking._run
+
+    def run(command, folder=None, check=True):
+        if "info" in command:
+            raise unpacking.UnavailableError("no OpenGL context")
+        return known(command, folder, check)
+
+    monkeypatch.setattr(unpacking, "_run", run)
+    assert unpacking.main(tmp_path / ".mesa") == 0
+    assert "will do (no OpenGL context)" in capsys.readouterr().out
+    assert {path.name for path in tmp_path.iterdir()} == {".mesa.tried"}
 
 
 def test_set_up_says_why_not_and_waits_a_day(unpacking, tmp_path, capsys):

@@ -4,6 +4,8 @@
 import bpy
 import numpy as np
 
+from .stand_in import camera_data
+
 
 class Eye:
     """Where cameras stand, and how far they are shifted, for the view that an engine is rendering."""
@@ -24,7 +26,7 @@ class Eye:
 
     def shift_of(self, camera: bpy.types.Object) -> float:
         """To the right, as Blender has it."""
-        return camera.data.shift_x if self._engine is None else self._engine.camera_shift_x(camera)
+        return camera_data(camera).shift_x if self._engine is None else self._engine.camera_shift_x(camera)
 
 
 def views_of(engine: bpy.types.RenderEngine, layer: str) -> list[str]:

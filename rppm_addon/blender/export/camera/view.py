@@ -6,7 +6,7 @@ import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..matrices import rigid
+from ..matrices import unscaled
 from .camera import frame_shape, frame_size, window
 from .lens import export_aperture, export_panorama
 
@@ -21,7 +21,7 @@ def export_view(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> C
     region, view, space = context.region, context.region_data, context.space_data
     coarseness = _PIXEL_SIZES.get(context.scene.render.preview_pixel_size, 1)
     width, height = (max(1, size // coarseness) for size in (region.width, region.height))
-    matrix, _ = rigid(np.array(view.view_matrix.inverted(), np.float64))
+    matrix = unscaled(np.array(view.view_matrix.inverted(), np.float64))
     projection = np.array(view.window_matrix, np.float64)
     through_camera = view.view_perspective == "CAMERA" and space.camera is not None
     camera_object = space.camera.evaluated_get(depsgraph) if through_camera else None

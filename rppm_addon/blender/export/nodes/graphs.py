@@ -21,9 +21,6 @@ Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path]
 HANDLERS: dict[str, Handler] = {}
 """By node type, the nodes that are more than their sockets and options."""
 
-_MAIN_INPUTS = ("Color", "Base Color", "Value", "Fac", "Vector", "Shader")
-"""Identifiers of the sockets of which the first passes through a node that is not rendered."""
-
 
 def handles(*types: str) -> Callable[[Handler], Handler]:
     """Register a handler for node types."""
@@ -297,20 +294,20 @@ class GraphExporter:
         return Link(self._known[key], output)
 
     def _fallback(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
-        """For a node that is not rendered: what feeds its main input, or nothing."""
-        socket = next((s for name in _MAIN_INPUTS for s in node.inputs if s.identifier == name), None)
-        if output.type == "SHADER":
-            if node.type in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "VOLUME_COEFFICIENTS"}:
-                self.warn(node, "is a volume and no surface; it is left out")
-                return None
-            self.warn(node, "is not rendered yet; a diffuse surface of its color stands in")
-            color = 0.8 if socket is None or socket.type == "SHADER" else self.value(socket, path)
-            return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(node), color=color)
-        if socket is not None and socket.type not in {"SHADER", "STRING"}:
-            self.warn(node, f'is not rendered yet; the value of its "{socket.name}" passes through')
-            return self.value(socket, path)
-        self.warn(node, "is not rendered yet; the value of the socket it feeds is used")
-        return None
+        """What stands in for a node that is not rendered: a diffuse surface of its color, or nothing, as in Cycles."""
+        if output.type != "SHADER":
+            self.warn(node, "is not rendered yet; the value of the socket it feeds is used")
+            return None
+        if node.type in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "VOLUME_COEFFICIENTS"}:
+            self.warn(node, "is a volume and no surface; it is left out")
+            return None
+        if node.type == "EEVEE_SPECULAR":
+            self.warn(node, "is for EEVEE alone and black, as in Cycles; use a Principled BSDF")
+            return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(node), color=0.0)
+        self.warn(node, "is not rendered yet; a diffuse surface of its color stands in")
+        socket = node.inputs.get("Color")
+        color = 0.8 if socket is None else self.value(socket, path)
+        return self.graph.add("bsdf_diffuse", "bsdf", name=self.name_of(node), color=color)
 
 
 _LOST = "is a group whose node tree is missing; a neutral value or a gray surface stands in"

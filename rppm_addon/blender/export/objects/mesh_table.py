@@ -15,6 +15,7 @@ from ..context import ExportContext
 from ..meshes.attributes import export_attribute
 from ..meshes.dicing import export_dicing
 from ..meshes.meshes import NO_MESH, export_mesh
+from ..meshes.rendered_meshes import is_made_anew, rendered_mesh
 from ..slices import Slices
 from ..strands.round_meshes import RoundSource, export_round, export_round_attribute
 from ..strands.tubes import Rings
@@ -102,7 +103,8 @@ class MeshTable:
     ) -> int | None:
         """Index of a mesh, exported now if it is new, with the named attributes; None when it has no triangles.
 
-        mesh: None lets Blender make one of the object. owner: the session_uid of the object that brings the mesh.
+        source: an evaluated object, never one that Blender's iterator makes up for an instance. mesh: None lets Blender
+        make one of the object. owner: the session_uid of the object that brings the mesh.
         """
         key = (source if mesh is None else mesh).as_pointer()
         # What multiplies an object may bring the mesh that the object itself had before.
@@ -112,8 +114,8 @@ class MeshTable:
         place = self._places.get(key)
         if key not in self._places or (place is not None and not attributes <= self._tried[place]):
             # What is made for the moment is read at once.
-            slices = Slices() if mesh is None else self._report.slices
-            with _mesh_of(source, mesh) as evaluated:
+            slices = Slices() if is_made_anew(mesh) else self._report.slices
+            with _read_of(source, mesh) as evaluated:
                 if key not in self._places:
                     self._add(source, evaluated, key, owner, slices)
                 place = self._places[key]
@@ -188,19 +190,12 @@ class MeshTable:
 
 
 @contextlib.contextmanager
-def _mesh_of(
+def _read_of(
     source: bpy.types.Object, mesh: bpy.types.Mesh | RoundSource | None
 ) -> Iterator[bpy.types.Mesh | RoundSource | None]:
-    """The evaluated mesh given, or else one that Blender makes of the object; None when it has no geometry."""
-    if mesh is not None:
+    """What is to be read of an object: the data given, or else a mesh that Blender makes of it; None without one."""
+    if mesh is None or isinstance(mesh, bpy.types.Mesh):
+        with rendered_mesh(source, mesh) as rendered:
+            yield rendered
+    else:
         yield mesh
-        return
-    try:
-        made = source.to_mesh()
-    except RuntimeError:
-        made = None
-    try:
-        yield made
-    finally:
-        if made is not None:
-            source.to_mesh_clear()

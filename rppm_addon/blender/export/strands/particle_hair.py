@@ -15,6 +15,8 @@ _KEY = np.dtype([("co", np.float32, 3), ("others", np.float32, 11), ("segments",
 """Blender's ParticleCacheKey."""
 _SETTINGS, _PARTICLES, _CHILDREN, _PARENT_PATHS, _CHILD_PATHS = 2, 3, 4, 7, 8
 """Places of pointers in Blender's ParticleSystem."""
+HAIRLESS_MODES = {"EDIT": "Edit Mode", "PARTICLE_EDIT": "Particle Edit"}
+"""Modes in which an object has no hair, and their titles."""
 _SAMPLES = 16
 """Strands whose keys are compared with what Blender's function says."""
 
@@ -36,14 +38,21 @@ class HairSystem:
         return self.end - self.first
 
 
-def hair_systems(source: bpy.types.Object, render: bool) -> Iterator[HairSystem]:
-    """Of an evaluated object, as a render or else a viewport shows it."""
+def hair_modifiers(source: bpy.types.Object, render: bool) -> Iterator[bpy.types.ParticleSystemModifier]:
+    """The modifiers of an evaluated object that bring hair as paths to a render, or else a viewport."""
     for modifier in source.modifiers:
         if modifier.type != "PARTICLE_SYSTEM" or not (modifier.show_render if render else modifier.show_viewport):
             continue
+        settings = modifier.particle_system.settings
+        if settings.type == "HAIR" and settings.render_type == "PATH":
+            yield modifier
+
+
+def hair_systems(source: bpy.types.Object, render: bool) -> Iterator[HairSystem]:
+    """The systems of an evaluated object with hair as a render, or else a viewport, shows it: as in Cycles none in
+    HAIRLESS_MODES."""
+    for modifier in () if source.mode in HAIRLESS_MODES else hair_modifiers(source, render):
         system, settings = modifier.particle_system, modifier.particle_system.settings
-        if settings.type != "HAIR" or settings.render_type != "PATH":
-            continue
         parents, children = len(system.particles), len(system.child_particles)
         first = parents if settings.child_type != "NONE" and children else 0
         steps = (1 << (settings.render_step if render else settings.display_step)) + 1

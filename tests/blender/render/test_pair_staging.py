@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tools/staging.py adds to files that cannot be rendered as they are."""
+"""What tools/pairs adds to files that cannot be rendered as they are."""
 
 import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 from tests.parity.scenes import DIFFUSE, ball, light, material, new_scene, place
-from tools import staging
+from tools.pairs import staging
 
 
 def test_camera_sees_everything():

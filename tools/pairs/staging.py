@@ -1,23 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes a .blend file ready to be rendered beside Cycles: ``python tools/staging.py SOURCE TARGET [PATH=VALUE ...]``.
+"""What a .blend file lacks to be rendered beside Cycles, added to the open file.
 
-TARGET is written where something is missing or set. A file without a camera gets one that sees all surfaces, and a sun
-where it has no lamp. Of a library of materials, a file whose surfaces use the fewest of what it has, BALLS materials
-are drawn, always the same, and put on balls above a floor (tests/parity/material_previews.py).
+A file without a camera gets one that sees all surfaces, and a sun where it has no lamp. Of a library of materials, a
+file whose surfaces use the fewest of what it has, BALLS materials are drawn, always the same, and put on balls above a
+floor (tests/parity/material_previews.py).
 """
 
 import random
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
+import bpy
+from mathutils import Vector
 
-import bpy  # noqa: E402 (the checkout, installed or not)
-from mathutils import Vector  # noqa: E402
-
-from rppm_addon.commands.data_paths import set_data_path, split_assignment  # noqa: E402
-from tests.parity.material_previews import Preview, build  # noqa: E402
+from tests.parity.material_previews import Preview, build
 
 BALLS = 10
 _WITH_SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
@@ -67,20 +62,9 @@ def add_camera(scene: bpy.types.Scene) -> None:
         scene.collection.objects.link(sun)
 
 
-def main() -> None:
-    """Stage a file."""
-    source, target, values = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3:]
-    bpy.ops.wm.open_mainfile(filepath=str(source), load_ui=False, use_scripts=False)
-    is_complete = bpy.context.scene.camera is not None
+def stage(source: Path) -> None:
+    """Give the open file what it lacks: a camera, light, or balls that show its materials."""
     if is_library():
         show_materials(source)
-    elif not is_complete:
+    elif bpy.context.scene.camera is None:
         add_camera(bpy.context.scene)
-    for path, value in map(split_assignment, values):
-        set_data_path((bpy.context.scene, bpy.data), path, value)
-    if values or not is_complete:
-        bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes as they are rendered, also in Edit Mode, where Blender keeps them in another form, and which are not."""
+
+import contextlib
+from collections.abc import Iterator
+
+import bpy
+
+
+def is_made_anew(data: object) -> bool:
+    """Whether rendered_mesh has Blender make a mesh of an object that has such data: none, or a mesh in Edit Mode."""
+    return data is None or (isinstance(data, bpy.types.Mesh) and data.is_editmode)
+
+
+def has_no_faces(mesh: bpy.types.Mesh) -> bool:
+    """Whether an evaluated mesh has nothing to be rendered, as far as it can tell: in Edit Mode it may count none."""
+    return len(mesh.polygons) == 0 and not mesh.is_editmode
+
+
+def is_gas_domain(source: bpy.types.Object) -> bool:
+    """Whether Cycles takes a mesh object for the smoke and fire in it, baked or not, and does not show its mesh."""
+    for modifier in source.modifiers:
+        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
+            return modifier.domain_settings.domain_type == "GAS"
+    return False
+
+
+@contextlib.contextmanager
+def rendered_mesh(source: bpy.types.Object, data: bpy.types.Mesh | None) -> Iterator[bpy.types.Mesh | None]:
+    """The mesh of an evaluated object with its vertices, faces and attributes, valid within the with block.
+
+    source: no object that Blender's iterator makes up for an instance. data: what an instance of the object has; None
+    has Blender make a mesh of the object. None is yielded where it has no geometry. In Edit Mode an evaluated mesh has
+    the attributes of the mesh under edit: as in Cycles, Blender makes one of the object, which leaves out the modifiers
+    that are off in Edit Mode.
+    """
+    if data is not None and not (data.is_editmode and data == source.data):
+        yield data
+        return
+    try:
+        made = source.to_mesh()
+    except RuntimeError:
+        made = None
+    try:
+        yield made
+    finally:
+        if made is not None:
+            source.to_mesh_clear()
