@@ -22,6 +22,7 @@ from .node_rays import RAYCAST
 from .nodes import KINDS
 from .pieces import in_pieces
 from .subsurface import has_subsurface
+from .transparency import asks_for_shadow_rays
 
 LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
 """Rec.709: how a color becomes a number, measured in Cycles."""
@@ -142,6 +143,8 @@ class _Compiler:
             text += '#include "materials/dispersion.glsl"\n'
             place = self._place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
             scope.lines.append(f"inverse_abbe_number = constant_float(first + {place}u);")
+        if asks_for_shadow_rays(self._graph):
+            text += '#include "materials/shadow_rays.glsl"\n'
         if has_subsurface(self._graph):
             text += '#include "materials/subsurface.glsl"\n'
         if self._graph.normal is not None:

@@ -14,19 +14,20 @@ MATERIAL = Record(
     medium_emission="vec3",
     first_constant="uint",
     opaque_shadow="uint",
+    passes_shadow_rays="uint",
     depends_on_view="uint",
     pass_index="uint",
     medium="uint",
     medium_bits="uint",
     unused0="uint",
     unused1="uint",
-    unused2="uint",
 )
 """A material: the program that evaluates its node graph, and where its constants start in MaterialData; whether lights
-shine through where it is transparent (0) or not (1); whether what it scatters depends on where it is seen from (1); its
-index for compositors; and the number of the medium inside, from 1 on, 0 where there is none. ``medium_absorption``, in
-1/m, and ``medium_emission``, in W/(m^3 sr), are not of this material: item n - 1 has those of medium n.
-``medium_bits``: of the number of a medium in a path's flags, the same everywhere."""
+shine through where it is transparent (0) or not (1), and whether shadow rays find that light (1) or photons alone do
+(0); whether what it scatters depends on where it is seen from (1); its index for compositors; and the number of the
+medium inside, from 1 on, 0 where there is none. ``medium_absorption``, in 1/m, and ``medium_emission``, in
+W/(m^3 sr), are not of this material: item n - 1 has those of medium n. ``medium_bits``: of the number of a medium in a
+path's flags, the same everywhere."""
 MEDIA_BITS = 20
 """Bits that paths have for the numbers of the media that they are in (shaders/materials/medium.glsl)."""
 MOST_MEDIA = (1 << MEDIA_BITS // 2) - 1

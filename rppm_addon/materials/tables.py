@@ -31,6 +31,7 @@ from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LightSurface
 from .interiors import Interior
 from .records import IMAGE_ENTRY, MATERIAL, MOST_MEDIA, TexelFormat
+from .transparency import passes_shadow_rays
 from .view_dependence import depends_on_view
 
 
@@ -97,6 +98,8 @@ class MaterialTables(BufferSet):
         """By index, those whose inside is filled."""
         self.media_emit = False
         """Whether any medium shines."""
+        self.any_passes_shadow_rays = False
+        """Whether shadow rays may pass the surfaces of a material."""
         self.displacing: dict[int, DisplacingGraph] = {}
         """By index, those materials that move vertices."""
         self.users: dict[str, list[str]] = {}
@@ -147,9 +150,13 @@ class MaterialTables(BufferSet):
             record["program"] = number[graph.text]
             record["first_constant"] = layout.add(material.graph, graph)
             record["opaque_shadow"] = not material.transparent_shadow
+            record["passes_shadow_rays"] = (
+                material.transparent_shadow and material.interior is None and passes_shadow_rays(material.graph)
+            )
             record["pass_index"] = material.pass_index
             record["depends_on_view"] = depends_on_view(material.graph)
         self.any_depends_on_view = bool(records["depends_on_view"].any())
+        self.any_passes_shadow_rays = bool(records["passes_shadow_rays"].any())
         self.displacing = self._compile_displacements(scene.materials, layout)
         media = self._media = [Interior.of(material.interior) for material in materials]
         others = [("The world", scene.world.graph)]

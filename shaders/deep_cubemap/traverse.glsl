@@ -45,6 +45,15 @@ struct CubemapWalk {
     bool any_hit;         // the first hit found will do
 };
 
+// Whether what casts no shadow is passed.
+bool is_shadow_ray(CubemapWalk walk) {
+#ifdef NEAREST_SHADOW
+    return true;
+#else
+    return walk.any_hit;
+#endif
+}
+
 bool is_done(CubemapWalk walk, Hit best, float distance) {
     return best.distance <= distance || (walk.any_hit && best.triangle != NO_TRIANGLE);
 }
@@ -64,14 +73,14 @@ void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
 #else
     const bool of_all = true;
 #endif
-    if (of_all && walk.any_hit && vertex0.w > 0.0) return;  // casts no shadow
+    if (of_all && is_shadow_ray(walk) && vertex0.w > 0.0) return;  // casts no shadow
 #ifdef ONE_SIDED_TRIANGLES
     vec3 vertex1 = triangle_vertex(3u * triangle + 1u).xyz, vertex2 = triangle_vertex(3u * triangle + 2u).xyz;
     bool from_within = dot(cross(vertex1 - vertex0.xyz, vertex2 - vertex0.xyz), walk.direction) > 0.0;
     if (from_within && is_one_sided(vertex0.w)) return;
 #endif
 #ifdef SHADOW_LINKING
-    if (walk.any_hit && !has_set(shadow_sets, shadow_set_of(vertex0.w))) return;
+    if (is_shadow_ray(walk) && !has_set(shadow_sets, shadow_set_of(vertex0.w))) return;
 #endif
 #ifdef DEEP_CUBEMAP_COUNT
     ++walk_counts.y;

@@ -53,6 +53,21 @@ LobeSample of_fiber(LobeSample sampled, MicrofacetLobe lobe, vec3 geometric, vec
     return sampled;
 }
 
+// Viewers of all directions see a diffuse surface alike, so that photons leave it by the cosine to the surface itself;
+// the shading normal says how much of the light counts.
+Scattering scatter_diffuse(Closure closure, bool reflected, vec3 arrival, vec2 disk) {
+    vec3 geometric = unpack_unit_vector(closure.geometric_normal), normal = unpack_unit_vector(closure.diffuse_normal);
+    float counts = min(max(dot(normal, arrival), 0.0) / max(dot(geometric, arrival), 1e-6), MOST_BY_NORMALS);
+    if (!reflected) {
+        geometric = -geometric;
+        normal = -normal;
+    }
+    uint part = reflected ? PART_DIFFUSE : PART_TRANSLUCENT;
+    vec3 direction = cosine_hemisphere(geometric, disk);
+    return Scattering(direction, counts * diffuse_share(closure, part, normal, direction, arrival), geometric,
+                      !reflected, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true, part, 1.0);
+}
+
 // One event by its share of the flux; what is left of the probability is absorption.
 Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool from_light,
                    inout RandomSequence random) {
@@ -103,17 +118,8 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool fr
         result = Scattering(-arrival, closure.transparent * (norm / transparent), arrival, true, 0u, 0u, false,
                             PART_TRANSPARENT, 1.0);
     else {
-        // Viewers of all directions see a diffuse surface alike, so that photons leave it by the cosine to the surface
-        // itself; the shading normal says how much of the light counts.
-        vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-        vec3 normal = unpack_unit_vector(closure.diffuse_normal);
-        float counts = min(max(dot(normal, arrival), 0.0) / max(dot(geometric, arrival), 1e-6), MOST_BY_NORMALS);
-        if (!reflected) { geometric = -geometric; normal = -normal; }
-        uint part = reflected ? PART_DIFFUSE : PART_TRANSLUCENT;
-        result = Scattering(cosine_hemisphere(geometric, disk), vec3(0.0), geometric, !reflected,
-                            PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true, part, 1.0);
-        result.weight = diffuse_share(closure, part, normal, result.direction, arrival)
-                        * (counts * norm / (reflected ? diffuse : translucent));
+        result = scatter_diffuse(closure, reflected, arrival, disk);
+        result.weight *= norm / (reflected ? diffuse : translucent);
     }
     return result;
 }

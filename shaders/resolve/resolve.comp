@@ -70,7 +70,8 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     surface.instance = attributes[hit.triangle].instance;
     // Where lights are sampled, no path has come to them, and it is of no kind, as in Cycles.
     surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags)
-                : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE : 0u;
+                : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE
+                : parameters.path_kind == PATH_OF_SHADOW ? RAY_SHADOW : 0u;
     surface.ray_length = straight_length(index) + hit.distance;
     surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
     surface.transparent_depth = 0u;
@@ -118,8 +119,10 @@ void hold_out_and_catch(Surface surface, ShadingInstance instance, bool unseen, 
 }
 
 // What of the light an object lets pass, by whom it may be seen. flags: of the path.
-void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool unseen, bool opaque_shadow,
+void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool unseen, uint material,
                     inout ClosureBuilder builder) {
+    bool opaque_shadow = materials[material].opaque_shadow != 0u,
+         passes_shadow_rays = materials[material].passes_shadow_rays != 0u;
     bool camera = parameters.path_kind == PATH_OF_CAMERA, photon = parameters.path_kind == PATH_OF_PHOTON;
     // Light reaches what casts no shadow, and what lies behind it too.
     bool shadowless = photon && (flags & PHOTON_DIRECT) != 0u && (instance.visibility & RAY_SHADOW) == 0u;
@@ -130,9 +133,40 @@ void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool 
     if (passes || (builder.closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) builder.closure.transparent = vec3(1.0);
     else if (opaque) builder.closure.transparent = vec3(0.0);
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
-    bool leaves_direct_light = shadowless || (camera && (unseen || (instance.visibility & RAY_SHADOW) == 0u));
+    // Shadow rays bring light through what is transparent, and photons and paths leave it to them.
+    bool leaves_direct_light = shadowless || passes_shadow_rays
+        || (camera && (unseen || (instance.visibility & RAY_SHADOW) == 0u));
     builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u)
                              | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
+}
+
+#ifdef ASKS_FOR_SHADOW_RAYS
+// What photons straight from their light leave of it to what lies behind: the light that shadow rays bring there.
+vec3 passed_by_shadow_rays(Surface surface, uint first_constant, float u_choice) {
+    surface.ray = RAY_SHADOW;
+    ClosureBuilder builder = builder_at(surface, u_choice);
+    evaluate_material(surface, first_constant, builder);
+#ifdef MATERIAL_SUBSURFACE
+    material_subsurface = NO_SUBSURFACE;
+#endif
+    return builder.closure.transparent;
+}
+#endif
+
+// flags: of the path.
+void evaluate_nodes(Surface surface, uint material, uint flags, float u_choice, inout ClosureBuilder builder) {
+    uint first_constant = materials[material].first_constant;
+#ifdef ASKS_FOR_SHADOW_RAYS
+    // First, since lobes may lie where those of the other closure do.
+    bool passes_light = parameters.path_kind == PATH_OF_PHOTON && (flags & PHOTON_DIRECT) != 0u
+                     && materials[material].passes_shadow_rays != 0u;
+    vec3 passed = vec3(0.0);
+    if (passes_light) passed = passed_by_shadow_rays(surface, first_constant, u_choice);
+#endif
+    evaluate_material(surface, first_constant, builder);
+#ifdef ASKS_FOR_SHADOW_RAYS
+    if (passes_light) builder.closure.transparent = passed;
+#endif
 }
 
 // Whether light that a camera path meets shines on where its ray began; the camera sees all.
@@ -212,7 +246,7 @@ void main() {
 #endif
     bool unseen = parameters.path_kind == PATH_OF_CAMERA
         && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
-    if (!unseen) evaluate_material(surface, materials[material].first_constant, builder);
+    if (!unseen) evaluate_nodes(surface, material, flags, next_random(random), builder);
 #ifdef MATERIAL_SUBSURFACE
     hold_subsurface_of(instance, builder);
 #endif
@@ -227,7 +261,7 @@ void main() {
 #endif
     hold_out_and_catch(surface, instance, unseen, builder);
     if (!shines_there(surface, instance, ray.source_triangle)) builder.closure.emission = vec3(0.0);
-    let_light_pass(surface, instance, flags, unseen, materials[material].opaque_shadow != 0u, builder);
+    let_light_pass(surface, instance, flags, unseen, material, builder);
     builder.closure.position = surface.position;
     builder.closure.triangle = hit.triangle;
     builder.closure.material = material;

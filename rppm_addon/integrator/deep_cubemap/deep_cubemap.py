@@ -308,6 +308,18 @@ class DeepCubemap(BufferSet):
         buffers = {"Rays": rays, "LightTriangles": targets, "Visibility": visibility, **(linking or {})}
         self._trace(kernel, buffers, living)
 
+    def shadow_hits(
+        self,
+        rays: moderngl.Buffer,
+        targets: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        living: LivingPaths,
+        linking: Mapping[str, moderngl.Buffer] | None = None,
+    ) -> None:
+        """Find the nearest hits of shadow rays as trace does, of what counts for occluded."""
+        kernel = "deep_cubemap/shadow_hits_linked.comp" if linking else "deep_cubemap/shadow_hits.comp"
+        self._trace(kernel, {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}, living)
+
     @property
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
         """Buffers by block name that kernels which include deep_cubemap/traverse.glsl need."""

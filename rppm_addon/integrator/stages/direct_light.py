@@ -13,7 +13,7 @@ from ...scene.settings import DirectLight as DirectLightMode
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
-from ..common.records import LIGHT_SPLIT, RAY
+from ..common.records import CLOSURE, HIT, LIGHT_SPLIT, RAY
 from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels, split_pixels
 from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..device_scene.stage_context import StageContext
@@ -51,11 +51,17 @@ class DirectLight(BufferSet):
     visibility = StorageBuffer("visibility", "uint", band_pixels)
     triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels)
     living_rays = PathList("living shadow rays", band_pixels)
+    # Of scenes with transparent surfaces.
+    _hits = StorageBuffer("hits of shadow rays", HIT)
+    _closures = StorageBuffer("closures that shadow rays pass", CLOSURE)
+    _passing = PathList("shadow rays that pass surfaces", to_keep=True)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._sample = library.compute("direct_light/sample.comp")
         self._soften = library.compute("direct_light/terminator.comp")
+        self._meet = library.compute("direct_light/meet.comp")
+        self._pass = library.compute("direct_light/pass.comp")
         self._add = library.compute("direct_light/add.comp")
         self._splits_light = _told_pixels(sizes) > 0
 
@@ -96,9 +102,12 @@ class DirectLight(BufferSet):
                     iteration.number,
                 )
                 linking = context.lights.linking_blocks(self.contributions.buffer)
-                context.deep_cubemap.occluded(
-                    self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
-                )
+                if context.materials.any_passes_shadow_rays:
+                    self._pass_surfaces(context, linking, iteration, segment)
+                else:
+                    context.deep_cubemap.occluded(
+                        self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
+                    )
                 living.run(
                     self._add,
                     {
@@ -108,6 +117,43 @@ class DirectLight(BufferSet):
                         "Radiances": importons.radiances.buffer,
                     },
                 )
+
+    def _pass_surfaces(
+        self,
+        context: StageContext,
+        linking: Mapping[str, moderngl.Buffer] | None,
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
+        """Trace shadow rays through transparent surfaces, which take of what they bring."""
+        rays, hits, closures, passing = self._rays, self._hits, self._closures, self._passing
+        for buffer in (hits, closures):
+            buffer.require_items(self.living_rays.most)
+        passing.require(self.living_rays.most, to_keep=True)
+        passing.take(self.living_rays, rays.buffer)
+        for _ in range(context.settings.camera_path_length):
+            context.deep_cubemap.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
+            met = {
+                "Hits": hits.buffer,
+                "Attributes": context.geometry.attributes.buffer,
+                "Materials": context.materials.buffers["Materials"],
+                "ShadowRays": rays.buffer,
+                "Visibility": self.visibility.buffer,
+            }
+            passing.run(self._meet, met)
+            passing.keep(rays.buffer)
+            if passing.known_empty:
+                return
+            context.resolve.shadow_rays(rays.buffer, hits.buffer, closures.buffer, passing, iteration.number, segment)
+            passed = {
+                "Closures": closures.buffer,
+                "ShadowRays": rays.buffer,
+                "Contributions": self.contributions.buffer,
+            }
+            passing.run(self._pass, passed)
+            passing.keep(rays.buffer)
+            if passing.known_empty:
+                return
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""

@@ -53,6 +53,7 @@ class _PathKind(enum.IntEnum):
     NONE = 0
     CAMERA = 1
     PHOTON = 2
+    SHADOW = 3
 
 
 @dataclass(frozen=True)
@@ -194,24 +195,48 @@ class Resolve(BufferSet):
         are of no kind. has_adjoint_queries: the same hits are seen once more, from where photons go; what chance
         decides is decided anew.
         """
-        buffers = {
-            **self._buffers,
-            "Rays": rays,
-            "Hits": hits,
-            "Closures": closures,
-            "PathFlags": camera_paths.paths if camera_paths else photon_paths or rays,
-            "AovValues": camera_paths.aovs if camera_paths else closures,  # without camera paths nothing is written
-        }
-        parameters = {
-            **self._parameters,
-            "iteration": iteration,
-            "segment": segment,
-            "has_adjoint_queries": has_adjoint_queries,
-            "ray_stride": 0,
-            "ray_level": 0,
-            "ray_levels": 0,
-            "path_kind": _PathKind.CAMERA if camera_paths else _PathKind.PHOTON if photon_paths else _PathKind.NONE,
-        }
+        self._resolve(
+            {
+                "Rays": rays,
+                "Hits": hits,
+                "Closures": closures,
+                "PathFlags": camera_paths.paths if camera_paths else photon_paths or rays,
+                "AovValues": camera_paths.aovs if camera_paths else closures,  # without camera paths none are written
+            },
+            living,
+            {
+                "iteration": iteration,
+                "segment": segment,
+                "has_adjoint_queries": has_adjoint_queries,
+                "path_kind": _PathKind.CAMERA if camera_paths else _PathKind.PHOTON if photon_paths else _PathKind.NONE,
+            },
+        )
+
+    def shadow_rays(
+        self,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        closures: moderngl.Buffer,
+        living: LivingPaths,
+        iteration: int,
+        segment: int,
+    ) -> None:
+        """Fill the closures of what living shadow rays meet, as run does."""
+        self._resolve(
+            {"Rays": rays, "Hits": hits, "Closures": closures, "PathFlags": rays, "AovValues": closures},
+            living,
+            {
+                "iteration": iteration,
+                "segment": segment,
+                "has_adjoint_queries": False,
+                "path_kind": _PathKind.SHADOW,
+            },
+        )
+
+    def _resolve(self, blocks: dict[str, moderngl.Buffer], living: LivingPaths, told: dict[str, object]) -> None:
+        buffers = {**self._buffers, **blocks}
+        parameters = {**self._parameters, **told, "ray_stride": 0, "ray_level": 0, "ray_levels": 0}
+        closures = blocks["Closures"]
 
         # A list of paths is laid out as the order of a single program's hits.
         order = living.buffer if len(self._programs) == 1 else self._order_by_program(buffers, living)

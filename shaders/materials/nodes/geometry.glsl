@@ -137,7 +137,7 @@ void node_camera(Surface surface, out vec3 view_vector, out float view_z_depth, 
     view_z_depth = abs(at.z);
 }
 
-// Nothing but the camera path's own rays has a depth; rays to lights do not ask materials at all.
+// Nothing but the camera path's own rays has a depth.
 void node_light_path(Surface surface, out float is_camera_ray, out float is_shadow_ray, out float is_diffuse_ray,
                      out float is_glossy_ray, out float is_singular_ray, out float is_reflection_ray,
                      out float is_transmission_ray, out float is_volume_scatter_ray, out float ray_length,
@@ -149,7 +149,8 @@ void node_light_path(Surface surface, out float is_camera_ray, out float is_shad
     is_singular_ray = (surface.ray & RAY_SINGULAR) != 0u ? 1.0 : 0.0;
     is_transmission_ray = (surface.ray & RAY_TRANSMISSION) != 0u ? 1.0 : 0.0;
     is_reflection_ray = is_glossy_ray > 0.0 || is_diffuse_ray > 0.0 ? 1.0 - is_transmission_ray : 0.0;
-    is_shadow_ray = is_volume_scatter_ray = portal_depth = 0.0;
+    is_shadow_ray = (surface.ray & RAY_SHADOW) != 0u ? 1.0 : 0.0;
+    is_volume_scatter_ray = portal_depth = 0.0;
     ray_length = surface.ray_length;
     ray_depth = float(surface.ray_depth);
     transparent_depth = float(surface.transparent_depth);

@@ -1,0 +1,21 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: TEXEL_BUFFERS=1
+// The nearest hit of each shadow ray on what casts shadows.
+layout(local_size_x = 64) in;
+#include "common/living_paths.glsl"
+#define SHADOW_RAYS
+#define NEAREST_SHADOW
+#include "deep_cubemap/traverse.glsl"
+
+layout(std430, binding = 1) restrict readonly buffer Rays;
+layout(std430, binding = 2) restrict writeonly buffer Hits;
+layout(std430, binding = 5) restrict readonly buffer LightTriangles;
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    target_triangle = light_triangles[index];
+    hits[index] = deep_cubemap_hit(rays[index]);
+}

@@ -1,0 +1,28 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: TEXEL_BUFFERS=1
+// The nearest hit of each shadow ray on what may be in the way of the light that it goes to.
+layout(local_size_x = 64) in;
+#include "common/living_paths.glsl"
+#include "common/light_sets.glsl"
+#include <LightLink>
+uvec2 shadow_sets;  // bits of those that are in the ray's way
+#define SHADOW_LINKING
+#define SHADOW_RAYS
+#define NEAREST_SHADOW
+#include "deep_cubemap/traverse.glsl"
+
+layout(std430, binding = 1) restrict readonly buffer Rays;
+layout(std430, binding = 2) restrict writeonly buffer Hits;
+layout(std430, binding = 3) restrict readonly buffer Contributions;
+layout(std430, binding = 4) restrict readonly buffer LightLinks;
+layout(std430, binding = 5) restrict readonly buffer LightTriangles;
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    target_triangle = light_triangles[index];
+    shadow_sets = light_links[code_number(contributions[index].w)].shadow_sets;
+    hits[index] = deep_cubemap_hit(rays[index]);
+}

@@ -1,0 +1,26 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What shadow rays meet: nothing, and the light arrives; an opaque surface; or one that may be transparent, which is to
+// be resolved. Rays are inactive once that is settled.
+
+layout(local_size_x = 64) in;
+
+#include <Hit>
+#include "common/constants.glsl"
+#include "common/living_paths.glsl"
+layout(std430, binding = 0) readonly buffer Hits;
+layout(std430, binding = 1) readonly buffer Attributes;
+layout(std430, binding = 2) readonly buffer Materials;
+layout(std430, binding = 3) buffer ShadowRays;
+layout(std430, binding = 4) writeonly buffer Visibility;
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    uint triangle = hits[index].triangle;
+    bool free = triangle == NO_TRIANGLE;
+    // Of more surfaces than are asked for none lets light pass.
+    visibility[index] = free ? 1u : 0u;
+    if (free || materials[attributes[triangle].material].passes_shadow_rays == 0u)
+        shadow_rays[index].maximum_distance = 0.0;
+}

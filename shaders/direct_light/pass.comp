@@ -1,0 +1,32 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shadow rays go on beyond a transparent surface, with what it lets pass.
+
+layout(local_size_x = 64) in;
+
+#include "common/constants.glsl"
+#include "common/geometry.glsl"
+#include "common/living_paths.glsl"
+layout(std430, binding = 0) readonly buffer Closures;
+layout(std430, binding = 1) buffer ShadowRays;
+layout(std430, binding = 2) buffer Contributions;
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    vec3 passed = closures[index].transparent;
+    Ray ray = shadow_rays[index];
+    contributions[index].rgb *= passed;
+    shadow_rays[index].maximum_distance = 0.0;
+    if (!(largest(passed) > 0.0)) return;
+    // Closures' normals look back along the ray.
+    vec3 normal = -unpack_unit_vector(closures[index].geometric_normal);
+    Ray beyond = Ray(closures[index].position + closures[index].ray_offset * normal, closures[index].triangle,
+                     ray.direction, INFINITY_DISTANCE);
+    if (ray.maximum_distance < INFINITY_DISTANCE) {
+        vec3 to_end = ray.origin + ray.maximum_distance * ray.direction - beyond.origin;
+        beyond.maximum_distance = dot(to_end, ray.direction);
+        if (beyond.maximum_distance > 0.0) beyond.direction = normalize(to_end);
+    }
+    shadow_rays[index] = beyond;
+}
