@@ -190,8 +190,8 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
     }
 }
 
-// The ray and the flux that a path goes on with, if it does; path_flags are those that it came with, away how far.
-vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, vec3 arrival, float away, vec3 flux) {
+// The ray and the flux that a path goes on with, if it does; path_flags are those that it came with.
+vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, vec3 arrival, vec3 flux) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
@@ -213,7 +213,7 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
                    & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
     if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
-    photon_differentials[index].before = straight ? away : 0.0;
+    if (!straight) photon_differentials[index].before = 0.0;
     if (scattering.transmitted) path_flags = cross_surface(path_flags, closure.material, closure_backfacing(closure));
     float offset = closures[index].ray_offset;
     vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
@@ -267,5 +267,6 @@ void main() {
     // Written before the path goes on: what it needs of registers then is more.
     float away = differential.before + closure.distance;
     photons[slot] = Photon(closure.position, flags, flux, closure.geometric_normal, arrival, away, vec3(0.0), 0u);
-    if (!ends) photons[slot].scattered_flux = go_on(index, closure, path_flags, neighbors_known, arrival, away, flux);
+    photon_differentials[index].before = away;
+    if (!ends) photons[slot].scattered_flux = go_on(index, closure, path_flags, neighbors_known, arrival, flux);
 }
