@@ -59,7 +59,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             fewer = learning.fewer(iteration)
             stages.caustic_radii.narrow(estimator.sums, band, iteration, radii, fewer, context.timers)
     if iteration.is_tallied:
-        learning.tally(context, photons, photons_taken)
+        learning.tally(context, photons, estimator.photon_list, iteration, photons_taken)
     yield
 
 

@@ -265,8 +265,9 @@ void main() {
     if (parameters.splits_light != 0u)
         light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    bool front = dot(lit_normal(closure), arriving.direction) > 0.0;
-    vec3 origin = closure.position + (front ? closure.ray_offset : -closure.ray_offset) * geometric;
+    float offset = closures[index].ray_offset;
+    if (dot(lit_normal(closure), arriving.direction) <= 0.0) offset = -offset;
+    vec3 origin = closure.position + offset * geometric;
     Ray shadow = Ray(origin, closure.triangle, arriving.direction, INFINITY_DISTANCE);
     if (arriving.distance < INFINITY_DISTANCE) {
         // From the moved origin to the light.

@@ -248,7 +248,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     else if (diffuse) {
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
-        found_weight = diffuse_factor(closure, facing, viewer, event.direction)
+        found_weight = diffuse_factor(closure, facing, viewer, event.direction, !event.transmitted)
                      * terminator_factor(closure.flags, facing, event.direction);
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
@@ -276,7 +276,8 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     if (!(largest(path.throughput) > 0.0) || (event.transmitted ? side >= 0.0 : side <= 0.0)) return;
     if (event.transmitted) path.flags = cross_surface(path.flags, closure);
     camera_paths[index] = path;
-    vec3 origin = closure.position + (side > 0.0 ? closure.ray_offset : -closure.ray_offset) * geometric;
+    float offset = closures[index].ray_offset;
+    vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
     // Behind a catcher only the world is seen.
     float reach = (closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u ? NO_REACH : INFINITY_DISTANCE;
     rays[index] = Ray(origin, closure.triangle, event.direction, reach);

@@ -116,6 +116,8 @@ class Photons(BufferSet):
             self.first_hits.find(context, rays, hits, self._living)
             if context.lights.has_falloff:
                 self._emission.apply_falloff(context.lights, rays, hits, paths, self.photon_count, iteration)
+            if context.lights.are_cut:
+                self._emission.cut_soft_lights(context, rays, hits, paths, self._living)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
 
     def trace(self, context: StageContext) -> bool:

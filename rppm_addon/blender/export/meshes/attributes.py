@@ -170,7 +170,8 @@ def _smooth_normals(exported: Mesh, mesh: bpy.types.Mesh) -> MeshAttribute | Non
         _, normals = _vertices(mesh)
         values[:, :3] = normals[exported.corner_vertices]
         return MeshAttribute(AttributeDomain.CORNER, values)
-    values[:, :3] = exported.corner_normals
+    flat = ~exported.corner_normals.any(axis=1, keepdims=True)  # whose vertices move with those of the faces beside
+    values[:, :3] = np.where(flat, _vertices(mesh)[1][exported.corner_vertices], exported.corner_normals)
     sharp = np.zeros(len(mesh.polygons), bool)
     if "sharp_face" in mesh.attributes:
         mesh.attributes["sharp_face"].data.foreach_get("value", sharp)
