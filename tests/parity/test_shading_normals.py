@@ -9,7 +9,19 @@ import pytest
 from mathutils import Vector
 
 from .comparison import Tolerance, compare
-from .scenes import DIFFUSE, GLASS, GLOSSY, PRINCIPLED, light, material, new_scene, place, plane, render_cycles, render_rppm
+from .scenes import (
+    DIFFUSE,
+    GLASS,
+    GLOSSY,
+    PRINCIPLED,
+    light,
+    material,
+    new_scene,
+    place,
+    plane,
+    render_cycles,
+    render_rppm,
+)
 
 COLOR = (0.8, 0.6, 0.4)
 SIZE = 6
