@@ -24,8 +24,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         view = jittered_view(context.scene.camera, context.settings, band, iteration)
         camera_hits.find(context, importons, view, band, iteration)  # DirectCameraHits
         yield
-        for segment in range(context.settings.camera_path_length):  # TraceImportons
-            if segment > 0 and not importons.trace(context):
+        for segment in range(context.settings.camera_segments):  # TraceImportons
+            if segment > 0 and not importons.trace(context, segment):
                 break
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, iteration, segment)
@@ -67,8 +67,8 @@ def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration)
     """DirectPhotonHits and TracePhotons, in steps."""
     photons = stages.photons
     photons.emit(context, iteration)
-    for segment in range(photons.segments):
-        if segment > 0 and not photons.trace(context):
+    for segment in range(context.settings.photon_segments):
+        if segment > 0 and not photons.trace(context, segment):
             break
         photons.resolve(context, iteration, segment)
         photons.scatter(context, stages.subsurface, iteration, segment)

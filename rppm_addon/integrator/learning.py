@@ -97,7 +97,7 @@ class Learning:
     def tally(self, context: StageContext, photons: Photons, photons_taken: list[np.ndarray]) -> None:
         """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band."""
         with context.timers.stage("learning"):
-            context.lights.tally(photons.photons.buffer, photons.segments)
+            context.lights.tally(photons.stored_blocks, photons.slots)
             self.diffused_photons_found = None
             if photons_taken:
                 counts = np.concatenate(photons_taken)[at_pixels(self.leaves_importon, *self._size)]
