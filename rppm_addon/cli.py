@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from .commands.arguments import parser
 from .commands.compiling import compile_programs
 from .commands.farm.command import farm
+from .commands.fluid_domains import end_before_blender_aborts
 from .commands.interruption import INTERRUPTED
 from .commands.options import (
     is_blend,
@@ -42,6 +43,12 @@ def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECO
 
     line_seconds: between lines of progress, where standard error is no terminal.
     """
+    status = _run(arguments, line_seconds)
+    end_before_blender_aborts(status)
+    return status
+
+
+def _run(arguments: Sequence[str] | None, line_seconds: float) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):  # names of files may have letters that a pipe's encoding has not
         sys.stdout.reconfigure(errors="backslashreplace")
     options = parser().parse_args(arguments)

@@ -19,6 +19,8 @@ from ..scene import Scene
 from ..scene.errors import RppmError, SceneError, SettingsError
 from ..session.observers import RenderObserver, observing
 from .data_paths import set_data_path
+from .fluid_domains import note_fluid_domains
+from .freestyle import add_strokes
 from .picture_set import PictureSet
 
 ENGINE = "RPPM"
@@ -95,6 +97,7 @@ class BlendFile:
         """Go to a frame."""
         scene = self._bpy.context.scene
         if scene.frame_current != frame:
+            note_fluid_domains(self._bpy, frame)
             scene.frame_set(frame)
         self.report.frame = frame
 
@@ -109,6 +112,7 @@ class BlendFile:
 
     def write(self, pictures: PictureSet) -> None:
         """Write what has been rendered: the recorders EXR, Blender PNG. Raises RppmError."""
+        add_strokes(self._bpy, pictures)
         pictures.write_files()
         for path, frame in pictures.pngs:
             if pictures.is_single:
@@ -202,6 +206,7 @@ def _prepare(bpy: ModuleType, request: BlendRequest) -> None:
     if request.scene:
         _choose_scene(bpy, request.scene)
     scene = bpy.context.scene
+    note_fluid_domains(bpy, scene.frame_current if request.frame is None else request.frame)
     if request.frame is not None:
         scene.frame_set(request.frame)
     if request.resolution is not None:

@@ -23,6 +23,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         stages.clear(context)
         view = jittered_view(context.scene.camera, context.settings, band, iteration)
         camera_hits.find(context, importons, view, band, iteration)  # DirectCameraHits
+        stages.media.enter_camera_paths(context, importons, iteration)
         yield
         for segment in range(context.settings.camera_segments):  # TraceImportons
             if segment > 0 and not importons.trace(context, segment):
@@ -59,7 +60,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             fewer = learning.fewer(iteration)
             stages.caustic_radii.narrow(estimator.sums, band, iteration, radii, fewer, context.timers)
     if iteration.is_tallied:
-        learning.tally(context, photons, photons_taken)
+        learning.tally(context, photons, estimator.photon_list, iteration, photons_taken)
     yield
 
 
@@ -67,6 +68,7 @@ def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration)
     """DirectPhotonHits and TracePhotons, in steps."""
     photons = stages.photons
     photons.emit(context, iteration)
+    stages.media.enter_photons(context, photons, iteration)
     for segment in range(context.settings.photon_segments):
         if segment > 0 and not photons.trace(context, segment):
             break

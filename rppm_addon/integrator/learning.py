@@ -9,7 +9,7 @@ from ..scene.meshes import RayVisibility
 from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .common.known import known
-from .common.photon_counts import PhotonCounts, later_photons
+from .common.photon_counts import PhotonCounts, later_photons, photons_of_use
 from .density_estimation.radii import (
     Radii,
     expected_photons,
@@ -69,16 +69,20 @@ class Learning:
         """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
 
     def radii_for(self, iteration: Iteration, listed: PhotonList) -> Radii:
-        """Those of an iteration whose stored photons are known. The first one's say how many later ones have."""
+        """Those of an iteration whose stored photons are known. The first one's say how many later ones have, until
+        tally knows which lights these are of."""
         if iteration.number == 1:
-            if self._automatic:
-                by_photons = listed.count - listed.diffused_count if self._by_ray else listed.count
-                first, (columns, rows) = self.photon_counts.first, self._size
-                later = later_photons(first, columns * rows, by_photons, listed.count)
-                self.photon_counts = PhotonCounts(first, later)
+            self._count_later_photons(listed.count, listed.count - listed.diffused_count)
             bounds = self._geometry.bounds_low, self._geometry.bounds_high
             self.wide_radius = min(wide_radius(listed.diffused_count, self._expected, *bounds), self.widest_radius)
         return self.radii(iteration.number)
+
+    def _count_later_photons(self, listed: float, caustic: float) -> None:
+        """Follow the photons of the first iteration that importons might take, and the caustic ones among them."""
+        if self._automatic:
+            first, (columns, rows) = self.photon_counts.first, self._size
+            later = later_photons(first, columns * rows, caustic if self._by_ray else listed, listed)
+            self.photon_counts = PhotonCounts(first, later)
 
     def radii(self, number: int) -> Radii:
         """Those of the iteration of this number, from 1, as far as it is known."""
@@ -94,10 +98,23 @@ class Learning:
         shares = self._shares_world_light and lights.world_visibility == RayVisibility.ALL
         return lights.world_photon_flux if shares else 0.0
 
-    def tally(self, context: StageContext, photons: Photons, photons_taken: list[np.ndarray]) -> None:
-        """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band."""
+    def tally(
+        self,
+        context: StageContext,
+        photons: Photons,
+        listed: PhotonList,
+        iteration: Iteration,
+        photons_taken: list[np.ndarray],
+    ) -> None:
+        """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band. Those of
+        the first say how many later ones have, as far as lights differ in what they are good for."""
         with context.timers.stage("learning"):
             context.lights.tally(photons.stored_blocks, photons.slots)
+            light_count = len(context.lights.table)
+            if iteration.number == 1 and self._automatic and self._by_ray and listed.count and light_count > 1:
+                lights = context.lights.buffers["Lights"]
+                by_light = listed.by_light(photons.photons.buffer, lights, light_count)
+                self._count_later_photons(*photons_of_use(by_light))
             self.diffused_photons_found = None
             if photons_taken:
                 counts = np.concatenate(photons_taken)[at_pixels(self.leaves_importon, *self._size)]

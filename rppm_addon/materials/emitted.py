@@ -5,6 +5,8 @@ import enum
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..scene.node_graphs import Link, NodeGraph, ShaderNode
 from .nodes import KINDS
 
@@ -15,7 +17,7 @@ _EMITTING = {
     "volume_absorption": ("density",),
     "bsdf_principled": ("emission_color", "emission_strength"),
 }
-"""Shader nodes that emit where all of these inputs are above 0."""
+"""Shader nodes that emit where none of these inputs is 0."""
 
 
 class Emits(enum.Enum):
@@ -104,7 +106,12 @@ def light_variation(graph: NodeGraph) -> LightVariation:
 
 def _may_emit(node: ShaderNode) -> bool:
     names = _EMITTING.get(node.kind, ())
-    return bool(names) and all(is_positive(node, name) for name in names)
+    return bool(names) and all(_may_be_nonzero(node, name) for name in names)
+
+
+def _may_be_nonzero(node: ShaderNode, name: str) -> bool:
+    value: Any = node.inputs.get(name, KINDS[node.kind].inputs[name][1])
+    return isinstance(value, Link) or bool(np.any(value))
 
 
 def is_positive(node: ShaderNode, name: str) -> bool:

@@ -9,23 +9,29 @@ from ..gl.storage_blocks import StorageBlock
 
 MATERIAL = Record(
     "Material",
-    absorption="vec3",
+    medium_absorption="vec3",
     program="uint",
+    medium_emission="vec3",
     first_constant="uint",
     opaque_shadow="uint",
     depends_on_view="uint",
     pass_index="uint",
     medium="uint",
-    material_of_medium="uint",
+    medium_bits="uint",
     unused0="uint",
     unused1="uint",
+    unused2="uint",
 )
-"""A material: absorption of its interior in 1/m, the program that evaluates its node graph, and where its constants
-start in MaterialData; whether lights shine through where it is transparent (0) or not (1); whether what it scatters
-depends on where it is seen from (1); its index for compositors; and the number of its interior among those that absorb,
-from 1 on, 0 where it does not. ``material_of_medium`` is not of this material: item n - 1 has that of medium n."""
-MOST_MEDIA = 1023
-"""Interiors that absorb; paths have ten bits for the number of one (shaders/materials/medium.glsl)."""
+"""A material: the program that evaluates its node graph, and where its constants start in MaterialData; whether lights
+shine through where it is transparent (0) or not (1); whether what it scatters depends on where it is seen from (1); its
+index for compositors; and the number of the medium inside, from 1 on, 0 where there is none. ``medium_absorption``, in
+1/m, and ``medium_emission``, in W/(m^3 sr), are not of this material: item n - 1 has those of medium n.
+``medium_bits``: of the number of a medium in a path's flags, the same everywhere."""
+MEDIA_BITS = 20
+"""Bits that paths have for the numbers of the media that they are in (shaders/materials/medium.glsl)."""
+MOST_MEDIA = (1 << MEDIA_BITS // 2) - 1
+"""Media of a scene: paths can be in two at once, and in more where there are fewer."""
+Constants("Media", MEDIA_BITS=MEDIA_BITS, FIRST_MEDIUM=32 - MEDIA_BITS, MEDIA_UNKNOWN=(1 << 32) - 1)
 StorageBlock("Materials", "Material materials[];")
 
 IMAGE_ENTRY = Record("ImageEntry", first_texel="uint", width="uint", height="uint", format="uint")

@@ -29,6 +29,7 @@ from .compiler import (
 )
 from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LightSurface
+from .interiors import Interior
 from .records import IMAGE_ENTRY, MATERIAL, MOST_MEDIA, TexelFormat
 from .view_dependence import depends_on_view
 
@@ -92,6 +93,10 @@ class MaterialTables(BufferSet):
         self.emits: list[Emits] = []
         self.any_depends_on_view = False
         """Whether what a material scatters depends on where it is seen from."""
+        self.materials_with_media: frozenset[int] = frozenset()
+        """By index, those whose inside is filled."""
+        self.media_emit = False
+        """Whether any medium shines."""
         self.displacing: dict[int, DisplacingGraph] = {}
         """By index, those materials that move vertices."""
         self.users: dict[str, list[str]] = {}
@@ -99,6 +104,8 @@ class MaterialTables(BufferSet):
         self.rays: dict[str, NodeRayCounts] = {}
         """By text, what its nodes ask of rays."""
         self._others: dict[int, tuple[str, int, str]] = {}
+        self._media: list[Interior] = []
+        """Kept, as ``_others`` has their graphs by id."""
         self._images: list[Image] = []
         self._scene: Scene | None = None
 
@@ -144,10 +151,14 @@ class MaterialTables(BufferSet):
             record["depends_on_view"] = depends_on_view(material.graph)
         self.any_depends_on_view = bool(records["depends_on_view"].any())
         self.displacing = self._compile_displacements(scene.materials, layout)
-        interiors = [material.interior for material in materials]
+        media = self._media = [Interior.of(material.interior) for material in materials]
         others = [("The world", scene.world.graph)]
         others += [(f'Light "{light.name}"', light.graph) for light in scene.lights]
-        others += [(f'The volume of material "{material.name}"', material.interior) for material in materials]
+        for material, interior in zip(materials, media, strict=True):
+            owner = f'The volume of material "{material.name}"'
+            others += [(owner, interior.absorption), (owner, interior.emission)]
+            if interior.varies:
+                scene.warn(f"{owner} varies from place to place, which is not rendered; one value stands for all")
         self._others = {}
         for owner, other in others:
             if other is not None:
@@ -156,16 +167,26 @@ class MaterialTables(BufferSet):
         self.attribute_names = list(layout.attributes)
         self._buffers["MaterialData"].upload(layout.data())
         self._upload_images(layout.images())
-        for record, interior in zip(records, interiors, strict=True):
-            if interior is not None:
-                record["absorption"] = np.maximum(self.evaluate(interior)[0, 0], 0.0)
-        absorbing = np.flatnonzero(records["absorption"].any(axis=1))
-        if len(absorbing) > MOST_MEDIA:
-            self._scene.warn(f"{len(absorbing)} materials have volumes that absorb; the first {MOST_MEDIA} do")
-            absorbing = absorbing[:MOST_MEDIA]
-        records["medium"][absorbing] = 1 + np.arange(len(absorbing))
-        records["material_of_medium"][: len(absorbing)] = absorbing
+        self._number_media(records, media)
         self._buffers["Materials"].upload(records)
+
+    def _number_media(self, records: np.ndarray, interiors: list[Interior]) -> None:
+        """Enter what the materials' interiors are made of into their records."""
+        coefficients = np.zeros((len(records), 2, 3), np.float32)
+        for values, interior in zip(coefficients, interiors, strict=True):
+            for value, graph in zip(values, (interior.absorption, interior.emission), strict=True):
+                if graph is not None:
+                    value[:] = np.maximum(self.evaluate(graph)[0, 0], 0.0)
+        filled = np.flatnonzero(coefficients.any(axis=(1, 2)))
+        if len(filled) > MOST_MEDIA:
+            self._scene.warn(f"{len(filled)} materials have volumes; those of the first {MOST_MEDIA} are rendered")
+            filled = filled[:MOST_MEDIA]
+        records["medium"][filled] = 1 + np.arange(len(filled))
+        records["medium_bits"] = max(len(filled).bit_length(), 1)
+        records["medium_absorption"][: len(filled)] = coefficients[filled, 0]
+        records["medium_emission"][: len(filled)] = coefficients[filled, 1]
+        self.materials_with_media = frozenset(filled.tolist())
+        self.media_emit = bool(coefficients[filled, 1].any())
 
     def follow(self, scene: Scene) -> None:
         """Warn in this scene and evaluate as its camera sees, though what was built may have come with another."""

@@ -9,12 +9,13 @@ from .node_graphs import NodeGraph
 
 @dataclass
 class Material:
-    """A surface, and the homogeneous volume that it encloses."""
+    """A surface, and the homogeneous medium that it encloses."""
 
     name: str
     graph: NodeGraph = field(default_factory=NodeGraph)
     interior: NodeGraph | None = None
-    """What the surface encloses: the "emission" of this graph is the absorption coefficient in 1/m."""
+    """Nodes of the homogeneous medium that the surface encloses: volume_absorption gives the absorption coefficient,
+    1/m, and emission the radiance by length, W/(m^3 sr)."""
     transparent_shadow: bool = True
     """Whether light of light objects and meshes passes where the surface is transparent; the world's always does."""
     pass_index: int = 0

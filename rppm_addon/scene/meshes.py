@@ -68,7 +68,7 @@ class Mesh:
     corner_vertices: np.ndarray = field(metadata=declared("corners", types="int32", below="vertices"))
     """(corners,) int32, the vertex of each corner."""
     corner_normals: np.ndarray = field(metadata=declared("corners", 3, types="float32", finite=False))
-    """(corners, 3) float32, unit shading normals (flat faces repeat the face normal)."""
+    """(corners, 3) float32, unit shading normals; 0 on flat faces, which take the normals of their triangles."""
     triangle_corners: np.ndarray = field(metadata=declared("triangles", 3, types="int32", below="corners"))
     """(triangles, 3) int32, the three corners of each triangle."""
     triangle_slots: np.ndarray = field(metadata=declared("triangles", types="int32", minimum=0))
@@ -88,6 +88,25 @@ class Mesh:
     def triangle_count(self) -> int:
         """Triangles of the mesh alone."""
         return len(self.triangle_corners)
+
+    def face_normals_filled(self, normals: np.ndarray, positions: np.ndarray) -> np.ndarray:
+        """Corner normals (corners, 3), of which those that are 0 become those of their faces.
+
+        positions: (vertices, 3). Corners of a face that is not plane have those of the triangles around them.
+        """
+        flat = ~normals.any(axis=1)
+        if not flat.any():
+            return normals
+        triangles = self.triangle_corners[flat[self.triangle_corners[:, 0]]]
+        points = positions[self.corner_vertices[triangles]].astype(np.float64)
+        areas = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+        corners = triangles.ravel()
+        sums = [np.bincount(corners, np.repeat(areas[:, axis], 3), len(normals)) for axis in range(3)]
+        found = np.stack(sums, axis=-1)[flat]
+        lengths = np.linalg.norm(found, axis=1, keepdims=True)
+        result = normals.copy()
+        result[flat] = np.divide(found, lengths, out=np.zeros_like(found), where=lengths > 0.0)
+        return result
 
 
 class RayVisibility(enum.IntFlag):

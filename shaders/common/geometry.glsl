@@ -30,7 +30,8 @@ void tangent_frame(vec3 n, out vec3 t, out vec3 b) {
     b = vec3(c, s + n.y * n.y * a, -n.y);
 }
 
-float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
+// By magnitude: light may be negative, as in Cycles.
+float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
 // How far off its plane a ray begins that leaves a triangle, meters, so that it meets no neighbor in the same plane:
 // what rounding of the point (Pharr, Jakob and Humphreys, Physically Based Rendering, 6.8) and of the neighbor's test

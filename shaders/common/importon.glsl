@@ -37,8 +37,8 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
     if ((cosine > 0.0) == front) {
         value = (front ? ITS.diffuse : ITS.translucent)
               * rough_diffuse_factor(ITS.diffuse_roughness, normal, ITS.direction, wi);
-        value *= bump_shadowing(unpack_unit_vector(ITS.shading_normal), normal, wi)
-                 * shading_correction(cosine, geometric_cosine);
+        value *= shading_correction(cosine, geometric_cosine);
+        if (front) value *= bump_shadowing(unpack_unit_vector(ITS.shading_normal), normal, wi);
     }
     diffuse = value;
     uint kind = unpack_kind(ITS.lobe_kind);

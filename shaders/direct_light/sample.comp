@@ -15,6 +15,7 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/camera_transparency.glsl"
 #include "common/path_history.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -138,7 +139,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
         PassedLights passed = passed_lights(closure.position, sampled.direction, vec2(0.0, INFINITY_DISTANCE),
-                                            RAY_GLOSSY, 0.0, light_set, candidates.u);
+                                            RAY_GLOSSY, 0.0, light_set, candidates.u, path_absorption(flags));
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
@@ -148,7 +149,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         uint emissive;
         Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
-        reflected *= exp(-path_absorption(flags) * hit.distance);
+        reflected *= segment_transmittance(flags, hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
                       Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle));
@@ -174,7 +175,7 @@ float left_to_rays(vec3 point, vec3 direction, float radius) {
 }
 
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(uint index, uint bounces, float radius, Closure closure, vec3 throughput,
+Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure closure, vec3 throughput,
                              PathShares shares, vec3 wo, bool gathered, bool gathers, uvec4 choices,
                              out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
@@ -194,7 +195,7 @@ Arriving arriving_from_light(uint index, uint bounces, float radius, Closure clo
     Light light = lights[choice.light];
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     float side = dot(facing, sampled.direction);
-    bool too_far = bounces > light.max_bounces;
+    bool too_far = bounces_of(path.depth) > light.max_bounces;
     // All at once, since what each branch gives back would be kept beside what others compute.
     bool arrives = choice.probability > 0.0 && !too_far && largest(sampled.weight) > 0.0
                 && sampled.triangle != closure.triangle && side != 0.0;
@@ -207,8 +208,11 @@ Arriving arriving_from_light(uint index, uint bounces, float radius, Closure clo
     vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
-    return Arriving(throughput * scattered * sampled.weight / choice.probability, sampled.direction, sampled.distance,
-                    choice.light, sampled.triangle);
+    uint beyond = path.flags;
+    if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
+    vec3 passed = segment_transmittance(beyond, sampled.distance);
+    return Arriving(throughput * passed * scattered * sampled.weight / choice.probability, sampled.direction,
+                    sampled.distance, choice.light, sampled.triangle);
 }
 
 // The LightLink by which a shadow ray meets what is in its way. Reflections of lights without shadows are hidden like
@@ -235,7 +239,7 @@ void main() {
     bool gathered = (flags & PATH_GATHERED) != 0u;
     bool gathers = parameters.final_gather != 0u && bounces < parameters.camera_bounces
                 && path_gathers(flags, length_to_gather_by(closure), parameters.gathers_again_below);
-    vec3 throughput = path.throughput * segment_transmittance(flags, closure);
+    vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
 #ifdef HAIR_LOBES
@@ -244,7 +248,7 @@ void main() {
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
     Parts parts;  // shares of it
-    Arriving arriving = arriving_from_light(index, bounces, direct_radius(index, path, closure, viewer, gathered),
+    Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered),
                                             closure, throughput, shares, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);
@@ -268,8 +272,9 @@ void main() {
     if (parameters.splits_light != 0u)
         light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    bool front = dot(lit_normal(closure), arriving.direction) > 0.0;
-    vec3 origin = closure.position + (front ? closure.ray_offset : -closure.ray_offset) * geometric;
+    float offset = closures[index].ray_offset;
+    if (dot(lit_normal(closure), arriving.direction) <= 0.0) offset = -offset;
+    vec3 origin = closure.position + offset * geometric;
     Ray shadow = Ray(origin, closure.triangle, arriving.direction, INFINITY_DISTANCE);
     if (arriving.distance < INFINITY_DISTANCE) {
         // From the moved origin to the light.

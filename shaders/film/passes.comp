@@ -15,6 +15,7 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "film/first_surface.glsl"
 #include "gbuffer/projections.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
@@ -137,7 +138,7 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
 
 void add_colors(CameraPath path, Closure closure, vec3 viewer) {
     LightColors colors = light_colors(index, closure, viewer);
-    vec3 throughput = path.throughput * segment_transmittance(path.flags, closure);
+    vec3 throughput = path.throughput * segment_transmittance(path.flags, closure.distance);
     add_to_pass(PASS_DIFFUSE_COLOR, index, throughput * colors.diffuse);
     add_to_pass(PASS_GLOSSY_COLOR, index, throughput * colors.glossy);
     add_to_pass(PASS_TRANSMISSION_COLOR, index, throughput * colors.transmission);

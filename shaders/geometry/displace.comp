@@ -23,6 +23,7 @@ Surface surface_of(DisplacedVertex vertex) {
     surface.triangle = vertex.triangle;
     surface.instance = attributes[vertex.triangle].instance;
     surface.barycentrics = vec3(vertex.corner == 0u, vertex.corner == 1u, vertex.corner == 2u);
+    surface.beside = vec3(0.0);
     surface.position = vertex.corner == 0u ? v0 : vertex.corner == 1u ? v1 : v2;
     surface.uv = triangle_uv(vertex.triangle, surface.barycentrics);
     vec3 face = cross(v1 - v0, v2 - v0), n = normal_to_world(surface, vertex.normal);

@@ -54,15 +54,17 @@ void main() {
     mat3 cofactors = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
     bool mirrored = dot(linear[0], cofactors[0]) < 0.0;
 
-    vec3 points[3];
+    vec3 local_points[3], points[3];
     uint corners[3];
     bool finite = true;
     for (uint k = 0u; k < 3u; ++k) {
         corners[k] = instance.mesh_corner + triangle_corners[3u * local + (mirrored && k > 0u ? 3u - k : k)];
-        points[k] = linear * three_floats(instance.mesh_vertex + corner_vertices[corners[k]]) + origin;
+        local_points[k] = three_floats(instance.mesh_vertex + corner_vertices[corners[k]]);
+        points[k] = linear * local_points[k] + origin;
         finite = finite && reasonable(points[k]);
     }
-    vec3 face = cross(points[1] - points[0], points[2] - points[0]);
+    // In object space, where coordinates are not rounded as far from the world's origin.
+    vec3 face = cofactors * cross(local_points[1] - local_points[0], local_points[2] - local_points[0]);
     uint normals[3];
     vec2 uvs[3];
     for (uint k = 0u; k < 3u; ++k) {
@@ -70,7 +72,7 @@ void main() {
         vec3 normal = cofactors * vec3(corner_normals[at], corner_normals[at + 1u], corner_normals[at + 2u]);
         if (mirrored) normal = -normal;
         float size = length(normal);
-        // A normal that cannot be used (zero, not finite) gives way to the face's.
+        // A normal of 0, as those of flat faces are, or one that is not finite gives way to the triangle's.
         normals[k] = size > 0.0 && size < 1e30 ? pack_unit_vector(normal / size)
                      : pack_unit_vector(face / max(length(face), 1e-30));
         uvs[k] = instance.mesh_uv == NO_UV ? vec2(0.0)

@@ -18,6 +18,7 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
 #include "common/world_light.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -122,12 +123,12 @@ void end_gathering_ray(uint index, CameraPath path, vec3 world, EnvironmentView 
         vec3 arrived = path.throughput * world * environment_weight(path, view);
         arrived *= 1.0 - direct_photon_share(world, view.plain_pdf, gathering_vertices[index].radius);
         bool is_shared = (path.flags & PATH_GATHERED_AGAIN) != 0u || view.is_shared;
-        if (is_shared) gathering_vertices[index].found = arrived;
+        if (is_shared) gathering_vertices[index].found += arrived;
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
         return;
     }
     float photons = world_photon_share(largest(world), parameters.photon_flux, gathering_vertices[index].radius);
-    gathering_vertices[index].found = path.throughput * world * (1.0 - photons);
+    gathering_vertices[index].found += path.throughput * world * (1.0 - photons);
 }
 
 // Radiance and alpha of what lies behind everything. background: no light object was passed.
@@ -150,6 +151,18 @@ vec4 seen_surface(CameraPath path, vec3 start, Closure closure) {
     if ((path.flags & PATH_STRAIGHT) != 0u)
         seen.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return seen;
+}
+
+// What the media on a path's way weaken, and what they shine themselves, which surfaces that gather find as well.
+// Returns the throughput before the way.
+vec3 pass_media(uint index, inout CameraPath path, float way) {
+    vec3 departing = path.throughput;
+    if (path.flags >> FIRST_MEDIUM == 0u) return departing;
+    vec3 shining = departing * segment_emission(path.flags, way);
+    if ((path.flags & PATH_GATHERED) != 0u) gathering_vertices[index].found += shining;
+    else radiances[index].rgb += shining;
+    path.throughput *= segment_transmittance(path.flags, way);
+    return departing;
 }
 
 // Of neighbors' gathering rays that came to no surface, none may tell the other's direction from its own.
@@ -256,7 +269,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     else if (diffuse) {
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
-        found_weight = diffuse_factor(closure, facing, viewer, event.direction)
+        found_weight = diffuse_factor(closure, facing, viewer, event.direction, !event.transmitted)
                      * terminator_factor(closure.flags, facing, event.direction);
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
@@ -284,9 +297,10 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     float side = dot(event.direction, geometric);
     if (!(largest(path.throughput) > 0.0) || (event.transmitted ? side >= 0.0 : side <= 0.0)) return;
-    if (event.transmitted) path.flags = cross_surface(path.flags, closure);
+    if (event.transmitted) path.flags = cross_surface(path.flags, closure.material, closure_backfacing(closure));
     camera_paths[index] = path;
-    vec3 origin = closure.position + (side > 0.0 ? closure.ray_offset : -closure.ray_offset) * geometric;
+    float offset = closures[index].ray_offset;
+    vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
     // Behind a catcher only the world is seen.
     float reach = (closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u ? NO_REACH : INFINITY_DISTANCE;
     rays[index] = Ray(origin, closure.triangle, event.direction, reach);
@@ -312,21 +326,22 @@ void main() {
         world = found_world(path.flags, path.depth, ray.direction);
         view = view_environment(start, ray);
     }
+    float way = hit ? closures[index].distance : INFINITY_DISTANCE;
+    vec3 departing = pass_media(index, path, way);
     if (gathered && !hit) {
         end_gathering_ray(index, path, world, view);
         return;
     }
     vec3 lights_passed = vec3(0.0);
     if (!gathered && (path.flags & PATH_LIGHTS_FOUND) == 0u)
-        lights_passed = visible_light(start, ray, hit ? closures[index].distance : INFINITY_DISTANCE,
-                                      camera_ray_kind(path.flags), path.scatter_pdf);
-    vec4 seen = vec4(path.throughput * lights_passed, 0.0);
+        lights_passed = visible_light(start, ray, way, camera_ray_kind(path.flags), path.scatter_pdf,
+                                      path_absorption(path.flags));
+    vec4 seen = vec4(departing * lights_passed, 0.0);
     if (!hit) {
         radiances[index] += seen + seen_environment(path, world, view, largest(lights_passed) <= 0.0);
         return;
     }
     Closure closure = closures[index];
-    path.throughput *= segment_transmittance(path.flags, closure);
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
     radiances[index] += seen + seen_surface(path, start, closure);
     float radius = vertex_radius(path, ray.direction, closure);

@@ -18,9 +18,11 @@ layout(std430, binding = 1) readonly buffer Rays;
 layout(std430, binding = 2) readonly buffer CameraPaths;
 layout(std430, binding = 3) readonly buffer Radiances;
 layout(std430, binding = 9) writeonly buffer SeenLight;
-layout(std430, binding = 10) readonly buffer LightGroupTable;
+layout(std430, binding = 12) readonly buffer LightGroupTable;
 layout(std430, binding = 11) readonly buffer GatheringVertices;
 #include "importons/scattered_at.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
+#include "materials/medium.glsl"
 
 uint path_index;
 vec3 path_throughput;
@@ -40,7 +42,8 @@ void main() {
         path_throughput = path.throughput;
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
         passed = path_throughput * visible_light(scattered_at(path_index, path, ray), ray, distance,
-                                                 camera_ray_kind(path.flags), path.scatter_pdf);
+                                                 camera_ray_kind(path.flags), path.scatter_pdf,
+                                                 path_absorption(path.flags));
     }
     seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
 }

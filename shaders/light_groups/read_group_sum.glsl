@@ -6,7 +6,6 @@ layout(std430, binding = 5) readonly buffer GroupSums;
 // What a pixel took of the photons of a group, in quanta.
 vec3 read_group_sum(uint pixel, uint group, bool by_ray) {
     uint place = first_group_word(pixel, group, by_ray, parameters.groups);
-    vec3 low = vec3(group_words[place], group_words[place + 2u], group_words[place + 4u]);
-    vec3 high = vec3(group_words[place + 1u], group_words[place + 3u], group_words[place + 5u]);
-    return high * WORD + low;
+    return quanta_of(uvec3(group_words[place], group_words[place + 2u], group_words[place + 4u]),
+                     uvec3(group_words[place + 1u], group_words[place + 3u], group_words[place + 5u]));
 }

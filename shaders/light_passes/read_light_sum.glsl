@@ -5,7 +5,6 @@
 // One of a pixel's sums for passes of light, in quanta. Needs light_words[].
 vec3 read_light_sum(uint pixel, uint sum, uint sums) {
     uint place = first_light_word(pixel, sum, sums);
-    vec3 low = vec3(light_words[place], light_words[place + 2u], light_words[place + 4u]);
-    vec3 high = vec3(light_words[place + 1u], light_words[place + 3u], light_words[place + 5u]);
-    return high * WORD + low;
+    return quanta_of(uvec3(light_words[place], light_words[place + 2u], light_words[place + 4u]),
+                     uvec3(light_words[place + 1u], light_words[place + 3u], light_words[place + 5u]));
 }

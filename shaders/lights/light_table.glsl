@@ -14,3 +14,11 @@ uint light_of(uint photon) {
     }
     return low;
 }
+
+// Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
+float soft_light_distance(Light light, vec3 origin, vec3 direction) {
+    vec3 to_center = light.position - origin;
+    float distance = dot(to_center, to_center) / dot(direction, to_center);
+    vec3 place = distance * direction - to_center;
+    return distance > 0.0 && dot(place, place) <= light.radius * light.radius ? distance : 0.0;
+}

@@ -155,13 +155,14 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
 struct PassedLights { vec3 radiance; vec3 chosen; uint light; float distance; float weights; float u; };
 
 void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direction, vec2 distances, uint ray,
-                float scatter_pdf) {
+                float scatter_pdf, vec3 absorption) {
     Light light = lights[number];
     if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return;
     float distance, pdf;
     vec3 radiance = passed_light(light, origin, direction, distances.y, distance, pdf);
     if (distance <= distances.x && light.kind != LIGHT_SUN) return;
-    radiance *= scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
+    float way = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance - distances.x;
+    radiance *= exp(-absorption * way) * scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
     passed.radiance += radiance;
 #ifdef TELL_OF_PASSED_LIGHT
     TELL_OF_PASSED_LIGHT(number, radiance);
@@ -176,10 +177,10 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
 }
 
 // The light objects that a ray from an object in a light set passes between two distances; they hide nothing, and the
-// camera sees all. Suns first, then down the tree: one loop, since drivers without calls have the code of a light as
-// often as it stands here.
+// camera sees all. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree: one loop,
+// since drivers without calls have the code of a light as often as it stands here.
 PassedLights passed_lights(vec3 origin, vec3 direction, vec2 distances, uint ray, float scatter_pdf, uint light_set,
-                           float u) {
+                           float u, vec3 absorption) {
     PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint sun = distances.y >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
@@ -200,7 +201,7 @@ PassedLights passed_lights(vec3 origin, vec3 direction, vec2 distances, uint ray
             if (node == 1u) node = 0u;
         }
         if (met && ((ray & RAY_CAMERA) != 0u || has_set(at.light_sets, light_set)))
-            pass_light(passed, at.member, origin, direction, distances, ray, scatter_pdf);
+            pass_light(passed, at.member, origin, direction, distances, ray, scatter_pdf, absorption);
     }
     return passed;
 }
@@ -233,9 +234,9 @@ Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set,
     return nearest;
 }
 
-// What a ray passes on so far a way. start: where it was scattered.
-vec3 visible_light(vec3 start, Ray way, float far, uint ray, float scatter_pdf) {
+// What a ray passes on so far a way through what absorbs. start: where it was scattered.
+vec3 visible_light(vec3 start, Ray way, float far, uint ray, float scatter_pdf, vec3 absorption) {
     float gone = distance(start, way.origin);
     return passed_lights(start, way.direction, vec2(gone, gone + far), ray, scatter_pdf,
-                         light_set_at(way.source_triangle), 0.0).radiance;
+                         light_set_at(way.source_triangle), 0.0, absorption).radiance;
 }

@@ -113,14 +113,6 @@ TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
                          emissive.share / max(emissive.area, 1e-30), ray_offset(normal, v0, v1, v2));
 }
 
-// Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
-float soft_light_distance(Light light, vec3 origin, vec3 direction) {
-    vec3 to_center = light.position - origin;
-    float distance = dot(to_center, to_center) / dot(direction, to_center);
-    vec3 place = distance * direction - to_center;
-    return distance > 0.0 && dot(place, place) <= light.radius * light.radius ? distance : 0.0;
-}
-
 // --- direct light ---------------------------------------------------------------------------
 
 // Light toward a point: radiance divided by the pdf in 1/sr, and that pdf (0 for lights without
@@ -145,13 +137,26 @@ float soft_light_cone(Light light, vec3 to_center) {
     return radius2 / (slant * (slant + distance));
 }
 
+// From a point within a sphere to where it meets a direction; there it is seen, to every side, from within.
+float far_side(Light light, vec3 to_center, vec3 direction) {
+    float along = dot(to_center, direction);
+    return along + sqrt(max(0.0, light.radius * light.radius - dot(to_center, to_center) + along * along));
+}
+
+// Within its sphere a light shines alike from all sides, a spot as well (Cycles).
+LightSample sample_from_within(Light light, vec3 to_center, vec2 u) {
+    vec3 direction = sample_sphere(u);
+    return LightSample(direction, far_side(light, to_center, direction),
+                       4.0 / (light.radius * light.radius) * light.strength, NO_TRIANGLE, 1.0 / (4.0 * PI));
+}
+
 // Toward a sun, a sphere, or the disk of a soft light that faces the point: a direction within a cone.
 LightSample sample_cone_light(Light light, vec3 point, vec2 u) {
     LightSample result = NO_LIGHT_SAMPLE;
     bool sun = light.kind == LIGHT_SUN, soft = !sun && (light.flags & LIGHT_SOFT) != 0u;
     vec3 to_center = light.position - point;
     float distance2 = dot(to_center, to_center), radius2 = light.radius * light.radius, sine2 = radius2 / distance2;
-    if (!sun && !soft && distance2 <= radius2) return result;
+    if (!sun && !soft && distance2 <= radius2) return sample_from_within(light, to_center, u);
     float one_minus_cosine = sun ? 1.0 - light.cosine_cone
                              : soft ? soft_light_cone(light, to_center) : sine2 / (1.0 + sqrt(1.0 - sine2));
     vec3 axis = sun ? light.normal
@@ -362,13 +367,20 @@ vec3 emitted_factor(Light light, vec3 from_center, vec3 direction) {
                        is_area_light(light) ? area_light_coordinates(light, from_center) : vec2(0.0));
 }
 
-// Where the half of a sphere that faces a direction is met along it, evenly seen: from the sphere's center.
-vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
+// Evenly on the disk of a sphere across a direction, from its center; forward: to the sphere from there.
+vec3 sample_cross_section(float radius, vec3 direction, vec2 u, out float forward) {
     vec3 t, b;
     tangent_frame(direction, t, b);
     vec2 disk = sample_disk(u);
-    float forward = sqrt(max(0.0, 1.0 - dot(disk, disk)));
-    return radius * (disk.x * t + disk.y * b + forward * direction);
+    forward = radius * sqrt(max(0.0, 1.0 - dot(disk, disk)));
+    return radius * (disk.x * t + disk.y * b);
+}
+
+// Where the half of a sphere that faces a direction is met along it, evenly seen: from the sphere's center.
+vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
+    float forward;
+    vec3 place = sample_cross_section(radius, direction, u, forward);
+    return place + forward * direction;
 }
 
 // Of the emissive meshes: of one triangle, by its number among emissive_triangles[].
@@ -432,6 +444,7 @@ vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_
     }
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
         if (light.radius <= 0.0) return vec3(0.0);
+        bool within = false;
         vec3 to_center = light.position - origin;
         float distance2 = dot(to_center, to_center), radius2 = light.radius * light.radius;
         if ((light.flags & LIGHT_SOFT) != 0u) {
@@ -441,14 +454,15 @@ vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_
             float along = dot(to_center, direction);
             vec3 off_axis = to_center - along * direction;
             float under = radius2 - dot(off_axis, off_axis);
-            if (under < 0.0 || along <= 0.0) return vec3(0.0);
-            distance = along - sqrt(under);
+            within = distance2 <= radius2;
+            if (!within && (under < 0.0 || along <= 0.0)) return vec3(0.0);
+            distance = within ? far_side(light, to_center, direction) : along - sqrt(under);
             float sine2 = min(radius2 / distance2, 1.0);
             // sample_light takes smaller lights for points, which no ray meets
-            pdf = sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
+            pdf = within ? 1.0 / (4.0 * PI) : sine2 < 1e-7 ? 0.0 : (1.0 + sqrt(1.0 - sine2)) / (2.0 * PI * sine2);
         }
         if (distance <= 0.0 || distance >= maximum_distance) return vec3(0.0);
-        return radiant_strength(light, -direction) / (PI * radius2);
+        return (within ? light.strength : radiant_strength(light, -direction)) / (PI * radius2);
     }
     if (!is_area_light(light)) return vec3(0.0);
     float cosine = -dot(direction, light.normal);

@@ -137,10 +137,9 @@ const MicrofacetLobe NO_LOBE = MicrofacetLobe(vec3(0.0), LOBE_NONE, vec3(0.0), 0
 // albedo: of the sheen, by which it hides what lies below; where that is 0 there is no lobe.
 MicrofacetLobe sheen_lobe(ClosureBuilder builder, vec3 weight, float roughness, vec3 normal, out float albedo) {
     vec3 n = given_normal(builder, normal);
-    float cosine = dot(n, builder.viewer);
-    vec3 parameters = sheen_parameters(clamp(roughness, 1e-3, 1.0), cosine);
+    vec3 parameters = sheen_parameters(clamp(roughness, 1e-3, 1.0), max(dot(n, builder.viewer), 0.0));
     albedo = 0.0;
-    if (cosine <= 0.0 || parameters.x <= 0.0 || parameters.z <= 0.0) return NO_LOBE;
+    if (parameters.x <= 0.0 || parameters.z <= 0.0) return NO_LOBE;
     albedo = parameters.z;
     return MicrofacetLobe(weight * parameters.z, LOBE_SHEEN, vec3(parameters.xy, 0.0), 1.0, vec3(1.0), 1.0,
                           pack_unit_vector(n), ISOTROPIC);
@@ -155,8 +154,7 @@ MicrofacetLobe velvet_lobe(ClosureBuilder builder, vec3 weight, float sigma, vec
 MicrofacetLobe toon_lobe(ClosureBuilder builder, uint kind, vec3 weight, float size, float fading, vec3 normal) {
     vec2 angles = clamp(vec2(size, fading), vec2(1e-3, 0.0), vec2(1.0)) * (0.5 * PI);
     float half_edge = min(0.5 * (angles.x + angles.y), 0.25 * PI), s = sin(half_edge);
-    vec3 n = kind == LOBE_TOON ? given_normal(builder, normal) : reflecting_normal(builder, normal);
     float alpha = kind == LOBE_TOON ? 1.0 : min(tan(half_edge), 1.0);
-    return MicrofacetLobe(weight, kind, vec3(angles, 2.0 * s * s), alpha, vec3(1.0), 1.0, pack_unit_vector(n),
-                          ISOTROPIC);
+    return MicrofacetLobe(weight, kind, vec3(angles, 2.0 * s * s), alpha, vec3(1.0), 1.0,
+                          pack_unit_vector(given_normal(builder, normal)), ISOTROPIC);
 }

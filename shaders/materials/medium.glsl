@@ -1,41 +1,63 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Absorption inside closed surfaces. As in Cycles, only materials with a volume fill their inside,
-// and volumes that overlap add up; a path remembers two of them.
+// Homogeneous media inside closed surfaces. As in Cycles, only materials with a volume fill their inside, and media
+// that overlap add up. A path carries the numbers of those that it is in: the upper 20 bits of its flags have as many
+// places as the scene's media leave room for, the lowest for the medium that it came into last; 0 is none.
+// The includer declares before the block Materials.
 
-layout(std430, binding = 10) readonly buffer Materials;
+#include <Media>
+const uint PATH_MASK = (1u << FIRST_MEDIUM) - 1u;
 
-// A path's flags: 12 bits of its own, then the numbers of two media, 10 bits each; 0 is none.
-const uint MEDIUM_MASK = 0x3ffu, FIRST_MEDIUM = 12u, SECOND_MEDIUM = 22u;
-const uint PATH_MASK = 0xfffu;
+uint medium_bits() { return materials[0].medium_bits; }
 
-vec3 medium_absorption(uint medium) {
-    return medium == 0u ? vec3(0.0) : materials[materials[medium - 1u].material_of_medium].absorption;
+uint enter_medium(uint media, uint medium) {
+    uint bits = medium_bits();
+    return (media << bits | medium) & ((1u << (MEDIA_BITS / bits * bits)) - 1u);
 }
 
-vec3 path_absorption(uint flags) {
-    return medium_absorption((flags >> FIRST_MEDIUM) & MEDIUM_MASK) + medium_absorption(flags >> SECOND_MEDIUM);
+// Without the place that holds the medium, of several the lowest; as it is where none does.
+uint leave_medium(uint media, uint medium) {
+    uint bits = medium_bits(), mask = (1u << bits) - 1u;
+    for (uint at = 0u; (media >> at) != 0u; at += bits)
+        if ((media >> at & mask) == medium)
+            return (media & ((1u << at) - 1u)) | media >> (at + bits) << at;
+    return media;
 }
 
-// What is left of the light of a segment that ends at the closure.
-vec3 segment_transmittance(uint flags, Closure closure) {
-    uint first = (flags >> FIRST_MEDIUM) & MEDIUM_MASK;
-    vec3 absorption = path_absorption(flags);
-    // A path that started inside learns so where it meets the surface from within.
-    if (first == 0u && (closure.flags & CLOSURE_BACKFACING) != 0u) absorption = materials[closure.material].absorption;
-    return exp(-absorption * closure.distance);
+// Coefficients in 1/m, and radiance in W/(m^2 sr) by length.
+struct Medium { vec3 absorption; vec3 emission; };
+
+Medium path_medium(uint flags) {
+    Medium medium = Medium(vec3(0.0), vec3(0.0));
+    uint bits = medium_bits(), mask = (1u << bits) - 1u;
+    for (uint media = flags >> FIRST_MEDIUM; media != 0u; media >>= bits) {
+        uint number = (media & mask) - 1u;
+        medium.absorption += materials[number].medium_absorption;
+        medium.emission += materials[number].medium_emission;
+    }
+    return medium;
 }
 
-// The flags of a path after it has passed through the closure's surface.
-uint cross_surface(uint flags, Closure closure) {
-    uint medium = materials[closure.material].medium;
+vec3 path_absorption(uint flags) { return path_medium(flags).absorption; }
+
+// What is left of the light of a segment.
+vec3 segment_transmittance(uint flags, float distance) { return exp(-path_absorption(flags) * distance); }
+
+// Radiance of the media along a segment, at its beginning. What does not absorb has no limit, and to infinity gives
+// none.
+vec3 segment_emission(uint flags, float distance) {
+    if (flags >> FIRST_MEDIUM == 0u) return vec3(0.0);
+    Medium medium = path_medium(flags);
+    vec3 depth = medium.absorption * distance, series = distance * (1.0 - 0.5 * depth);
+    vec3 length_seen = mix((1.0 - exp(-depth)) / max(medium.absorption, vec3(1e-30)), series,
+                           lessThan(depth, vec3(1e-3)));
+    return medium.emission * mix(length_seen, vec3(0.0), greaterThan(length_seen, vec3(1e20)));
+}
+
+// The flags of a path after it has passed through a surface of a material, which it came to from behind or not.
+uint cross_surface(uint flags, uint material, bool backfacing) {
+    uint medium = materials[material].medium;
     if (medium == 0u) return flags;
-    uint first = (flags >> FIRST_MEDIUM) & MEDIUM_MASK, second = flags >> SECOND_MEDIUM;
-    if ((closure.flags & CLOSURE_BACKFACING) == 0u) {
-        second = first;
-        first = medium;
-    } else if (first == medium) {
-        first = second;
-        second = 0u;
-    } else if (second == medium) second = 0u;
-    return (flags & PATH_MASK) | (first << FIRST_MEDIUM) | (second << SECOND_MEDIUM);
+    uint media = flags >> FIRST_MEDIUM;
+    media = backfacing ? leave_medium(media, medium) : enter_medium(media, medium);
+    return (flags & PATH_MASK) | media << FIRST_MEDIUM;
 }

@@ -18,6 +18,7 @@ struct Surface {
     vec3 viewer;        // unit vector to where the path comes from
     vec2 uv;            // of the UV map in use
     vec3 barycentrics;
+    vec3 beside;        // what surface_beside added to them
     uint triangle;      // NO_TRIANGLE: a world or a light
     uint instance;      // NO_INSTANCE: a world
     bool backfacing;
@@ -97,6 +98,12 @@ vec4 attribute_value(Surface surface, uint layer) {
          + surface.barycentrics.z * attribute_corner(place, local, 2u);
 }
 
+// For tangents, which Cycles does not move along where a bump looks beside.
+Surface surface_itself(Surface surface) {
+    surface.barycentrics -= surface.beside;
+    return surface;
+}
+
 // The same surface a little way off, as if its triangle went on: nothing but the place changes.
 Surface surface_beside(Surface surface, vec3 way) {
     surface.position += way;
@@ -105,7 +112,9 @@ Surface surface_beside(Surface surface, vec3 way) {
     triangle_points(surface.triangle, v0, v1, v2);
     vec3 e1 = v1 - v0, e2 = v2 - v0, n = cross(e1, e2);
     float n2 = max(dot(n, n), 1e-30), b1 = dot(cross(way, e2), n) / n2, b2 = dot(cross(e1, way), n) / n2;
-    surface.barycentrics += vec3(-b1 - b2, b1, b2);
+    vec3 beside = vec3(-b1 - b2, b1, b2);
+    surface.barycentrics += beside;
+    surface.beside += beside;
     surface.uv = triangle_uv(surface.triangle, surface.barycentrics);
     return surface;
 }

@@ -21,7 +21,7 @@ ClosureLobe usable_lobe(ClosureLobe lobe) {
 }
 
 void make_usable(inout Closure closure) {
-    closure.emission = usable(closure.emission, 0.0, LARGEST_EMISSION);
+    closure.emission = usable(closure.emission, -LARGEST_EMISSION, LARGEST_EMISSION);
     closure.diffuse = usable(closure.diffuse, 0.0, LARGEST_WEIGHT);
     closure.translucent = usable(closure.translucent, 0.0, LARGEST_WEIGHT);
     closure.transparent = usable(closure.transparent, 0.0, LARGEST_WEIGHT);

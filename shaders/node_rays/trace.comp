@@ -67,9 +67,10 @@ vec3 point_of(uint triangle, vec3 b) {
 
 vec3 barycentrics(Hit hit) { return vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2); }
 
-float ray_offset_of(uint triangle, vec3 normal) {
-    return ray_offset(normal, triangle_vertex(3u * triangle).xyz, triangle_vertex(3u * triangle + 1u).xyz,
-                      triangle_vertex(3u * triangle + 2u).xyz);
+// From a triangle to where rays begin on its front.
+vec3 ray_offset_of(uint triangle, vec3 normal) {
+    return normal * ray_offset(normal, triangle_vertex(3u * triangle).xyz, triangle_vertex(3u * triangle + 1u).xyz,
+                               triangle_vertex(3u * triangle + 2u).xyz);
 }
 
 vec3 geometric_normal(uint triangle) {
@@ -77,12 +78,11 @@ vec3 geometric_normal(uint triangle) {
     return normalize(cross(triangle_vertex(3u * triangle + 1u).xyz - v0, triangle_vertex(3u * triangle + 2u).xyz - v0));
 }
 
-// The axes: first the one around which rays go.
-Ray occlusion_ray(vec3 position, vec3 geometric, uint triangle, mat3 axes, float reach, vec2 u) {
+// The axes: first the one around which rays go. offset: ray_offset_of the triangle.
+Ray occlusion_ray(vec3 position, vec3 offset, uint triangle, mat3 axes, float reach, vec2 u) {
     vec2 d = sample_disk(u);
     vec3 direction = normalize(axes * vec3(sqrt(max(1.0 - dot(d, d), 0.0)), d));
-    float offset = ray_offset_of(triangle, geometric);
-    vec3 origin = position + (dot(direction, geometric) < 0.0 ? -offset : offset) * geometric;
+    vec3 origin = position + (dot(direction, offset) < 0.0 ? -offset : offset);
     return Ray(origin, triangle, direction, reach);
 }
 
@@ -135,7 +135,8 @@ void main() {
     uint index = hit_order[hit_order[RANGE_SIZE * parameters.program] + place];
     Hit seen = hits[index];
     if (!(rays[index].maximum_distance > 0.0) || seen.triangle == NO_TRIANGLE) return;
-    vec3 position = point_of(seen.triangle, barycentrics(seen)), geometric = geometric_normal(seen.triangle);
+    vec3 position = point_of(seen.triangle, barycentrics(seen));
+    vec3 offset = ray_offset_of(seen.triangle, geometric_normal(seen.triangle));
     uint instance = attributes[seen.triangle].instance;
     for (uint k = 0u; k < parameters.ray_places; ++k) {
         uint at = parameters.ray_stride * index + k;
@@ -158,7 +159,7 @@ void main() {
             float r = 0.0;
             Ray ray;
             if (bevel) ray = bevel_ray(position, axes, asked.reach, u, axis, r);
-            else ray = occlusion_ray(position, geometric, seen.triangle, axes, asked.reach, u);
+            else ray = occlusion_ray(position, offset, seen.triangle, axes, asked.reach, u);
             bool any_hit = !bevel;
 #ifdef RAYCASTS
             if (is_raycast(kind)) ray = cast_ray(asked, at + 1u, seen.triangle);

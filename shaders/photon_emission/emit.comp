@@ -96,6 +96,8 @@ void main() {
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
-    photon_differentials[index] = leaving_differential(light, emission, distance(left_from, emission.origin));
-    rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? INFINITY_DISTANCE : 0.0);
+    float before = distance(left_from, emission.origin);
+    photon_differentials[index] = leaving_differential(light, emission, before);
+    if (emission.reach < INFINITY_DISTANCE) emission.reach = max(emission.reach - before, 0.0);
+    rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? emission.reach : 0.0);
 }

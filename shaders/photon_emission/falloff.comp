@@ -1,8 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What depends on where photons hit first. A soft light faces each point that it lights with a disk, while photons
-// leave its sphere: those whose ray back from the hit misses the disk carry nothing. Light Falloff nodes count by the
-// distance.
+// leave the one across their own direction: those whose ray back from the hit misses the former carry nothing. Light
+// Falloff nodes count by the distance.
 
 layout(local_size_x = 64) in;
 

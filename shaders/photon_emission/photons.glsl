@@ -7,8 +7,8 @@
 #include "photon_emission/aim.glsl"
 #include "lights/guide.glsl"
 
-// pdf: of the direction from a place in 1/sr, or of the place across parallel rays in 1/m^2.
-struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; float pdf; };
+// pdf: of the direction from a place in 1/sr, or of the place across parallel rays in 1/m^2. reach: how far it goes.
+struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; float pdf; float reach; };
 
 // Random numbers of one photon, whether it is aimed, and the share of those that are.
 struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; float aimed_share; };
@@ -32,11 +32,14 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
     float pdf = mixed_pdf(light, plain, disk_to_square(place / radius), choice.direction,
                                   seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
     vec3 origin = parameters.scene_center + place.x * t + place.y * b - radius * direction;
-    return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf);
+    return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf, INFINITY_DISTANCE);
 }
 
+// Of the photons of a sphere with surfaces in it, those that light these: from its far side to its near one.
+const float WITHIN_FRACTION = 0.25;
+
 // Radiant intensity from the light's center; a sphere of uniform radiance shows the same disk to every
-// direction.
+// direction. A soft light is that disk. A sphere shines outward from its near side, and inward from its far side.
 Emission emit_from_point(Light light, EmissionChoice choice) {
     float cones = target_cones(light.position);
     bool seen = cones > 0.0, spot = light.kind == LIGHT_SPOT;
@@ -50,8 +53,19 @@ Emission emit_from_point(Light light, EmissionChoice choice) {
     float aimed = seen ? target_direction_pdf(light.position, cones, direction) : 0.0;
     vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
     float pdf = mixed_pdf(light, plain, choice.place, square, aimed, seen, choice);
-    vec3 origin = light.position + sample_facing_half(light.radius, direction, choice.place);
-    return Emission(origin, NO_TRIANGLE, direction, radiant_strength(light, direction) / pdf, pdf);
+    float forward, reach = INFINITY_DISTANCE, part = 1.0;
+    vec3 origin = light.position + sample_cross_section(light.radius, direction, choice.place, forward);
+    if ((light.flags & LIGHT_SOFT) != 0u) forward = 0.0;
+    else if ((light.flags & LIGHT_HOLDS_SURFACES) != 0u) {
+        bool within = choice.part < WITHIN_FRACTION;
+        part = within ? WITHIN_FRACTION : 1.0 - WITHIN_FRACTION;
+        if (within) {
+            reach = 2.0 * forward;
+            forward = -forward;
+        }
+    }
+    return Emission(origin + forward * direction, NO_TRIANGLE, direction,
+                    radiant_strength(light, direction) / (part * pdf), pdf, reach);
 }
 
 // From a point of a surface, with the pdf by area that the point was chosen by.
@@ -71,7 +85,7 @@ Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choi
     }
     float cosine = dot(direction, normal);
     if (both_sides) cosine = abs(cosine);
-    Emission none = Emission(origin, triangle, direction, vec3(0.0), 0.0);
+    Emission none = Emission(origin, triangle, direction, vec3(0.0), 0.0, 0.0);
     // Rays do not see strands and points from within: what shone there would get out.
     bool within = both_sides && dot(direction, normal) < 0.0 && is_one_sided(triangle_vertices[3u * triangle].w);
     if (cosine <= 0.0 || within) return none;
@@ -87,7 +101,7 @@ Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choi
     float tangent = sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-6);
     if (!both_sides) radiance *= spread_attenuation(light, tangent);
     return Emission(origin + (front ? point.ray_offset : -point.ray_offset) * normal, triangle, direction,
-                    radiance * (cosine / (point.pdf * pdf)), pdf);
+                    radiance * (cosine / (point.pdf * pdf)), pdf, INFINITY_DISTANCE);
 }
 
 #ifdef PORTALS

@@ -55,9 +55,15 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
     return share;
 }
 
+// Of the diffuse or translucent part, seen from its own side of the surface: normal faces the viewer's.
+vec3 diffuse_share(Closure closure, uint part, vec3 normal, vec3 viewer, vec3 light) {
+    return (part == PART_DIFFUSE ? closure.diffuse : closure.translucent)
+        * diffuse_factor(closure, normal, viewer, light, part == PART_DIFFUSE);
+}
+
+// As seen from the side of the viewer, for whom the closure is.
 vec3 part_share(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
     if (part == PART_TRANSPARENT) return closure.transparent;
     if (part >= PART_REFLECTING) return lobes_share(path, closure, part, ior, viewer, light);
-    return (part == PART_DIFFUSE ? closure.diffuse : closure.translucent)
-        * diffuse_factor(closure, unpack_unit_vector(closure.diffuse_normal), viewer, light);
+    return diffuse_share(closure, part, unpack_unit_vector(closure.diffuse_normal), viewer, light);
 }

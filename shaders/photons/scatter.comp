@@ -15,6 +15,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 #include "photons/parts.glsl"
+layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
@@ -38,6 +39,9 @@ struct Scattering {
 
 // Lobes up to roughness 0.22 draw caustics; what rougher ones scatter is as soft as diffuse light.
 const float SHARPEST_ALPHA = 0.05;
+
+// Where normals differ from the surface's, light that only grazes it may count for much: as many times at most.
+const float MOST_BY_NORMALS = 4.0;
 
 // from_light: at once, and not from the world. Huang's hair gets such light by shadow rays in Cycles, and little of
 // it by paths: where those see none, none comes.
@@ -119,13 +123,17 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool fr
         result = Scattering(-arrival, closure.transparent * (norm / transparent), arrival, true, 0u, 0u, false,
                             PART_TRANSPARENT, 1.0);
     else {
+        // Viewers of all directions see a diffuse surface alike, so that photons leave it by the cosine to the surface
+        // itself; the shading normal says how much of the light counts.
+        vec3 geometric = unpack_unit_vector(closure.geometric_normal);
         vec3 normal = unpack_unit_vector(closure.diffuse_normal);
-        result = Scattering(cosine_hemisphere(reflected ? normal : -normal, disk), vec3(0.0), normal, !reflected,
-                            PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true,
-                            reflected ? PART_DIFFUSE : PART_TRANSLUCENT, 1.0);
-        result.weight = (reflected ? closure.diffuse : closure.translucent)
-                        * diffuse_factor(closure, normal, arrival, result.direction)
-                        * (norm / (reflected ? diffuse : translucent));
+        float counts = min(max(dot(normal, arrival), 0.0) / max(dot(geometric, arrival), 1e-6), MOST_BY_NORMALS);
+        if (!reflected) { geometric = -geometric; normal = -normal; }
+        uint part = reflected ? PART_DIFFUSE : PART_TRANSLUCENT;
+        result = Scattering(cosine_hemisphere(geometric, disk), vec3(0.0), geometric, !reflected,
+                            PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true, part, 1.0);
+        result.weight = diffuse_share(closure, part, normal, result.direction, arrival)
+                        * (counts * norm / (reflected ? diffuse : translucent));
     }
     return result;
 }
@@ -145,11 +153,12 @@ uint photon_flags(uint path_flags) {
          | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
 }
 
-// Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles.
+// Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles. Diffuse ones have it
+// already.
 float adjoint_correction(vec3 arrival, vec3 departure, vec3 geometric, vec3 shading) {
     float above = abs(dot(arrival, shading)) * abs(dot(departure, geometric));
     float below = abs(dot(arrival, geometric)) * abs(dot(departure, shading));
-    return min(above / max(below, 1e-6), 4.0);
+    return min(above / max(below, 1e-6), MOST_BY_NORMALS);
 }
 
 // The ray is turned to look from where the photon goes, and waits where that does not matter (adjoint.comp). Of a
@@ -160,7 +169,11 @@ void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec
     AdjointQuery query = AdjointQuery(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
     if (matters) {
         query.part = scattering.part;
-        query.share = part_share(index, closure, scattering.part, scattering.ior, arrival, scattering.direction);
+        vec3 normal = unpack_unit_vector(closure.diffuse_normal);
+        if (scattering.part == PART_DIFFUSE || scattering.part == PART_TRANSLUCENT)
+            query.share = diffuse_share(closure, scattering.part, scattering.transmitted ? -normal : normal,
+                                        scattering.direction, arrival);
+        else query.share = part_share(index, closure, scattering.part, scattering.ior, arrival, scattering.direction);
     } else {
         photon_paths[index].flags = path_flags;
         if ((closure.flags & CLOSURE_SUBSURFACE) != 0u) query.part = scattering.part;
@@ -219,8 +232,9 @@ void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neigh
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
     if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
     photon_differentials[index].before = straight ? away : 0.0;
-    if (scattering.transmitted) path_flags = cross_surface(path_flags, closure);
-    vec3 origin = closure.position + (side > 0.0 ? closure.ray_offset : -closure.ray_offset) * geometric;
+    if (scattering.transmitted) path_flags = cross_surface(path_flags, closure.material, closure_backfacing(closure));
+    float offset = closures[index].ray_offset;
+    vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
     rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
     if (parameters.has_adjoint_queries != 0u)
         store_adjoint_query(index, closure, scattering, arrival, path_flags);
@@ -249,7 +263,7 @@ void main() {
         photon_paths[index].escaped = total(carried);
         return;
     }
-    vec3 flux = carried * segment_transmittance(path_flags, closure);
+    vec3 flux = carried * segment_transmittance(path_flags, closure.distance);
     bool counts = !passes_uncounted(closure, path_flags), ends = !(largest(flux) > 0.0);
     PhotonDifferential differential = photon_differentials[index];
     bool neighbors_known = differential.known != 0u;

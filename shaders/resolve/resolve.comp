@@ -67,15 +67,13 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     float shading_length = length(shading);
     shading = shading_length > 1e-6 ? shading / shading_length : surface.geometric;
     surface.backfacing = dot(surface.geometric, surface.viewer) < 0.0;
+    // As in Cycles, wherever the normals of the corners point: both turn where the face is seen from behind.
     if (surface.backfacing) surface.geometric = -surface.geometric;
     closures[index].ray_offset = ray_offset(surface.geometric, v0, v1, v2);
-    if (dot(shading, surface.geometric) < 0.0) shading = -shading;
-    // A shading normal that faces away from the viewer has no meaning: bend it until it is seen.
-    float seen = dot(shading, surface.viewer);
-    if (seen < 1e-3) shading = normalize(shading + (1e-3 - seen) * surface.viewer);
-    surface.normal = shading;
+    surface.normal = surface.backfacing ? -shading : shading;
     surface.position = b.x * v0 + b.y * v1 + b.z * v2;
     surface.barycentrics = b;
+    surface.beside = vec3(0.0);
     surface.triangle = hit.triangle;
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;

@@ -44,7 +44,7 @@ LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate e
     uint scatter = lobe_scatter(unpack_kind(importon.lobe_kind), !estimate.front);
     bool diffuse_lobe = scatter == SCATTER_DIFFUSE, by_ray = (importon.gathers & GATHERED_BY_RAY) != 0u;
     vec3 diffuse = diffuse_lobe ? estimate.radiance : estimate.diffuse;
-    vec3 lobe = max(estimate.radiance - diffuse, vec3(0.0));
+    vec3 lobe = estimate.radiance - diffuse;
     if (part == 2u) {
         bool is_caustic = ((history & HISTORY_CAUSTIC) != 0u) || (photon_flags & PHOTON_CAUSTIC) != 0u;
         vec3 caustic = vec3(0.0);

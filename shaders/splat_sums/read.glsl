@@ -6,7 +6,6 @@ layout(std430, binding = 1) readonly buffer SplatSums;
 // The sum of a pixel in quanta.
 vec3 read_sum(uint pixel, bool by_ray) {
     uint place = first_word(pixel, by_ray);
-    vec3 low = vec3(sum_words[place], sum_words[place + 2u], sum_words[place + 4u]);
-    vec3 high = vec3(sum_words[place + 1u], sum_words[place + 3u], sum_words[place + 5u]);
-    return high * WORD + low;
+    return quanta_of(uvec3(sum_words[place], sum_words[place + 2u], sum_words[place + 4u]),
+                     uvec3(sum_words[place + 1u], sum_words[place + 3u], sum_words[place + 5u]));
 }

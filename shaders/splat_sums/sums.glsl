@@ -15,12 +15,17 @@ uint first_word(uint pixel, bool by_ray) { return 12u * pixel + (by_ray ? 6u : 0
 uint diffused_place(uint pixel) { return 2u * pixel; }
 uint caustic_place(uint pixel) { return 2u * pixel + 1u; }
 
-// Low and high word of a number of quanta, rounded.
-uvec2 whole_quanta(float quanta) {
+// Low and high word of a number of quanta, rounded; of negative ones the two's complement.
+uvec2 whole_quanta(float signed_quanta) {
+    float quanta = abs(signed_quanta);
     if (!(quanta >= 0.5)) return uvec2(0u);
     quanta = min(quanta, MOST_QUANTA);
     float high = floor(quanta / WORD);
     // What a float cannot count in whole quanta already is whole.
     float rest = quanta - high * WORD;
-    return uvec2(whole_word(rest < 8388608.0 ? floor(rest + 0.5) : rest), whole_word(high));
+    uvec2 words = uvec2(whole_word(rest < 8388608.0 ? floor(rest + 0.5) : rest), whole_word(high));
+    return signed_quanta < 0.0 ? uvec2(~words.x + 1u, ~words.y + (words.x == 0u ? 1u : 0u)) : words;
 }
+
+// A sum of three channels from its words.
+vec3 quanta_of(uvec3 low, uvec3 high) { return vec3(ivec3(high)) * WORD + vec3(low); }

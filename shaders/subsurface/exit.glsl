@@ -22,10 +22,10 @@ Exit exit_of(uint index) {
     found.position = b.x * v0 + b.y * v1 + b.z * v2;
     found.geometric = normalize(cross(v1 - v0, v2 - v0));
     found.ray_offset = ray_offset(found.geometric, v0, v1, v2);
-    if (dot(found.geometric, walk_rays[index].direction) < 0.0) found.geometric = -found.geometric;
+    bool turned = dot(found.geometric, walk_rays[index].direction) < 0.0;
+    if (turned) found.geometric = -found.geometric;
     vec3 shading = triangle_normal(hit.triangle, b);
     float size = length(shading);
-    found.shading = size > 1e-6 ? shading / size : found.geometric;
-    if (dot(found.shading, found.geometric) < 0.0) found.shading = -found.shading;
+    found.shading = size > 1e-6 ? (turned ? -shading : shading) / size : found.geometric;
     return found;
 }

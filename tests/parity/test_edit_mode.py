@@ -21,9 +21,7 @@ def object_mode():
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-@pytest.mark.parametrize(
-    "case", [pytest.param(case, marks=() if case in FEW else pytest.mark.long) for case in CASES]
-)
+@pytest.mark.parametrize("case", [pytest.param(case, marks=() if case in FEW else pytest.mark.long) for case in CASES])
 def test_objects_that_are_edited(renderer, case):
     """What glows by its normal shows shape and modifiers."""
     CASES[case](case)

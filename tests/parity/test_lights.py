@@ -8,7 +8,7 @@ import pytest
 from support.families import some_each_time
 
 from .comparison import CONVERGED, compare
-from .scenes import DIFFUSE, EMISSION, camera, light, material, new_scene, place, plane, render_cycles, render_rppm
+from .scenes import DIFFUSE, EMISSION, box, camera, light, material, new_scene, place, plane, render_cycles, render_rppm
 
 UP_TWO = {"at": (0.3, 0.2, 2.0)}
 TILTED = {"at": (0.5, 0.0, 2.0), "turn": (20.0, 30.0, 10.0)}
@@ -88,3 +88,24 @@ def test_light_on_a_diffuse_plane(renderer, name, mode):
     reference = render_cycles(samples=256)
     result = render_rppm(renderer, direct_light=mode, **MODES[mode])
     compare(f"light_{name}_{mode.lower()}", result.pictures, reference, CONVERGED)
+
+
+CUT_LAMPS = {
+    "disk": _light("POINT", {}, shadow_soft_size=0.3),
+    "sphere": _light("POINT", {}, shadow_soft_size=0.3, use_soft_falloff=False),
+}
+
+
+@pytest.mark.parametrize("mode", ["RAYS", pytest.param("PHOTONS", marks=pytest.mark.long)])
+@pytest.mark.parametrize("name", CUT_LAMPS)
+def test_lamp_half_in_a_floor(renderer, name, mode):
+    """What the walls get of it, and what comes from the floor within its radius, in a closed room."""
+    new_scene()
+    gray = material(DIFFUSE, Color=0.5)
+    box((2.0, 2.0, 2.0), gray)
+    plane(2.0, gray)
+    camera((0.0, -1.8, 1.0), (0.0, 2.0, 0.8), 90.0)
+    CUT_LAMPS[name]()
+    reference = render_cycles(samples=256)
+    result = render_rppm(renderer, direct_light=mode, photons=32768, iterations=12)
+    compare(f"lamp_in_a_floor_{name}_{mode.lower()}", result.pictures, reference, CONVERGED)

@@ -43,8 +43,11 @@ class Lobe:
         self.roughness, self.ior, self.multiscatter, self.inputs = roughness, ior, multiscatter, inputs
 
 
-def material(name: str, *lobes: Lobe, absorption: np.ndarray | None = None) -> Material:
-    """A material whose surface is the sum of the lobes."""
+def material(
+    name: str, *lobes: Lobe, absorption: np.ndarray | None = None, glow: np.ndarray | None = None
+) -> Material:
+    """A material whose surface is the sum of the lobes, with a medium inside: its absorption, 1/m, and what it emits,
+    W/(m^3 sr)."""
     graph = NodeGraph()
     for lobe in lobes:
         shader = _shader(graph, lobe)
@@ -55,10 +58,15 @@ def material(name: str, *lobes: Lobe, absorption: np.ndarray | None = None) -> M
             if graph.surface is None
             else graph.add("add_shader", "shader", shader=graph.surface, shader_001=shader)
         )
-    if absorption is None:
+    if absorption is None and glow is None:
         return Material(name, graph)
     interior = NodeGraph()
-    interior.surface = interior.add("emission", "emission", color=tuple(float(a) for a in absorption))
+    most = float(np.max(absorption)) if absorption is not None else 0.0
+    color = tuple(1.0 - float(a) / most for a in absorption) if most > 0.0 else (1.0, 1.0, 1.0)
+    interior.surface = interior.add("volume_absorption", "volume", color=color, density=most)
+    if glow is not None:
+        emission = interior.add("emission", "emission", color=tuple(float(e) for e in glow))
+        interior.surface = interior.add("add_shader", "shader", shader=interior.surface, shader_001=emission)
     return Material(name, graph, interior)
 
 

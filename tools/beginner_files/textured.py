@@ -127,7 +127,7 @@ def _domain(domain: str, kind: str) -> None:
     start()
     thing = monkey()
     attribute = thing.data.attributes.new("Painted", kind, domain)
-    random = np.random.default_rng(5)
+    generator = np.random.default_rng(5)
     channels, member = {
         "FLOAT": (1, "value"),
         "INT": (1, "value"),
@@ -138,7 +138,7 @@ def _domain(domain: str, kind: str) -> None:
         "BYTE_COLOR": (4, "color"),
         "INT8": (1, "value"),
     }[kind]
-    values = random.random(len(attribute.data) * channels) * (3.0 if kind.startswith("INT") else 1.0)
+    values = generator.random(len(attribute.data) * channels) * (3.0 if kind.startswith("INT") else 1.0)
     attribute.data.foreach_set(member, values.astype(TYPES.get(kind, np.float32)))
     tree, vector = glowing(thing)
     node = tree.nodes.new("ShaderNodeAttribute")

@@ -62,7 +62,7 @@ def export_scene(
     """
     context = _context_of(depsgraph, engine, should_stop)
     source = depsgraph.scene_eval
-    scene = Scene(camera=export_camera(source, depsgraph, eye=Eye(engine)))
+    scene = Scene(camera=export_camera(source, depsgraph, eye=Eye(engine), report=context.report))
     scene.settings = export_settings(source, depsgraph.view_layer)
     is_preview = engine is not None and engine.is_preview
     if is_preview:

@@ -46,7 +46,7 @@ class FrameExporter:
     def _exported(self, depsgraph: bpy.types.Depsgraph, sync: SceneSync, eye: Eye) -> Scene:
         report = self._new_report()
         report.progress("Exporting the scene")
-        camera = export_camera(depsgraph.scene_eval, depsgraph, eye=eye)
+        camera = export_camera(depsgraph.scene_eval, depsgraph, eye=eye, report=report)
         scene = sync.update(depsgraph, camera)
         self._sync = sync
         warnings = [*report.warnings, *scene.warnings] if report.warnings else scene.warnings

@@ -39,19 +39,20 @@ def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def unscaled(matrix: np.ndarray) -> np.ndarray:
     """The matrix (4, 4) of a camera with axes of length 1, as Cycles has it; mirrored and sheared as it was.
 
-    What is hardly sheared gets right angles, keeping -Z and then Y. Raises ValueError when the matrix is not finite or
-    singular.
+    What is hardly sheared gets right angles, keeping -Z and then Y. Raises ValueError when the matrix is not finite,
+    has an axis of length 0, or axes in one plane, however long they are.
     """
     linear = matrix[:3, :3]
-    if not np.isfinite(matrix).all() or abs(np.linalg.det(linear)) <= 1e-12 * np.abs(linear).max() ** 3:
+    lengths = np.linalg.norm(linear, axis=0)
+    if not np.isfinite(matrix).all() or lengths.min() == 0.0 or abs(np.linalg.det(linear / lengths)) <= 1e-12:
         raise ValueError("the matrix is singular")
-    axes = linear / np.linalg.norm(linear, axis=0)
+    axes = linear / lengths
     result = np.eye(4)
     result[:3, :3], result[:3, 3] = axes, matrix[:3, 3]
     if np.abs(axes.T @ axes - np.eye(3)).max() > SHEARED:
         return result
     backward = axes[:, 2]
-    up = linear[:, 1] - backward * (linear[:, 1] @ backward)
+    up = axes[:, 1] - backward * (axes[:, 1] @ backward)
     up /= np.linalg.norm(up)
-    result[:3, 0], result[:3, 1] = np.cross(up, backward) * np.sign(np.linalg.det(linear)), up
+    result[:3, 0], result[:3, 1] = np.cross(up, backward) * np.sign(np.linalg.det(axes)), up
     return result

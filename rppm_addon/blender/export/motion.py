@@ -17,8 +17,8 @@ from .camera.eyes import Eye
 from .context import ExportContext
 from .culling import Culling
 from .matrices import usable_matrices
-from .meshes.edited_meshes import rendered_mesh
 from .meshes.meshes import read_shape, read_velocities
+from .meshes.rendered_meshes import rendered_mesh
 from .objects.mesh_table import MeshTable
 from .objects.object_pass import Identity, Placed, identity_of, identity_of_hair
 from .objects.objects import ObjectExporter
@@ -144,7 +144,7 @@ class MotionExporter:
         images.frame = of_frame
         objects.meshes.forget(read_edits(self._depsgraph).shapes)
         source = self._depsgraph.scene_eval
-        scene.camera = export_camera(source, self._depsgraph, camera, self._eye)
+        scene.camera = export_camera(source, self._depsgraph, camera, self._eye, self._context.report)
         self._context.culling = Culling(source, scene.camera)
         return objects.export(self._depsgraph, identify=True)
 

@@ -3,11 +3,29 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 _FOR_PHOTONS_ALONE = 2.0
 _LEAST_PER_PIXEL, _FEWEST = 0.25, 1 << 11
+_OF_USE = 1e-3
+"""Of a light's photons in the first iteration: where more contributed, all of them count."""
 
 
-def later_photons(first: int, pixels: int, by_photons: int, listed: int) -> int:
+def photons_of_use(by_light: np.ndarray) -> tuple[float, float]:
+    """Photons of the first iteration, and the caustic ones among them, that importons might take, of lights that shine
+    on what the camera sees.
+
+    by_light: (n, 3) of each light's photons those that importons might take, the diffused ones among them, and those
+    that contributed. Lights of which next to none did, such as lamps in other rooms, count by as much less.
+    """
+    listed, diffused, contributed = by_light.astype(np.float64).T
+    if not contributed.any():
+        return float(listed.sum()), float((listed - diffused).sum())
+    weights = np.minimum(contributed / np.maximum(_OF_USE * listed, 1.0), 1.0)
+    return float(weights @ listed), float(weights @ (listed - diffused))
+
+
+def later_photons(first: int, pixels: int, by_photons: float, listed: float) -> int:
     """Photons of each iteration after the first, where automatic, from how many photons of the first one importons
     might take, and how many of these show light that no ray looks for: caustic ones, or all without final gather.
 

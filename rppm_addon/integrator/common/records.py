@@ -199,13 +199,10 @@ StorageBlock("WalkRays", "Ray walk_rays[];")
 StorageBlock("ExitHits", "Hit exit_hits[];")
 """Where walks have come out; none of those that have not."""
 
-CLOSURE_CURVED = 32
-"""Of a closure's flags: shadow rays begin on the surface that the normals tell of."""
 TERMINATOR_SHIFT, TERMINATOR_STEPS = 10, 63
-"""Where in them, and in how many steps, the shading offset of the shadow terminator stands."""
+"""Where in a closure's flags, and in how many steps, the shading offset of the shadow terminator stands."""
 Constants(
     "Terminators",
-    CLOSURE_CURVED=CLOSURE_CURVED,
     TERMINATOR_SHIFT=TERMINATOR_SHIFT,
     TERMINATOR_STEPS=TERMINATOR_STEPS,
 )
@@ -483,12 +480,15 @@ LIGHT_SHADOWLESS = 64
 """Likewise: no shadows are cast in its light."""
 LIGHT_THROUGH_PORTALS = 128
 """Likewise: photons of the world that leave through portals. It is chosen for nothing else."""
+LIGHT_HOLDS_SURFACES = 256
+"""Likewise: there are surfaces within its radius, which a sphere lights from within and which hide parts of a disk."""
 Constants(
     "Lights",
     LIGHT=LightShape,
     LIGHT_SOFT=LIGHT_SOFT,
     LIGHT_SHADOWLESS=LIGHT_SHADOWLESS,
     LIGHT_THROUGH_PORTALS=LIGHT_THROUGH_PORTALS,
+    LIGHT_HOLDS_SURFACES=LIGHT_HOLDS_SURFACES,
 )
 
 LIGHT = Record(

@@ -45,6 +45,8 @@ class StageSizes:
     """Whether materials reflect by the model of Ashikhmin and Shirley, likewise."""
     has_portals: bool = False
     """Whether portals say where the world's light comes in; likewise."""
+    has_media: bool = False
+    """Whether materials fill the inside of what they are on."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -69,6 +71,7 @@ class StageSizes:
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
+            any(material.interior is not None for material in scene.materials),
         )
 
     @property

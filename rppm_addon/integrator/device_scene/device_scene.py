@@ -11,6 +11,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
+from ...scene.meshes import Mesh
 from ...scene.moving_scene import MovingScene
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
@@ -18,6 +19,7 @@ from ..common.known import known
 from ..deep_cubemap.deep_cubemap import DeepCubemap
 from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..lights.lights import Lights
+from ..surfaces.bodies import warn_of_open_bodies
 from ..surfaces.displacement import Displacement
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
@@ -56,6 +58,7 @@ class DeviceScene:
         self._swept = _NOWHERE
         """What things move through while the shutter is open (swept_bounds)."""
         self._wanted_center = np.full(3, np.nan)
+        self._checked_bodies: dict[int, tuple[Mesh, bool]] = {}
 
     @property
     def moves(self) -> bool:
@@ -162,6 +165,9 @@ class DeviceScene:
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):
                 self.resolve.build(scene, self.geometry, self.materials)
+            if not keep_learned:  # within an open shutter no mesh gets holes
+                with self._collect_warnings("bodies"):
+                    self._warn_of_media(scene)
         self.resolve.look_from(scene.camera, scene.settings.seed)
         if changes.geometry or changes.materials or changes.lights:
             with self._collect_warnings("lights"):
@@ -177,6 +183,15 @@ class DeviceScene:
                 )
         elif not keep_learned:
             self.lights.begin(photons)
+
+    def _warn_of_media(self, scene: Scene) -> None:
+        """Warn of media of which it is not clear where they are, or whose light is lost."""
+        if not self.materials.materials_with_media:
+            return
+        warn_of_open_bodies(scene, self.materials.materials_with_media, self._checked_bodies)
+        settings = scene.settings
+        if self.materials.media_emit and not (settings.use_final_gather and settings.camera_path_length > 1):
+            scene.warn("Volumes that emit light shine on surfaces by Final Gather only, which is off")
 
     @contextlib.contextmanager
     def _collect_warnings(self, part: str) -> Iterator[None]:

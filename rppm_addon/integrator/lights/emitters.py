@@ -82,7 +82,7 @@ class Emitters(BufferSet):
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
         records, corners, kinds, varying, reflected, numbers, sides = _candidates(scene, geometry, materials, links)
         self._ask(records, corners, kinds, varying, resolve)
-        bright = records["radiance"].max(axis=1, initial=0.0) > 0
+        bright = records["radiance"].any(axis=1)
         if not bright.all():  # where all are, none of these many bytes is copied
             records, corners, varying, reflected, numbers, sides = (
                 column[bright] for column in (records, corners, varying, reflected, numbers, sides)
@@ -93,8 +93,9 @@ class Emitters(BufferSet):
         self._varying = bool(varying.any())
         self._world_triangles = geometry.triangles.buffer
         self.count = len(records)
-        weights = records["radiance"].mean(axis=1, dtype=np.float64) * records["area"]
-        self.power = math.pi * (records["radiance"].T.astype(np.float64) @ (sides * records["area"]))
+        magnitudes = np.abs(records["radiance"])
+        weights = magnitudes.mean(axis=1, dtype=np.float64) * records["area"]
+        self.power = math.pi * (magnitudes.T.astype(np.float64) @ (sides * records["area"]))
         if self.count:
             steps = chances(weights)
             records["share"] = steps / _STEPS
@@ -121,7 +122,7 @@ class Emitters(BufferSet):
             radiance[even] = self._emission(records["triangle"][even[first]], corners[even[first]], 1, resolve)[inverse]
         uneven = np.nonzero(varying)[0]
         if len(uneven):
-            radiance[uneven] = self._emission(records["triangle"][uneven], corners[uneven], _POINTS, resolve)
+            radiance[uneven] = np.abs(self._emission(records["triangle"][uneven], corners[uneven], _POINTS, resolve))
             for kind in np.unique(kinds[uneven]):
                 of_kind = uneven[kinds[uneven] == kind]
                 mean = np.average(radiance[of_kind], axis=0, weights=records["area"][of_kind])

@@ -83,24 +83,23 @@ class Environment(BufferSet):
             self.disown(texture)
         self.width = self.height = 0
         self.brightness, self._directions, self.has_others = None, np.zeros(0, np.float32), False
-        self.radiance = self.mean_radiance = np.maximum(world.radiance, 0.0).astype(np.float64)
+        self.radiance = self.mean_radiance = np.asarray(world.radiance, np.float64)
         if world.graph is None or emits(world.graph) is not Emits.VARYING:
             if world.graph is not None:
-                self.radiance = self.mean_radiance = self.radiance * np.maximum(
-                    materials.evaluate(world.graph)[0, 0], 0.0
-                )
+                self.radiance = self.mean_radiance = self.radiance * materials.evaluate(world.graph)[0, 0]
             self._textures = [self._texture(np.ones((1, 1, 3), np.float32))]
             return
         width = _map_width(world.graph, images)
         maps = [materials.evaluate(world.graph, width, width // 2)]
         if asks_for_path(world.graph):
             maps.append(materials.evaluate(world.graph, width, width // 2, from_camera=True))
-        maps = [np.maximum(pixels * self.radiance.astype(np.float32), 0.0) for pixels in maps]
+        maps = [pixels * self.radiance.astype(np.float32) for pixels in maps]
         self.radiance = np.ones(3)
         self._textures = [self._texture(pixels) for pixels in maps]
         sine = np.sin(np.pi * (np.arange(width // 2) + 0.5) / (width // 2))[:, None, None]
-        self.mean_radiance = (maps[0] * sine).mean(axis=(0, 1), dtype=np.float64) / sine.mean()
-        brightness = _reduced(maps[0].mean(axis=2, dtype=np.float64))
+        # By magnitude, as what directions are chosen by: where light is negative, the rest does not outweigh it.
+        self.mean_radiance = (np.abs(maps[0]) * sine).mean(axis=(0, 1), dtype=np.float64) / sine.mean()
+        brightness = _reduced(np.abs(maps[0]).mean(axis=2, dtype=np.float64))
         self.height, self.width = brightness.shape
         self.brightness = brightness if brightness.max() > 0 else np.ones_like(brightness)
         self._directions = distribution_of(self.brightness)

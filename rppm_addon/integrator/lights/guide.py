@@ -31,6 +31,9 @@ _DEFENSIVE = 0.25
 _PRIOR_PHOTONS = 4.0
 """Photons that a cell needs until it is believed more than the cells around it."""
 
+_DOUBTED_PHOTONS = 32.0
+"""Photons of a light after which, if none contributed, it is as likely that none ever will."""
+
 _FINEST = {
     LightShape.POINT: (1, 1, 128, 128),
     LightShape.SPOT: (1, 1, 128, 128),
@@ -55,10 +58,13 @@ def cells_of(kind: int, photons: int) -> tuple[int, ...]:
 def contribution_probability(left: np.ndarray, contributed: np.ndarray) -> np.ndarray:
     """Share of each cell's photons that contribute, from tallies of any shape of powers of two.
 
-    A cell with few photons is taken for the coarser cell that it lies in, that for the next coarser, and so on.
+    A cell with few photons is taken for the coarser cell that it lies in, that for the next coarser, and so on. What is
+    believed of a light of which none contribute falls with the square of their number, as it may be one that shines
+    elsewhere: however powerful, it leaves the photons to lights that are seen.
     """
     if left.size == 1:
-        return (contributed + 0.5) / (left + 1.0)
+        hopes = np.where(contributed > 0, 1.0, _DOUBTED_PHOTONS / (_DOUBTED_PHOTONS + left))
+        return (contributed + 0.5 * hopes) / (left + 1.0)
     halves = tuple(n for size in left.shape for n in ((size // 2, 2) if size > 1 else (1, 1)))
     pairs = tuple(range(1, 2 * left.ndim, 2))
     coarse = contribution_probability(left.reshape(halves).sum(pairs), contributed.reshape(halves).sum(pairs))

@@ -46,7 +46,7 @@ def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarr
     entry["position"] = light.matrix[:3, 3]
     normal = -_unit(axes[:, 2])
     entry["normal"] = normal
-    entry["strength"] = strength = np.maximum(light.strength, 0.0)
+    entry["strength"] = strength = np.asarray(light.strength, np.float64)
     entry["radius"] = max(light.radius, 0.0)
     soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
     entry["flags"] = (

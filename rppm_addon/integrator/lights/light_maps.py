@@ -74,8 +74,8 @@ class LightMaps(BufferSet):
             if index not in places:
                 continue
             x, y, map_width, map_height = places[index]
-            pixels = np.maximum(_asked(light, shapes[index], (map_width, map_height), 1.0, materials), 0.0)
-            largest = float(pixels.max(initial=0.0))
+            pixels = _asked(light, shapes[index], (map_width, map_height), 1.0, materials)
+            largest = float(np.abs(pixels).max(initial=0.0))
             falls = (1.0 + nodes.smoothing) * np.ones(3)
             nodes.scale = falls * largest
             nodes.mean = falls * _mean(pixels, light, shapes[index])
@@ -204,13 +204,13 @@ def _even(light: Light, varies: LightVariation, shape: MapShape | None, material
     extent = _extent(light) if asked is MapShape.CONE else 0.0
 
     def mean(distance: float) -> np.ndarray:
-        return _mean(np.maximum(_asked(light, asked, _COARSE, distance, materials), 0.0), light, asked)
+        return _mean(_asked(light, asked, _COARSE, distance, materials), light, asked)
 
     near_values = mean(1.0)
     found = LightNodes(near_values, near_values, shape=shape, extent=extent)
     if light.kind is LightKind.SUN or not varies.distance:
         return found
-    near, twice, far, farther = (float(value.sum()) for value in (near_values, *map(mean, (2.0, 1e4, 2e4))))
+    near, twice, far, farther = (float(np.abs(value).sum()) for value in (near_values, *map(mean, (2.0, 1e4, 2e4))))
     if min(near, twice, far, farther) <= 0.0:
         return found
     found.falloff = math.log2(farther / far)

@@ -82,7 +82,7 @@ def light_leaves(lights: np.ndarray) -> np.ndarray:
     leaves["low"], leaves["high"] = _widened(lights["position"] - reach, lights["position"] + reach)
     spread = area & (lights["spread_tangent"] > 0)
     straight_on = np.where(spread, lights["spread_tangent"] * lights["spread_scale"], 1.0)
-    leaves["intensity"] = lights["strength"].mean(axis=1) * np.where(area, lights["area"] * straight_on, 1.0)
+    leaves["intensity"] = np.abs(lights["strength"]).mean(axis=1) * np.where(area, lights["area"] * straight_on, 1.0)
     # Of a spot, spread_scale is one minus the cosine of the round cone that holds its beam.
     leaves["cosine_normals"] = np.select([point, spot], [-1.0, 1.0 - lights["spread_scale"]], 1.0)
     leaves["cosine_emission"] = np.select([spot, spread], [1.0, lights["cosine_cone"]], 0.0)
@@ -95,7 +95,7 @@ def sun_leaves(lights: np.ndarray) -> np.ndarray:
     leaves = LIGHT_NODE.zeros(len(members))
     leaves["member"] = members
     leaves["axis"] = lights["normal"][members]
-    leaves["intensity"] = lights["strength"][members].mean(axis=1)
+    leaves["intensity"] = np.abs(lights["strength"][members]).mean(axis=1)
     leaves["cosine_normals"] = lights["cosine_cone"][members]
     return leaves
 
@@ -108,7 +108,7 @@ def triangle_leaves(emissive: np.ndarray, corners: np.ndarray) -> np.ndarray:
     leaves["low"], leaves["high"] = _widened(corners.min(axis=1), corners.max(axis=1))
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     leaves["axis"] = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    leaves["intensity"] = emissive["radiance"].mean(axis=1) * emissive["area"]
+    leaves["intensity"] = np.abs(emissive["radiance"]).mean(axis=1) * emissive["area"]
     leaves["cosine_normals"] = 1.0
     leaves["two_sided"] = 1
     return leaves

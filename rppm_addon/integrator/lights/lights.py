@@ -20,6 +20,7 @@ from ..common.iteration import Iteration
 from ..common.known import known
 from ..common.records import (
     LIGHT,
+    LIGHT_HOLDS_SURFACES,
     LIGHT_LINK,
     LIGHT_NODE,
     LIGHT_SOFT,
@@ -39,6 +40,7 @@ from .light_maps import LightMaps
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
 from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name
+from .spheres import holds_surfaces
 
 log = logging.getLogger(__name__)
 
@@ -122,6 +124,8 @@ class Lights(BufferSet):
         self._parameters: dict[str, object] = {}
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
+        self.are_cut = False
+        """Whether surfaces lie within the radius of any soft light."""
         self.links_lights = False
         """Whether any light does not shine on everything, or is not stopped by everything."""
         self.limits_bounces = False
@@ -218,10 +222,10 @@ class Lights(BufferSet):
         links = LightLinkTable()
 
         def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0, group: str = "") -> None:
-            if np.isfinite(power).all() and np.max(power) > 0:
+            if np.isfinite(power).all() and np.any(power):
                 names.append(name)
                 entries.append(entry)
-                powers.append(float(np.mean(power)))
+                powers.append(float(np.mean(np.abs(power))))
                 weights.append(max(weight, 0.0))
                 groups.append(group)
 
@@ -231,6 +235,7 @@ class Lights(BufferSet):
             if is_portal(light):
                 continue
             entry, power = light_entry(light, radius)
+            entry["flags"] |= LIGHT_HOLDS_SURFACES * holds_surfaces(light, scene, geometry)
             entry["link"] = links.of_light(light)
             nodes = self.light_maps.nodes.get(index)
             if nodes is not None:
@@ -284,6 +289,8 @@ class Lights(BufferSet):
         self.has_falloff = bool(
             (table["flags"] & LIGHT_SOFT).any() or table["falloff"].any() or table["smoothing"].any()
         )
+        cut = LIGHT_SOFT | LIGHT_HOLDS_SURFACES
+        self.are_cut = bool(((table["flags"] & cut) == cut).any())
         self.table, self._photons, self._most_photons = table, photons, scene.photon_count
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
@@ -314,7 +321,7 @@ class Lights(BufferSet):
             "emissive_triangle_count": self.emitters.count,
             "mesh_selection": float(selection[table["kind"] == LightShape.MESH].sum()),
             "world_selection": float(selection[table["kind"] == LightShape.WORLD].sum()),
-            "environment_irradiance": 2 * math.pi * float(np.mean(self.environment.mean_radiance)),
+            "environment_irradiance": 2 * math.pi * float(np.mean(np.abs(self.environment.mean_radiance))),
             "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
             "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
             **self._light_tree.parameters,

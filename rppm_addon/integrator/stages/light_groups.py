@@ -107,6 +107,7 @@ class LightGroups(BufferSet):
                     "SeenLight": self._seen.buffer,
                     "LightGroupTable": lights.group_table.buffer,
                     "GroupedLight": self._grouped.buffer,
+                    "Materials": context.materials.buffers["Materials"],
                 },
                 {**lights.parameters(iteration), "groups": self._groups},
             )

@@ -9,10 +9,12 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.iteration import Iteration
 from ..common.living_paths import LivingPaths
+from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS, Lights
 
 Record("EmitParameters", **LIGHT_PARAMETERS, count="uint", target_count="uint")
 Record("FalloffParameters", **LIGHT_PARAMETERS, count="uint")
+Record("CutParameters", light_count="uint")
 Record("PortalPassedParameters", **LIGHT_PARAMETERS)
 
 
@@ -65,6 +67,29 @@ class PhotonEmission:
             count,
             {**lights.buffers, "Rays": rays, "Hits": hits, "PhotonPaths": photon_paths},
             {**lights.parameters(iteration), "count": count},
+        )
+
+    def cut_soft_lights(
+        self,
+        context: StageContext,
+        rays: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        photon_paths: moderngl.Buffer,
+        living: LivingPaths,
+    ) -> None:
+        """Where photons hit first: end those of soft lights whose place on the light something hides from there."""
+        cubemap, lights = context.deep_cubemap, context.lights
+        program = self._library.compute("photon_emission/cut.comp", cubemap.traversal_defines)
+        living.run(
+            program,
+            {
+                **cubemap.traversal_buffers,
+                "Lights": lights.buffers["Lights"],
+                "Rays": rays,
+                "Hits": hits,
+                "PhotonPaths": photon_paths,
+            },
+            {"light_count": len(lights.table)},
         )
 
     def leave_to_shadow_rays(

@@ -10,7 +10,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...scene.settings import DirectLight
 from ..common.iteration import Iteration
-from ..common.living_paths import PathList
+from ..common.living_paths import LivingPaths, PathList
 from ..common.records import (
     ADJOINT_QUERY,
     CLOSURE,
@@ -90,6 +90,16 @@ class Photons(BufferSet):
         self._emission = PhotonEmission(library)
 
     @property
+    def living(self) -> LivingPaths:
+        """The list of the paths that go on."""
+        return self._living
+
+    @property
+    def path_blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that change where or how paths begin."""
+        return {"Rays": self._rays.buffer, "PhotonPaths": self._paths.buffer}
+
+    @property
     def _blocks(self) -> dict[str, moderngl.Buffer]:
         """Storage blocks of the programs that send photons on."""
         return {
@@ -123,6 +133,8 @@ class Photons(BufferSet):
             self.first_hits.find(context, rays, hits, self._living)
             if context.lights.has_falloff:
                 self._emission.apply_falloff(context.lights, rays, hits, paths, self.photon_count, iteration)
+            if context.lights.are_cut:
+                self._emission.cut_soft_lights(context, rays, hits, paths, self._living)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
 
     def trace(self, context: StageContext, segment: int) -> bool:

@@ -24,6 +24,7 @@ from .gbuffer import GBuffer
 from .importons import Importons
 from .light_groups import LightGroups
 from .light_passes import LightPasses
+from .media import Media
 from .noise_estimate import NoiseEstimate
 from .photons import Photons
 from .primary_rays import PrimaryRays
@@ -38,6 +39,7 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "final gather": (FinalGather,),
     "shadow catcher": (ShadowCatcher,),
     "subsurface": (Subsurface,),
+    "media": (Media,),
     "density estimation": (DensityEstimator,),
     "passes": (Film, LightPasses, LightGroups, CausticRadii, NoiseEstimate),
 }
@@ -61,6 +63,7 @@ class StageSet(BufferSet):
     final_gather = Part(FinalGather)
     shadow_catcher = Part(ShadowCatcher)
     subsurface = Part(Subsurface)
+    media = Part(Media)
     film = Part(Film)
     light_passes = Part(LightPasses)
     light_groups = Part(LightGroups)

@@ -99,7 +99,8 @@ class DicedMesh:
         dicing = self._source.dicing
         if dicing is None or not dicing.is_curved:
             return self._of_vertices(np.einsum("pk,tkc->tpc", self._weights, corners))
-        normals = _vertex_means(self._source, corner_normals)[self._vertices]
+        filled = self._source.face_normals_filled(corner_normals, positions)
+        normals = _vertex_means(self._source, filled)[self._vertices]
         return self._of_vertices(_curved_points(corners, normals, self._weights))
 
     def normals(self, corner_normals: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
-from ..common.records import CLOSURE_CURVED, TERMINATOR_SHIFT, TERMINATOR_STEPS
+from ..common.records import TERMINATOR_SHIFT, TERMINATOR_STEPS
 from .geometry import Geometry
 
 SHADING_INSTANCE = Record(
@@ -97,7 +97,7 @@ class SurfaceAttributes(BufferSet):
         self.has_terminators = False
         if instances:
             _fill(records, instances, geometry.matrices, scene.meshes)
-            self.has_terminators = bool(records["terminator_flags"].any())
+            self.has_terminators = any((records[f"terminator_{name}"] > 0).any() for name in ("offset", "flags"))
             records["first_triangle"] = [placement.first_triangle for placement in geometry.placements]
         self._instances.upload(records)
         self._upload_values(scene.meshes, instances, mirrored(geometry.matrices) if names else [], names)
@@ -157,7 +157,7 @@ def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, 
     geometry, shading = (_column(instances, f"terminator_{name}_offset") for name in ("geometry", "shading"))
     records["terminator_offset"] = geometry
     steps = np.round(TERMINATOR_STEPS * np.clip(shading, 0.0, 1.0)).astype(np.uint32)
-    records["terminator_flags"] = steps << np.uint32(TERMINATOR_SHIFT) | np.where(geometry > 0.0, CLOSURE_CURVED, 0)
+    records["terminator_flags"] = steps << np.uint32(TERMINATOR_SHIFT)
     multiplied = np.flatnonzero([instance.particle is not None for instance in instances])
     particles = [instances[index].particle for index in multiplied]
     for name in _PARTICLE if particles else ():

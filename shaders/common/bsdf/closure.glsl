@@ -39,6 +39,8 @@ float closure_holdout(Closure closure) { return unpackUnorm2x16(closure.flags).y
 
 float lobe_cosine(MicrofacetLobe lobe, vec3 wo) { return clamp(dot(lobe_normal(lobe), wo), 0.0, 1.0); }
 
+bool closure_backfacing(Closure closure) { return (closure.flags & CLOSURE_BACKFACING) != 0u; }
+
 bool closure_hit(Closure closure) { return closure.triangle != NO_TRIANGLE; }
 
 // Smoother lobes cannot be evaluated toward a light, only followed.
@@ -64,10 +66,12 @@ uint dispersed_flag(Closure closure, MicrofacetLobe lobe, bool transmitted) {
     return (closure.flags & CLOSURE_DISPERSES) != 0u && is_dispersed(lobe, transmitted) ? PATH_DISPERSED : 0u;
 }
 
-// BSDF of the diffuse and translucent parts over that of smooth ones without a normal map; normal is unpacked.
-vec3 diffuse_factor(Closure closure, vec3 normal, vec3 wo, vec3 wi) {
-    return bump_shadowing(unpack_unit_vector(closure.shading_normal), normal, wi)
-        * rough_diffuse_factor(closure.diffuse_roughness, normal, wo, wi);
+// BSDF of the diffuse and translucent parts over that of smooth ones without a normal map; normal is unpacked. As in
+// Cycles a map's slopes shadow light that passes only where shadow rays bring it.
+vec3 diffuse_factor(Closure closure, vec3 normal, vec3 wo, vec3 wi, bool shadows) {
+    vec3 factor = rough_diffuse_factor(closure.diffuse_roughness, normal, wo, wi);
+    if (shadows) factor *= bump_shadowing(unpack_unit_vector(closure.shading_normal), normal, wi);
+    return factor;
 }
 
 // Diffuse and translucent BSDF times cosine. front: wi is on the geometric normal's side.
@@ -75,15 +79,13 @@ vec3 diffuse_scattered(Closure closure, vec3 wo, vec3 wi, bool front) {
     vec3 normal = unpack_unit_vector(closure.diffuse_normal);
     float cosine = dot(normal, wi);
     if ((cosine > 0.0) != front) return vec3(0.0);
-    return (front ? closure.diffuse : closure.translucent) * diffuse_factor(closure, normal, wo, wi)
+    return (front ? closure.diffuse : closure.translucent) * diffuse_factor(closure, normal, wo, wi, true)
            * (abs(cosine) / PI);
 }
 
-// By what side light counts for a closure, toward the viewer.
-vec3 lit_normal(Closure closure) {
-    return unpack_unit_vector((closure.flags & CLOSURE_CURVED) != 0u ? closure.shading_normal
-                              : closure.geometric_normal);
-}
+// By what side light that shadow rays bring counts for a closure. As in Cycles that is the shading normal's, so that no
+// faces show on smooth surfaces; sampled directions have to be on the geometric normal's side too.
+vec3 lit_normal(Closure closure) { return unpack_unit_vector(closure.shading_normal); }
 
 // What a shading offset of the shadow terminator leaves of light: its angle to the normal is stretched.
 float terminator_factor(uint closure_flags, vec3 normal, vec3 wi) {

@@ -30,6 +30,7 @@ bool lobe_transmits(uint kind) { return (kind >= LOBE_GLASS && kind <= LOBE_SHEE
 bool lobe_is_toon(uint kind) { return kind >= LOBE_TOON && !lobe_is_hair(kind); }
 bool lobe_has_facets(uint kind) { return kind < LOBE_SHEEN; }
 // For Cycles, as are the diffuse parts of a closure.
+// Whether the viewer is on the normal's side makes no difference then.
 bool lobe_is_diffuse(uint kind) { return kind == LOBE_SHEEN || kind == LOBE_TOON; }
 
 // Whether light from a direction with that cosine to the lobe's normal counts, which comes from the front of the
@@ -192,7 +193,7 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_
         if (cosine_i <= 0.0) result.weight = vec3(0.0);
         result.transmitted = false;
     }
-    if (dot(wo, n) <= 0.0) return LobeSample(n, vec3(0.0), false);
+    if (dot(wo, n) <= 0.0 && !(radiance && lobe_is_diffuse(lobe.kind))) return LobeSample(n, vec3(0.0), false);
     return result;
 }
 
@@ -270,13 +271,14 @@ LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
     if (lobe_is_toon(lobe.kind)) {
         float intensity = toon_intensity(lobe.f0, dot(lobe.kind == LOBE_TOON ? n : reflect(-wo, n), wi));
-        float pdf = cosine_o > 0.0 && cosine_i > 0.0 && intensity > 0.0 ? toon_pdf(lobe.f0) : 0.0;
+        float pdf = (cosine_o > 0.0 || lobe.kind == LOBE_TOON) && cosine_i > 0.0 && intensity > 0.0
+                    ? toon_pdf(lobe.f0) : 0.0;
         return LobeValue(lobe.weight * (pdf * intensity / max(cosine_i, 1e-20)), pdf);
     }
     bool fitted = lobe.kind == LOBE_SHEEN;
     float fitted_pdf = sheen_pdf(lobe.f0.xy, n, wo, wi);
     LobeValue value = LobeValue(vec3(0.0), fitted ? fitted_pdf : max(dot(n, wi), 0.0) / PI);
-    if (cosine_o > 0.0 && cosine_i > 0.0)
+    if ((cosine_o > 0.0 || fitted) && cosine_i > 0.0)
         value.bsdf = lobe.weight * ((fitted ? fitted_pdf : velvet_scattered(lobe.f0.x, n, wo, wi)) / cosine_i);
     return value;
 }

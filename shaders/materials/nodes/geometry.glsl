@@ -72,7 +72,7 @@ void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out 
 }
 
 void node_tangent(Surface surface, int direction_type, int axis, uint layer, out vec3 tangent) {
-    vec3 found = attribute_value(surface, layer).xyz, at = found - 0.5;
+    vec3 found = attribute_value(surface_itself(surface), layer).xyz, at = found - 0.5;
     if (direction_type == 0)
         found = axis == 0 ? vec3(0.0, -at.z, at.y) : (axis == 1 ? vec3(-at.z, 0.0, at.x) : vec3(-at.y, at.x, 0.0));
     tangent = surface_tangent(surface, found);

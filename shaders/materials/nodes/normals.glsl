@@ -17,6 +17,7 @@ vec3 object_normal(Surface surface) {
 
 void node_normal_map(Surface surface, int space, uint layer, float strength, vec3 color, out vec3 normal) {
     vec3 mapped = 2.0 * color - 1.0;
+    surface = surface_itself(surface);
     vec3 n;
     if (space == NORMAL_MAP_TANGENT) {
         uvec2 place = attribute_place(surface, layer);
@@ -81,7 +82,7 @@ void node_vector_displacement(Surface surface, int space, uint layer, vec3 vecto
     displacement = (vector - midlevel) * scale;
     if (space == VECTOR_DISPLACEMENT_TANGENT) {
         vec3 n = normalize(normal_to_object(surface, surface.normal));
-        vec4 tangent = attribute_value(surface, layer);
+        vec4 tangent = attribute_value(surface_itself(surface), layer);
         vec3 across = cross(n, tangent.xyz);
         float size = length(across);
         across *= size > 1e-20 ? tangent.w / size : 0.0;

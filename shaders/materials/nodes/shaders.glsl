@@ -11,7 +11,7 @@ void node_bsdf_diffuse(inout ClosureBuilder builder, float weight, vec3 color, f
 }
 
 void node_bsdf_translucent(inout ClosureBuilder builder, float weight, vec3 color, vec3 normal) {
-    add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), normal, 0u);
+    add_diffuse_parts(builder, vec3(0.0), weight * max(color, 0.0), reflecting_normal(builder, normal), 0u);
 }
 
 void node_bsdf_transparent(inout ClosureBuilder builder, float weight, vec3 color) {
@@ -19,7 +19,7 @@ void node_bsdf_transparent(inout ClosureBuilder builder, float weight, vec3 colo
 }
 
 void node_emission(inout ClosureBuilder builder, float weight, vec3 color, float strength) {
-    builder.closure.emission += weight * max(color * strength, 0.0);
+    builder.closure.emission += weight * color * strength;
 }
 
 void node_background(inout ClosureBuilder builder, float weight, vec3 color, float strength) {
@@ -141,7 +141,7 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
         unit(anisotropic), anisotropic_rotation, tangent,
         unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0),
         coat_normal,
-        unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0), max(emission_color * emission_strength, 0.0),
+        unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0), emission_color * max(emission_strength, 0.0),
         Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1, thin_wall == 1));
 }
 

@@ -6,7 +6,7 @@ import math
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_object, export
+from blender_scenes import add_object, export, set_world
 from bpy_extras.object_utils import world_to_camera_view
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -163,10 +163,30 @@ def test_a_camera_by_shader_names_the_remedy(scene):
         export(scene)
 
 
-def test_singular_camera(scene):
-    scene.camera.scale = (0.0, 0.0, 0.0)
-    with pytest.raises(SceneError, match='"Camera".*scale'):
-        export(scene)
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO", "PANO"])
+@pytest.mark.parametrize("scale", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 1.0)])
+def test_a_camera_without_scale_sees_the_world_only(renderer, lit, scale, kind):
+    """As in Cycles, where an axis has no direction."""
+    set_world(lit, (0.25, 0.5, 0.125))
+    lit.camera.scale, lit.camera.data.type = scale, kind
+    if kind == "PANO":
+        owner = lit.camera.data if hasattr(lit.camera.data, "panorama_type") else lit.camera.data.cycles
+        owner.panorama_type = "EQUIRECTANGULAR"
+    exported = export(lit)
+    (warning,) = exported.warnings
+    assert "the world only" in warning and "scale" in warning
+    seen = renderer.render(exported).frame.combined
+    np.testing.assert_allclose(seen[..., :3], np.broadcast_to((0.25, 0.5, 0.125), (32, 32, 3)), rtol=1e-5)
+
+
+@pytest.mark.parametrize("scale", [(2.0, 1.0, 1.0), (1.0, 3.0, 0.5), (1e-7, 1e-7, 1e-7), (1e-9, 1.0, 1e6)])
+def test_uneven_scales_of_cameras_are_nothing(scene, scale):
+    scene.camera.rotation_euler = (0.8, 0.1, 0.3)
+    before = export(scene)
+    scene.camera.scale = scale
+    after = export(scene)
+    np.testing.assert_allclose(after.camera.matrix, before.camera.matrix, atol=1e-5)
+    assert after.warnings == [] and after.camera.clip_end == before.camera.clip_end
 
 
 def test_field_of_view(scene):

@@ -482,7 +482,7 @@ def test_meshes_tell_of_flat_faces_where_they_are_displaced(scene, domain):
     values = exported.attributes[SMOOTH_NORMALS].values
     smooth = values[:, 3].reshape(-1, 4)
     assert (smooth == smooth[:, :1]).all() and smooth[:, 0].sum() == (0 if domain == "FACE" else 5)
-    if domain == "FACE":  # of a cube's vertices all normals are alike
+    if domain == "FACE" or bpy.app.version < (5, 2):  # of a cube's vertices all normals are alike
         np.testing.assert_allclose(np.abs(values[:, :3]), 1.0 / np.sqrt(3.0), rtol=1e-5)
     else:
         np.testing.assert_array_equal(values[:, :3], exported.corner_normals)

@@ -16,13 +16,29 @@ def naive_arrays(mesh):
     return {
         "positions": np.array([tuple(vertex.co) for vertex in mesh.vertices], np.float32),
         "corner_vertices": np.array([loop.vertex_index for loop in mesh.loops], np.int32),
-        "corner_normals": np.array([tuple(normal.vector) for normal in mesh.corner_normals], np.float32),
+        "corner_normals": naive_normals(mesh),
         "triangle_corners": np.array([tuple(triangle.loops) for triangle in mesh.loop_triangles], np.int32),
         "triangle_slots": np.array(
             [mesh.polygons[triangle.polygon_index].material_index for triangle in mesh.loop_triangles], np.int32
         ),
         "corner_uv": None if uv is None else np.array([tuple(item.vector) for item in uv.uv], np.float32),
     }
+
+
+def naive_normals(mesh):
+    """Flat faces have 0. Beside them smooth faces have the normals of vertices, but from Blender 5.2 on, or with sharp
+    edges and custom normals, those of corners."""
+    normals = np.array([tuple(normal.vector) for normal in mesh.corner_normals], np.float32)
+    if mesh.has_custom_normals:
+        return normals
+    mixed = mesh.normals_domain == "CORNER" and not any(edge.use_edge_sharp for edge in mesh.edges)
+    if mesh.normals_domain == "FACE":
+        return np.zeros_like(normals)
+    if mixed and bpy.app.version < (5, 2):
+        for polygon in mesh.polygons:
+            for corner, vertex in zip(polygon.loop_indices, polygon.vertices, strict=True):
+                normals[corner] = mesh.vertices[vertex].normal if polygon.use_smooth else 0.0
+    return normals
 
 
 def assert_same(exported, mesh):
@@ -240,3 +256,53 @@ def test_only_a_last_modifier_that_is_shown_divides_adaptively(scene):
     modifier.show_viewport = True
     source.modifiers.new("Triangulate", "TRIANGULATE")
     assert dicing() is None
+
+
+def cut_away(scene, source):
+    """A modifier that leaves nothing of an object."""
+    source.vertex_groups.new(name="None")
+    source.modifiers.new("Mask", "MASK").vertex_group = "None"
+
+
+def test_an_object_of_whose_faces_nothing_is_left_is_named(scene):
+    first, second = add_mesh(scene, "First"), add_mesh(scene, "Second")
+    cut_away(scene, first)
+    exported = export(scene)
+    assert [instance.object_name for instance in exported.instances] == ["Second"]
+    (warning,) = exported.warnings
+    assert 'Object "First": its modifiers leave no faces' in warning
+    cut_away(scene, second)
+    (warning,) = export(scene).warnings
+    assert 'Objects "First", "Second": their modifiers leave no faces' in warning
+
+
+def test_a_multiplied_object_of_whose_faces_nothing_is_left_is_named(scene):
+    source = add_mesh(scene, "Source")
+    cut_away(scene, source)
+    collection = bpy.data.collections.new("Instanced")
+    collection.objects.link(source)
+    scene.collection.objects.unlink(source)
+    empty = add_object(scene, "Empty", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    (warning,) = export(scene).warnings
+    assert 'Object "Source": its modifiers leave no faces' in warning
+
+
+def test_meshes_without_faces_are_as_they_are_meant(scene):
+    """Edges alone, no vertex at all, and a mesh in place of which its nodes show others."""
+    add_mesh(scene, "Edges", [(0, 0, 0), (1, 0, 0)], [])
+    add_mesh(scene, "Empty", [], [])
+    points = add_mesh(scene, "Points")
+    tree = bpy.data.node_groups.new("Points", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    before, multiply, cube, after = (
+        tree.nodes.new(kind)
+        for kind in ("NodeGroupInput", "GeometryNodeInstanceOnPoints", "GeometryNodeMeshCube", "NodeGroupOutput")
+    )
+    tree.links.new(before.outputs[0], multiply.inputs["Points"])
+    tree.links.new(cube.outputs[0], multiply.inputs["Instance"])
+    tree.links.new(multiply.outputs[0], after.inputs[0])
+    points.modifiers.new("Points", "NODES").node_group = tree
+    exported = export(scene)
+    assert exported.warnings == [] and len(exported.instances) == 4

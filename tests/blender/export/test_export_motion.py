@@ -116,6 +116,7 @@ def bent(owner, middle=0.5):
 def test_shapes_have_keys(scene):
     set_world(scene)
     quad, other = add_mesh(scene, "Quad"), add_mesh(scene, "Still")
+    quad.data.shade_smooth()
     bent(quad)
     blur()
     taken = taken_scene()

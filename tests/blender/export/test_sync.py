@@ -288,6 +288,8 @@ def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
 
 
 def test_a_mesh_that_bends_keeps_its_other_arrays(synced):
+    bpy.data.meshes["Other"].shade_smooth()
+    bpy.context.view_layer.update()
     (before,) = (mesh for mesh in synced.scene.meshes if mesh.name == "Other")
     edit_other_mesh()
     bpy.context.view_layer.update()

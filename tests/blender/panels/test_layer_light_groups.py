@@ -10,7 +10,6 @@ from drawing import context_of, drawn
 
 from rppm_addon.blender.export import SceneSync
 from rppm_addon.blender.export.camera.camera import export_camera
-from rppm_addon.blender.export.report import Report
 
 
 @pytest.fixture
@@ -52,7 +51,7 @@ def test_a_scene_that_lives_on_follows_its_groups(grouped):
 
     def follow():
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        return sync.update(depsgraph, export_camera(grouped, depsgraph, Report()))
+        return sync.update(depsgraph, export_camera(grouped, depsgraph))
 
     assert {light.light_group for light in follow().lights} == {"key"}
     next(member for member in grouped.objects if member.type == "LIGHT").lightgroup = "world"

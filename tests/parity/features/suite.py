@@ -11,6 +11,7 @@ from . import (  # noqa: F401
     light_limits,
     light_linking,
     lights,
+    media,
     metallic,
     portals,
     profiles,

@@ -9,7 +9,7 @@ and all but the first of those kinds of nodes whose values have tests of their o
 import numpy as np
 import pytest
 
-from . import ashikhmin_shirley, displacement, fibers, metallic, portals, ray_nodes, strands, zones_and_closures
+from . import ashikhmin_shirley, displacement, fibers, media, metallic, portals, ray_nodes, strands, zones_and_closures
 from .flip import flip
 from .row_tests import assert_near_cycles
 from .suite import ROWS
@@ -18,8 +18,8 @@ DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", 
 
 
 MODULES_OF_THEIR_OWN = {
-    ashikhmin_shirley.GROUP, displacement.GROUP, *fibers.GROUPS, metallic.GROUP, portals.GROUP, *ray_nodes.GROUPS,
-    *strands.GROUPS, zones_and_closures.GROUP,
+    ashikhmin_shirley.GROUP, displacement.GROUP, *fibers.GROUPS, media.GROUP, metallic.GROUP, portals.GROUP,
+    *ray_nodes.GROUPS, *strands.GROUPS, zones_and_closures.GROUP,
 }  # fmt: skip
 VALUES_ELSEWHERE = {
     "Textures", "Radial Tiling", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range",

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How many photons later iterations have."""
 
+import numpy as np
 import pytest
 
-from rppm_addon.integrator.common.photon_counts import PhotonCounts, later_photons
+from rppm_addon.integrator.common.photon_counts import PhotonCounts, later_photons, photons_of_use
 
 
 @pytest.mark.parametrize(
@@ -24,6 +25,22 @@ from rppm_addon.integrator.common.photon_counts import PhotonCounts, later_photo
 )
 def test_later_iterations_follow_the_share_of_caustics(first, pixels, by_photons, listed, later):
     assert later_photons(first, pixels, by_photons, listed) == later
+
+
+@pytest.mark.parametrize(
+    ("by_light", "expected"),
+    [
+        ([(1000, 400, 30)], (1000, 600)),
+        ([(1000, 400, 30), (50_000, 50_000, 0)], (1000, 600)),  # lamps in another room
+        ([(1000, 400, 30), (50_000, 50_000, 50)], (51_000, 600)),
+        ([(1000, 400, 30), (50_000, 50_000, 5)], (6000, 600)),  # of which hardly any light comes here
+        ([(1000, 400, 30), (20, 0, 1)], (1020, 620)),
+        ([(1000, 400, 0), (3000, 1000, 0)], (4000, 2600)),  # nothing is known of either
+        ([(0, 0, 0)], (0, 0)),
+    ],
+)
+def test_lights_count_as_far_as_their_photons_contribute(by_light, expected):
+    assert photons_of_use(np.array(by_light, np.uint32)) == expected
 
 
 def test_photons_of_iterations_add_up():

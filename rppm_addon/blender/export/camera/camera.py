@@ -7,11 +7,14 @@ import numpy as np
 from ....scene import Camera
 from ....scene.errors import SceneError
 from ..matrices import unscaled
+from ..report import Report
 from .eyes import Eye
 from .lens import export_aperture, export_panorama
 from .stand_in import StandInCamera, camera_data
 
 _SINGLE = Eye()
+_NOTHING = 1e-6
+"""Where a camera clips what it sees on both sides that sees nothing but the world, meters."""
 
 
 def export_camera(
@@ -19,10 +22,11 @@ def export_camera(
     depsgraph: bpy.types.Depsgraph,
     used: bpy.types.Object | None = None,
     eye: Eye = _SINGLE,
+    report: Report | None = None,
 ) -> Camera:
     """The scene's active camera, or the one that is used in its place, as evaluated in the depsgraph.
 
-    eye: of the view that is rendered.
+    eye: of the view that is rendered. report: told where the camera sees the world only.
     Raises SceneError when there is no camera that can be used.
     """
     used = used or eye.camera_of(scene)
@@ -35,13 +39,7 @@ def export_camera(
             f'camera "{camera_object.name}" is of type {camera.type}, which RPPM cannot render; '
             "set its lens type to Perspective, Orthographic or Panoramic"
         )
-    try:
-        matrix = unscaled(eye.matrix_of(camera_object))
-    except ValueError:
-        raise SceneError(
-            f'the matrix of camera "{camera_object.name}" cannot be inverted; '
-            "give it and its parents a scale that is not 0"
-        ) from None
+    matrix, is_blind = _pose(camera_object, eye, report)
     width, height = frame_size(scene.render)
     across, upward = frame_shape(scene.render, width, height)
     panoramic = camera.type == "PANO"
@@ -51,18 +49,38 @@ def export_camera(
         width=width,
         height=height,
         orthographic=camera.type == "ORTHO",
-        clip_start=camera.clip_start,
-        clip_end=max(camera.clip_end, camera.clip_start * 1.001),
+        clip_start=_NOTHING if is_blind else camera.clip_start,
+        clip_end=_NOTHING if is_blind else max(camera.clip_end, camera.clip_start * 1.001),
         crop=crop(scene.render, width, height),
         panorama=export_panorama(camera, camera_object.name, across, upward) if panoramic else None,
         aperture=export_aperture(camera, matrix, depsgraph),
     )
 
 
+def _pose(camera_object: bpy.types.Object, eye: Eye, report: Report | None) -> tuple[np.ndarray, bool]:
+    """The matrix (4, 4) of a camera without scale, and whether it sees the world only, as in Cycles if its scale is 0.
+
+    Raises SceneError where its matrix is not finite.
+    """
+    given, name = eye.matrix_of(camera_object), camera_object.name
+    if not np.isfinite(given).all():
+        raise SceneError(f'the matrix of camera "{name}" is not finite; correct its transform and that of its parents')
+    try:
+        return unscaled(given), False
+    except ValueError:
+        matrix = np.eye(4)
+        matrix[:3, 3] = given[:3, 3]
+    if report is not None:
+        report.warn(
+            f'Camera "{name}": as in Cycles it sees the world only, as its scale is 0; give it and its parents a scale'
+        )
+    return matrix, True
+
+
 def camera_pose(
     camera_object: bpy.types.Object, render: bpy.types.RenderSettings, eye: Eye
 ) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
-    """Matrix and window of an evaluated camera object that export_camera takes; None where its matrix is singular."""
+    """Matrix and window of an evaluated camera object that export_camera takes; None where it sees nothing."""
     try:
         matrix = unscaled(eye.matrix_of(camera_object))
     except ValueError:

@@ -109,8 +109,8 @@ def _power(data: bpy.types.Light, name: str, report: Report) -> np.ndarray:
     power = data.energy * np.array(data.color, np.float64) * 2.0 ** getattr(data, "exposure", 0.0)
     if getattr(data, "use_temperature", False):
         power = power * np.array(data.temperature_color, np.float64)
-    if not np.isfinite(power).all() or (power < 0.0).any():
-        report.warn(f'Light "{name}": its power is negative or not finite and counts as 0')
+    if not np.isfinite(power).all():
+        report.warn(f'Light "{name}": its power is not finite and counts as 0')
         return np.zeros(3)
     return power
 

@@ -112,7 +112,9 @@ def _computed(
     uv = slices.step(record, (name, "read"), lambda: _uv_of_tangents(exported, mesh, name.removeprefix(TANGENT)))
     if uv is None:
         return None
-    return MeshAttribute(AttributeDomain.CORNER, slices.computed(record, name, lambda: corner_tangents(exported, uv)))
+    goes_round = name == TANGENT and exported.corner_uv is None
+    tangents = slices.computed(record, name, lambda: corner_tangents(exported, uv, goes_round))
+    return MeshAttribute(AttributeDomain.CORNER, tangents)
 
 
 def _read(exported: Mesh, mesh: bpy.types.Mesh, name: str) -> MeshAttribute | None:
@@ -168,7 +170,8 @@ def _smooth_normals(exported: Mesh, mesh: bpy.types.Mesh) -> MeshAttribute | Non
         _, normals = _vertices(mesh)
         values[:, :3] = normals[exported.corner_vertices]
         return MeshAttribute(AttributeDomain.CORNER, values)
-    values[:, :3] = exported.corner_normals
+    flat = ~exported.corner_normals.any(axis=1, keepdims=True)  # whose vertices move with those of the faces beside
+    values[:, :3] = np.where(flat, _vertices(mesh)[1][exported.corner_vertices], exported.corner_normals)
     sharp = np.zeros(len(mesh.polygons), bool)
     if "sharp_face" in mesh.attributes:
         mesh.attributes["sharp_face"].data.foreach_get("value", sharp)

@@ -33,6 +33,14 @@ def elements(collection: bpy.types.bpy_prop_collection, field: str, count: int, 
     return _by_foreach_get(collection, field, count, width, kind)
 
 
+def attribute_elements(
+    mesh: bpy.types.Mesh, name: str, field: str, count: int, width: int, kind: type
+) -> np.ndarray | None:
+    """What ``elements`` gives of an attribute of a mesh; None when there is none, as of all in Edit Mode."""
+    attribute = None if mesh.is_editmode else mesh.attributes.get(name)
+    return None if attribute is None else elements(attribute.data, field, count, width, kind)
+
+
 def view_is_right(collection: bpy.types.bpy_prop_collection, field: str, count: int, width: int, kind: type) -> bool:
     """Whether Blender stores these elements as so many numbers in a row, and foreach_get agrees.
 

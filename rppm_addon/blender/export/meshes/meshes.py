@@ -12,12 +12,11 @@ from ....scene import Mesh
 from ....scene.sharing import keep_equal, same_bits
 from ..report import Report
 from ..slices import Slices
-from .element_arrays import elements
+from .corner_normals import is_flat, read_corner_normals, read_corner_vertices
+from .element_arrays import attribute_elements, elements
 
 FARTHEST = 1e18
 """Coordinates beyond overflow in single precision as soon as they are squared."""
-_BLOCK = 256
-"""Corners whose squares are added up in single precision."""
 _FEW = 1 << 14
 """Corners up to which a mesh is read at once."""
 _MANY = 1 << 19
@@ -51,7 +50,7 @@ def export_mesh(
     """
     if len(mesh.polygons) == 0:
         return None
-    if mesh.is_editmode:  # of the object itself Blender makes another mesh (edited_meshes.py)
+    if mesh.is_editmode:  # of the object itself Blender makes another mesh (rendered_meshes.py)
         report.warn(
             f'Object "{name}": what its geometry nodes multiply is in Edit Mode, where Blender tells of no UV maps and '
             "attributes; leave Edit Mode to have them"
@@ -80,7 +79,8 @@ def _read_in_steps(
     mesh: bpy.types.Mesh, before: Mesh, slices: Slices, record: dict[Hashable, Any]
 ) -> dict[str, np.ndarray | None]:
     step = slices.step_alone if len(mesh.loops) > _MANY else slices.step
-    step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
+    if not is_flat(mesh):
+        step(record, "normals", lambda: mesh.corner_normals[0].vector[0])  # Blender computes all of them
     arrays = {}
     for field, read in _READERS.items():
         copy = functools.partial(_copied, slices, record, field)
@@ -89,14 +89,14 @@ def _read_in_steps(
 
 
 def read_shape(mesh: bpy.types.Mesh, before: Mesh = NO_MESH) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Positions (vertices, 3), the vertex of each corner (corners,) and unit normals of corners (corners, 3).
+    """Positions (vertices, 3), the vertex of each corner (corners,) and normals of corners (corners, 3).
 
     before: as for export_mesh.
     """
     return (
         _positions(mesh, before.positions, np.copy),
         _corner_vertices(mesh, before.corner_vertices, np.copy),
-        _corner_normals(mesh, before.corner_normals, np.copy),
+        read_corner_normals(mesh, before.corner_normals),
     )
 
 
@@ -133,17 +133,14 @@ def _triangle_corners(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> 
 
 
 def _positions(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
-    positions = _attribute(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
+    positions = attribute_elements(mesh, "position", "vector", len(mesh.vertices), 3, np.float32)
     if positions is None:  # in Edit Mode
         positions = elements(mesh.vertices, "co", len(mesh.vertices), 3, np.float32)
     return _kept(before, positions, copy)
 
 
 def _corner_vertices(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
-    vertices = _attribute(mesh, ".corner_vert", "value", len(mesh.loops), 1, np.int32)
-    if vertices is None:  # in Edit Mode
-        vertices = elements(mesh.loops, "vertex_index", len(mesh.loops), 1, np.int32)
-    return _kept(before, vertices, copy)
+    return _kept(before, read_corner_vertices(mesh), copy)
 
 
 def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray, _: _Copy) -> np.ndarray:
@@ -151,7 +148,7 @@ def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray, _: _Copy) -> np.nd
     if mesh.is_editmode:
         slots = elements(mesh.polygons, "material_index", len(mesh.polygons), 1, np.int32)
     else:
-        slots = _attribute(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
+        slots = attribute_elements(mesh, "material_index", "value", len(mesh.polygons), 1, np.int32)
     if slots is None:
         return keep_equal(before, np.zeros(count, np.int32))
     if slots.min() < 0:
@@ -162,18 +159,6 @@ def _triangle_slots(mesh: bpy.types.Mesh, before: np.ndarray, _: _Copy) -> np.nd
         if all(same_bits(before[part], slots.take(polygons[part])) for part in parts):
             return before
     return slots.take(polygons)
-
-
-def _corner_normals(mesh: bpy.types.Mesh, before: np.ndarray, copy: _Copy) -> np.ndarray:
-    """(corners, 3) float32, those of faces without area repaired: Blender may give 0 or NaN."""
-    view = elements(mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32)
-    if same_bits(before, view):
-        return before
-    normals = copy(view)
-    parts = (normals[start : start + _PART] for start in range(0, len(normals), _PART))
-    if _has_free_normals(mesh) or not all(map(_no_zeros_among, parts)):
-        _make_unit(normals)
-    return normals
 
 
 def _skip_distant_vertices(arrays: dict[str, np.ndarray], name: str, report: Report) -> None:
@@ -211,7 +196,7 @@ _READERS: dict[str, Callable[[bpy.types.Mesh, Any, _Copy], np.ndarray | None]] =
     "triangle_slots": _triangle_slots,
     "positions": _positions,
     "corner_vertices": _corner_vertices,
-    "corner_normals": _corner_normals,
+    "corner_normals": read_corner_normals,
     "corner_uv": _render_uv,
 }
 """Of the arrays of a mesh, by their names; each takes what the array may resemble, and what copies Blender's."""
@@ -226,35 +211,3 @@ def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None, c
     if np.isfinite(uv.min(initial=0.0)) and np.isfinite(uv.max(initial=0.0)):
         return uv
     return keep_equal(before, np.nan_to_num(uv, copy=False, nan=0.0, posinf=0.0, neginf=0.0))
-
-
-def _attribute(mesh: bpy.types.Mesh, name: str, field: str, count: int, width: int, kind: type) -> np.ndarray | None:
-    """What ``elements`` gives of an attribute; None when there is none."""
-    attribute = mesh.attributes.get(name)
-    return None if attribute is None else elements(attribute.data, field, count, width, kind)
-
-
-def _has_free_normals(mesh: bpy.types.Mesh) -> bool:
-    """Whether normals are what users or nodes have stored, of any length."""
-    attribute = mesh.attributes.get("custom_normal")
-    return attribute is not None and attribute.data_type == "FLOAT_VECTOR"
-
-
-def _make_unit(normals: np.ndarray) -> None:
-    """Repair, in place, normals that are no unit vectors."""
-    squares = np.einsum("ij,ij->i", normals, normals)
-    bad = ~(np.abs(squares - 1.0) < 1e-3)
-    if bad.any():
-        wrong = np.nan_to_num(normals[bad], nan=0.0, posinf=0.0, neginf=0.0)
-        lengths = np.linalg.norm(wrong, axis=1, keepdims=True)
-        normals[bad] = np.where(lengths > 1e-6, wrong / np.maximum(lengths, 1e-30), np.float32([0.0, 0.0, 1.0]))
-
-
-def _no_zeros_among(normals: np.ndarray) -> bool:
-    """Whether normals that are unit vectors, 0 or NaN are unit vectors all: by sums of squares, block by block."""
-    whole = len(normals) // _BLOCK * _BLOCK
-    for block in (normals[:whole].reshape(-1, 3 * _BLOCK), normals[whole:].reshape(1, -1)):
-        squares = np.einsum("ij,ij->i", block, block)
-        if not (np.abs(squares - block.shape[1] / 3) < 0.25).all():
-            return False
-    return True

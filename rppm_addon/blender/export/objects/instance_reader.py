@@ -14,6 +14,7 @@ from ..hashing import hashed
 from ..layers import light_group_of
 from ..lights.lights import export_light
 from ..meshes.attributes import INSTANCER_GENERATED, INSTANCER_UV, attribute_of
+from ..meshes.rendered_meshes import is_gas_domain
 from ..nodes.materials import MaterialTable
 from ..strands.round_meshes import RoundSource
 from ..visibility import visibility_of
@@ -52,7 +53,7 @@ class InstanceReader:
         before: the one that it had, if it was moved at most.
         """
         visibility = visibility_of(source)
-        if source.type != "MESH" or not visibility:
+        if source.type != "MESH" or not visibility or is_gas_domain(source):
             return None
         if before is not None and self.meshes.knows(before.mesh):
             return self._moved(source, matrix, visibility, before)

@@ -14,8 +14,8 @@ from ....scene.sharing import equal
 from ..context import ExportContext
 from ..meshes.attributes import export_attribute
 from ..meshes.dicing import export_dicing
-from ..meshes.edited_meshes import is_made_anew, rendered_mesh
 from ..meshes.meshes import NO_MESH, export_mesh
+from ..meshes.rendered_meshes import is_made_anew, rendered_mesh
 from ..slices import Slices
 from ..strands.round_meshes import RoundSource, export_round, export_round_attribute
 from ..strands.tubes import Rings

@@ -11,12 +11,13 @@ from ....scene import Instance, Light, RayVisibility
 from ....scene.meshes import SMOOTH_NORMALS
 from ..matrices import usable_matrices
 from ..meshes.attributes import GENERATED, ISLAND, POINTINESS, TANGENT, title_of
-from ..meshes.edited_meshes import has_no_faces
+from ..meshes.rendered_meshes import has_no_faces, is_gas_domain
 from ..omissions import objects_of
 from ..strands.attributes import OF_ROUND_SHAPES
 from ..strands.particle_hair import HAIRLESS_MODES, hair_modifiers, hair_systems
 from ..strands.round_meshes import ROUND_TYPES, Hair, RoundSource
 from ..visibility import visibility_of
+from .faceless import FacelessObjects
 from .instance_reader import InstanceReader, shaded_instance
 from .object_matrices import instance_matrices
 from .particles import ParticleTable
@@ -146,6 +147,7 @@ class ObjectPass:
         """By their addresses."""
         self._multiple: set[int] = set()
         """Objects that are multiplied or multiply others."""
+        self._faceless = FacelessObjects()
         self._sampled = self._reader.materials.sampled
         self._result = Placed()
 
@@ -169,6 +171,7 @@ class ObjectPass:
             self._keep_usable()
         self._tell_lost()
         self._tell_missing()
+        self._faceless.tell(self._report)
         self._result.alone = _without(self._result.alone, self._multiple | {0})
         self._result.lights_alone = _without(self._result.lights_alone, self._multiple)
         return self._result
@@ -215,6 +218,7 @@ class ObjectPass:
             self._identity = identity_of(instance, original, original)
         if source.type in ROUND_TYPES:  # an object may show several
             self._multiple.add(uid)
+            self._faceless.brings_others(uid)
             self._export_instance(source, matrix, uid)
             return
         meshes, kept = self._reader.meshes, self._unchanged.get(uid)
@@ -248,6 +252,7 @@ class ObjectPass:
             )
             self._owners[parent.as_pointer()] = owner
             self._multiple.add(owner.uid)
+            self._faceless.brings_others(owner.uid)
         data = source.data
         key = instance.instance_object.as_pointer(), 0 if data is None else data.as_pointer()
         kind = self._kinds.get(key)
@@ -323,6 +328,7 @@ class ObjectPass:
         if not systems:
             return
         self._multiple.add(source.original.session_uid)
+        self._faceless.brings_others(source.original.session_uid)
         if self._identify:
             self._identity = identity_of_hair(identity_of(instance, source.original, owner), source.original)
         shading = self._reader.shading(source, visibility, None if instancer is None else instance)
@@ -335,7 +341,9 @@ class ObjectPass:
         self, kind: _Kind, source: bpy.types.Object, owner: _Owner, instance: bpy.types.DepsgraphObjectInstance
     ) -> None:
         visibility = visibility_of(source)
-        if not visibility or has_no_faces(source.data):
+        holder = instance.instance_object
+        is_own = holder.data == source.data
+        if not visibility or self._shows_no_mesh(source, is_own):
             kind.learned = True
             return
         kind.shading = self._reader.shading(source, visibility, instance)
@@ -344,8 +352,24 @@ class ObjectPass:
         original = source.original
         kind.converted = original.as_pointer() if original.type in CONVERTED_TYPES else 0
         kind.name, kind.object_index = source.name, source.pass_index
-        kind.mesh = self._reader.mesh_index(instance.instance_object, source.data, kind.shading, owner.uid)
+        kind.mesh = self._reader.mesh_index(holder, source.data, kind.shading, owner.uid)
+        if kind.mesh is None and is_own:
+            self._faceless.note(source)
         kind.learned = True
+
+    def _shows_no_mesh(self, source: bpy.types.Object, is_own: bool) -> bool:
+        """Whether nothing of a mesh is to be rendered. is_own: it is the object's, none that nodes of geometry made."""
+        if is_own and is_gas_domain(source):
+            self._report.warn(
+                f'Object "{source.name}": smoke and fire of fluid domains are not rendered yet; as in Cycles the '
+                "domain's mesh is not shown"
+            )
+            return True
+        if not has_no_faces(source.data):
+            return False
+        if is_own:
+            self._faceless.note(source)
+        return True
 
     def _add(self, instance: Instance, matrix: np.ndarray, uid: int) -> None:
         """uid: of an object that stands for itself, or is multiplied; 0 where it does not tell the instance."""
@@ -384,7 +408,7 @@ class ObjectPass:
             visibility &= visibility_of(instancer)
         if not visibility:
             return
-        if kind == "MESH" and has_no_faces(source.data):
+        if kind == "MESH" and self._shows_no_mesh(source, True):
             return  # and its materials are not needed
         shading = self._reader.shading(source, visibility, instance)
         if instance is not None:
@@ -414,6 +438,8 @@ class ObjectPass:
             instance = shaded_instance(index, source, matrix, shading)
             self._note_missing(instance)
             self._add(instance, matrix, uid)
+        elif isinstance(mesh, bpy.types.Mesh):
+            self._faceless.note(source)
 
     def _note_missing(self, instance: Instance) -> None:
         """Attributes that the materials of an instance read and that it does not have."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes as they are rendered, also in Edit Mode, where Blender keeps them in another form."""
+"""Meshes as they are rendered, also in Edit Mode, where Blender keeps them in another form, and which are not."""
 
 import contextlib
 from collections.abc import Iterator
@@ -15,6 +15,14 @@ def is_made_anew(data: object) -> bool:
 def has_no_faces(mesh: bpy.types.Mesh) -> bool:
     """Whether an evaluated mesh has nothing to be rendered, as far as it can tell: in Edit Mode it may count none."""
     return len(mesh.polygons) == 0 and not mesh.is_editmode
+
+
+def is_gas_domain(source: bpy.types.Object) -> bool:
+    """Whether Cycles takes a mesh object for the smoke and fire in it, baked or not, and does not show its mesh."""
+    for modifier in source.modifiers:
+        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
+            return modifier.domain_settings.domain_type == "GAS"
+    return False
 
 
 @contextlib.contextmanager

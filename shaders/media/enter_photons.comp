@@ -1,0 +1,32 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: TEXEL_BUFFERS=1
+// The media that photons begin in: those at the middle of their light, and what lies on the way from there to where
+// each leaves it. Emissive meshes have no middle; around suns and the world there is nothing.
+
+layout(local_size_x = 64) in;
+
+#include <EnterMediaParameters>
+#include "common/living_paths.glsl"
+layout(std140, binding = 0) uniform Parameters { EnterMediaParameters parameters; };
+layout(std430, binding = 0) readonly buffer MediaOfSources;
+layout(std430, binding = 1) readonly buffer Attributes;
+layout(std430, binding = 2) readonly buffer MediumBoxes;
+layout(std430, binding = 3) readonly buffer Rays;
+#include "lights/light_table.glsl"
+#include <Lights>
+layout(std430, binding = 5) buffer PhotonPaths;
+layout(std430, binding = 7) readonly buffer Materials;
+#include "media/crossings.glsl"
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
+    uint source = light_of(index), kind = lights[source].kind;
+    if (kind == LIGHT_SUN || kind == LIGHT_WORLD) return;
+    vec3 origin = rays[index].origin;
+    uint media = kind == LIGHT_MESH ? media_at(origin)
+                                    : media_beyond(lights[source].position, media_of_sources[source], origin);
+    photon_paths[index].flags |= media << FIRST_MEDIUM;
+}

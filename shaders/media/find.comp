@@ -1,0 +1,26 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: TEXEL_BUFFERS=1
+// The media at the middle of each light object, and behind them at the camera.
+
+layout(local_size_x = 64) in;
+
+#include <FindMediaParameters>
+#include "common/invocation.glsl"
+layout(std140, binding = 0) uniform Parameters { FindMediaParameters parameters; };
+layout(std430, binding = 0) writeonly buffer MediaOfSources;
+layout(std430, binding = 1) readonly buffer Attributes;
+layout(std430, binding = 2) readonly buffer MediumBoxes;
+#include "lights/light_table.glsl"
+layout(std430, binding = 7) readonly buffer Materials;
+#include "media/crossings.glsl"
+
+void main() {
+    uint index = invocation_index();
+    if (index > parameters.light_count) return;
+    bool camera = index == parameters.light_count;
+    vec3 point = parameters.camera_position;
+    if (!camera) point = lights[index].position;
+    media_of_sources[index] = is_at_surface(point) ? MEDIA_UNKNOWN : media_at(point);
+}

@@ -1,0 +1,33 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: TEXEL_BUFFERS=1
+// Soft lights with surfaces near them face the point where a photon hits with a disk that the photon's ray meets a
+// little behind where it began: what lies in between hides that place, as it does from shadow rays.
+
+layout(local_size_x = 64) in;
+
+#include <CutParameters>
+#include "common/living_paths.glsl"
+layout(std140, binding = 0) uniform Parameters { CutParameters parameters; };
+#include "lights/light_table.glsl"
+#include <Lights>
+#include "deep_cubemap/traverse.glsl"
+layout(std430, binding = 0) buffer Rays;
+layout(std430, binding = 1) readonly buffer Hits;
+layout(std430, binding = 2) buffer PhotonPaths;
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    Light light = lights[light_of(index)];
+    const uint cut = LIGHT_SOFT | LIGHT_HOLDS_SURFACES;
+    Ray ray = rays[index];
+    Hit hit = hits[index];
+    if ((light.flags & cut) != cut || hit.triangle == NO_TRIANGLE || !(ray.maximum_distance > 0.0)) return;
+    vec3 point = ray.origin + hit.distance * ray.direction;
+    float behind = soft_light_distance(light, point, -ray.direction) - hit.distance;
+    if (!deep_cubemap_occluded(Ray(ray.origin, NO_TRIANGLE, -ray.direction, behind))) return;
+    photon_paths[index].flux = vec3(0.0);
+    rays[index].maximum_distance = 0.0;
+}

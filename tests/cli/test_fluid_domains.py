@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files with fluid domains, which have Blender's module abort as it ends."""
+
+import subprocess
+import sys
+
+import pytest
+
+pytest.importorskip("bpy", reason="needs the bpy wheel")
+
+from rppm_addon.pictures import read_exr  # noqa: E402
+
+WRITE = """
+import os, sys, bpy
+kind, path = sys.argv[1:]
+bpy.ops.wm.read_factory_settings()
+modifier = bpy.data.objects["Cube"].modifiers.new("Fluid", "FLUID")
+modifier.fluid_type = "DOMAIN"
+modifier.domain_settings.domain_type = kind
+modifier.domain_settings.resolution_max = 8
+bpy.ops.wm.save_as_mainfile(filepath=path)
+os._exit(0)
+"""
+
+
+@pytest.mark.parametrize("kind", ["GAS", pytest.param("LIQUID", marks=pytest.mark.long)])
+def test_a_fluid_domain_is_rendered_with_status_0(tmp_path, rppm, kind):
+    """The mesh of a gas domain is not shown, as in Cycles: the gray world is all there is."""
+    blend, exr = tmp_path / "fluid.blend", tmp_path / "fluid.exr"
+    subprocess.run([sys.executable, "-c", WRITE, kind, blend], check=True, capture_output=True, timeout=60)
+    status, output, errors = rppm("render", blend, "-o", exr, "--samples", "1", "--resolution", "32x24")
+    assert status == 0 and "fluid.exr" in output, errors
+    combined = read_exr(exr).combined[..., :3]
+    assert (combined.std() < 1e-6) == (kind == "GAS")
+    assert ('"Cube": smoke and fire' in errors) == (kind == "GAS")
+    assert "may abort" not in errors
+
+
+@pytest.mark.long
+def test_a_domain_that_may_abort_is_named_before(tmp_path, rppm):
+    blend = tmp_path / "fluid.blend"
+    subprocess.run([sys.executable, "-c", WRITE, "LIQUID", blend], check=True, capture_output=True, timeout=60)
+    _, _, errors = rppm("render", blend, "-o", tmp_path / "fluid.exr", "--samples", "1", "--frame", "4")
+    assert 'rppm: Object "Cube": Blender as a module may abort' in errors

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lamps with a radius that reach into a surface: spheres, which shine within as without, and disks that face points."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import diffuse
+
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene
+from rppm_addon.self_test.meshes import placed, rectangle
+
+RADIUS, INTENSITY, ALBEDO = 0.5, 2.0, 0.8
+PIXELS = 32
+MODES = {
+    DirectLight.RAYS: {"iterations": 24, "photons": 64},
+    DirectLight.PHOTONS: {"iterations": 8, "photons": 60000},
+}
+
+
+def _scene(mode: DirectLight, half: float, **light: object) -> Scene:
+    """A floor that halves a lamp, seen from above: a square of so much to either side."""
+    floor = rectangle("floor", (-4, -4, 0), (4, -4, 0), (4, 4, 0), (-4, 4, 0))
+    lamp = Light("lamp", LightKind.POINT, placed(0, 0, 0), np.full(3, INTENSITY), radius=RADIUS, **light)
+    return Scene(
+        Camera(placed(0, 0, 4), (-half / 4, half / 4) * 2, PIXELS, PIXELS),
+        [floor],
+        [Instance(0, np.eye(4), [0])],
+        [diffuse(ALBEDO, ALBEDO, ALBEDO)],
+        [lamp],
+        settings=RenderSettings(direct_light=mode, photon_path_length=1, **MODES[mode]),
+    )
+
+
+def _from_above(renderer, scene: Scene) -> np.ndarray:
+    scene.lights[0].visibility &= ~1  # the camera
+    return renderer.render(scene).frame.combined[..., 0]
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_floor_within_a_sphere_sees_half_of_it(renderer, mode):
+    """The far side of the sphere is seen in all directions: radiance pi times as irradiance, wherever within."""
+    seen = _from_above(renderer, _scene(mode, 0.6 * RADIUS))
+    expected = ALBEDO * INTENSITY / (math.pi * RADIUS**2)
+    assert seen.mean() == pytest.approx(expected, rel=0.02)
+    assert seen[8:24, 8:24].mean() == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize("kind", ["sphere", "disk"])
+def test_photons_bring_what_shadow_rays_find(renderer, kind):
+    """Within the lamp and beside it."""
+    pictures = [
+        _from_above(renderer, _scene(mode, 3.0 * RADIUS, soft_falloff=kind == "disk")) for mode in MODES
+    ]  # fmt: skip
+    by_rays, by_photons = (picture.reshape(4, 8, 4, 8).mean(axis=(1, 3)) for picture in pictures)
+    np.testing.assert_allclose(by_photons, by_rays, rtol=0.08)
+    assert by_photons.mean() == pytest.approx(by_rays.mean(), rel=0.02)
